@@ -1,0 +1,1 @@
+//! The axle models that qcar ships, compiled.

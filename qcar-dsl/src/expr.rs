@@ -1,0 +1,258 @@
+//! Expressions: one hash-consed graph for a model, identities applied at birth.
+//!
+//! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
+//! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.
+
+use std::collections::HashMap;
+
+/// A mass, node, road or prescribed motion of the model: an index into `Model::coordinates`.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct CoordinateId(pub u16);
+
+/// A link of the model: an index into `Model::links`.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct LinkId(pub u16);
+
+/// What an expression may depend on.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub enum Symbol {
+    /// A parameter of the model, by its place in `Model::parameters`.
+    Parameter(u16),
+    /// The position of a coordinate, m or rad.
+    Position(CoordinateId),
+    /// The velocity of a coordinate, m/s or rad/s.
+    Velocity(CoordinateId),
+    /// The acceleration of a coordinate; of a prescribed motion it is an input.
+    Acceleration(CoordinateId),
+    /// The stretch `s` of a link, inside its law.
+    Stretch(LinkId),
+    /// The rate `v = ds/dt` of a link, inside its law.
+    Rate(LinkId),
+    /// An inner state of a link's law, by its place in the law.
+    Inner(LinkId, u16),
+    /// A force input, by its place in `Model::forces`, N.
+    Force(u16),
+    /// Gravity of a direction, by its place in `Model::gravities`, m/s².
+    Gravity(u16),
+    /// The angular frequency ω of a harmonic excitation, rad/s.
+    Frequency,
+}
+
+/// A function of one argument.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+#[expect(missing_docs, reason = "each is the mathematical function of its name")]
+pub enum Function {
+    Abs,
+    Sign,
+    Sqrt,
+    Exp,
+    Ln,
+    Sin,
+    Cos,
+    Tan,
+    Atan,
+    Tanh,
+}
+
+/// A node of the graph.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// A number, by its bits, so that it can be hashed.
+    Constant(u64),
+    /// A leaf.
+    Symbol(Symbol),
+    /// `-a`
+    Neg(Expr),
+    /// `a + b`
+    Add(Expr, Expr),
+    /// `a - b`
+    Sub(Expr, Expr),
+    /// `a b`
+    Mul(Expr, Expr),
+    /// `a / b`
+    Div(Expr, Expr),
+    /// `a^n` for a whole number n other than 0 and 1
+    Powi(Expr, i32),
+    /// `a^b` for a positive a
+    Pow(Expr, Expr),
+    /// The smaller of two.
+    Min(Expr, Expr),
+    /// The larger of two.
+    Max(Expr, Expr),
+    /// `f(a)`
+    Call(Function, Expr),
+    /// The second where the first is above zero, else the third.
+    Select(Expr, Expr, Expr),
+}
+
+/// A name for a node of a [`Graph`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Expr(u32);
+
+/// The graph in which all expressions of one model live.
+#[derive(Clone, Default, Debug)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    names: HashMap<Node, Expr>,
+}
+
+impl Graph {
+    /// The node behind a name.
+    pub fn node(&self, e: Expr) -> Node {
+        self.nodes[e.0 as usize]
+    }
+
+    /// The value of a constant, or `None` for anything else.
+    pub fn as_constant(&self, e: Expr) -> Option<f64> {
+        match self.node(e) {
+            Node::Constant(bits) => Some(f64::from_bits(bits)),
+            _ => None,
+        }
+    }
+
+    fn intern(&mut self, node: Node) -> Expr {
+        if let Some(&e) = self.names.get(&node) {
+            return e;
+        }
+        let e = Expr(self.nodes.len() as u32);
+        self.nodes.push(node);
+        self.names.insert(node, e);
+        e
+    }
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> Expr {
+        self.intern(Node::Constant(value.to_bits()))
+    }
+
+    /// A leaf.
+    pub fn symbol(&mut self, symbol: Symbol) -> Expr {
+        self.intern(Node::Symbol(symbol))
+    }
+
+    fn is(&self, e: Expr, value: f64) -> bool {
+        self.as_constant(e) == Some(value)
+    }
+
+    /// `-a`
+    pub fn neg(&mut self, a: Expr) -> Expr {
+        match self.node(a) {
+            Node::Constant(bits) => self.constant(0.0 - f64::from_bits(bits)),
+            Node::Neg(b) => b,
+            Node::Sub(b, c) => self.sub(c, b),
+            _ => self.intern(Node::Neg(a)),
+        }
+    }
+
+    /// `a + b`
+    pub fn add(&mut self, a: Expr, b: Expr) -> Expr {
+        match (self.node(a), self.node(b)) {
+            (Node::Constant(x), Node::Constant(y)) => self.constant(f64::from_bits(x) + f64::from_bits(y)),
+            _ if self.is(a, 0.0) => b,
+            _ if self.is(b, 0.0) => a,
+            (_, Node::Neg(c)) => self.sub(a, c),
+            (Node::Neg(c), _) => self.sub(b, c),
+            _ => self.intern(Node::Add(a.min(b), a.max(b))),
+        }
+    }
+
+    /// `a - b`
+    pub fn sub(&mut self, a: Expr, b: Expr) -> Expr {
+        match (self.node(a), self.node(b)) {
+            (Node::Constant(x), Node::Constant(y)) => self.constant(f64::from_bits(x) - f64::from_bits(y)),
+            _ if a == b => self.constant(0.0),
+            _ if self.is(b, 0.0) => a,
+            _ if self.is(a, 0.0) => self.neg(b),
+            (_, Node::Neg(c)) => self.add(a, c),
+            _ => self.intern(Node::Sub(a, b)),
+        }
+    }
+
+    /// `a b`
+    pub fn mul(&mut self, a: Expr, b: Expr) -> Expr {
+        match (self.node(a), self.node(b)) {
+            (Node::Constant(x), Node::Constant(y)) => self.constant(f64::from_bits(x) * f64::from_bits(y)),
+            _ if self.is(a, 0.0) || self.is(b, 0.0) => self.constant(0.0),
+            _ if self.is(a, 1.0) => b,
+            _ if self.is(b, 1.0) => a,
+            _ if self.is(a, -1.0) => self.neg(b),
+            _ if self.is(b, -1.0) => self.neg(a),
+            (Node::Neg(x), Node::Neg(y)) => self.mul(x, y),
+            (Node::Neg(x), _) => {
+                let product = self.mul(x, b);
+                self.neg(product)
+            }
+            (_, Node::Neg(y)) => {
+                let product = self.mul(a, y);
+                self.neg(product)
+            }
+            _ if a == b => self.powi(a, 2),
+            _ => self.intern(Node::Mul(a.min(b), a.max(b))),
+        }
+    }
+
+    /// `a / b`
+    pub fn div(&mut self, a: Expr, b: Expr) -> Expr {
+        match (self.node(a), self.node(b)) {
+            (Node::Constant(x), Node::Constant(y)) if f64::from_bits(y) != 0.0 => {
+                self.constant(f64::from_bits(x) / f64::from_bits(y))
+            }
+            _ if self.is(a, 0.0) => a,
+            _ if self.is(b, 1.0) => a,
+            _ if a == b => self.constant(1.0),
+            (Node::Neg(x), Node::Neg(y)) => self.div(x, y),
+            (Node::Neg(x), _) => {
+                let quotient = self.div(x, b);
+                self.neg(quotient)
+            }
+            (_, Node::Neg(y)) => {
+                let quotient = self.div(a, y);
+                self.neg(quotient)
+            }
+            _ => self.intern(Node::Div(a, b)),
+        }
+    }
+
+    /// `a^n`
+    pub fn powi(&mut self, a: Expr, n: i32) -> Expr {
+        match (self.node(a), n) {
+            (_, 0) => self.constant(1.0),
+            (_, 1) => a,
+            (Node::Constant(x), _) => self.constant(f64::from_bits(x).powi(n)),
+            (Node::Powi(b, m), _) => self.powi(b, m * n),
+            (Node::Neg(b), _) if n % 2 == 0 => self.powi(b, n),
+            _ => self.intern(Node::Powi(a, n)),
+        }
+    }
+
+    /// `a^b` for a positive a
+    pub fn pow(&mut self, a: Expr, b: Expr) -> Expr {
+        match self.as_constant(b) {
+            Some(n) if n.fract() == 0.0 && n.abs() <= 64.0 => self.powi(a, n as i32),
+            _ => self.intern(Node::Pow(a, b)),
+        }
+    }
+
+    /// The smaller of two.
+    pub fn min(&mut self, a: Expr, b: Expr) -> Expr {
+        if a == b { a } else { self.intern(Node::Min(a, b)) }
+    }
+
+    /// The larger of two.
+    pub fn max(&mut self, a: Expr, b: Expr) -> Expr {
+        if a == b { a } else { self.intern(Node::Max(a, b)) }
+    }
+
+    /// `f(a)`
+    pub fn call(&mut self, f: Function, a: Expr) -> Expr {
+        self.intern(Node::Call(f, a))
+    }
+
+    /// `positive` where `test` is above zero, else `otherwise`.
+    pub fn select(&mut self, test: Expr, positive: Expr, otherwise: Expr) -> Expr {
+        if positive == otherwise {
+            return positive;
+        }
+        self.intern(Node::Select(test, positive, otherwise))
+    }
+}

@@ -1,0 +1,38 @@
+//! The axle compiler: model text in, equations, matrices and Rust out.
+//!
+//! The modules stand in the order of the data; a file uses only what is declared above it.
+
+pub mod source;
+// Mistakes are a catalogue.
+pub mod diagnostic;
+// Units of every expression.
+pub mod units;
+// Expressions: one hash-consed graph for a model.
+pub mod expr;
+// Text to tree.
+pub mod parse;
+pub mod syntax;
+// The tree as canonical text.
+pub mod print;
+// Tree to graph: options taken, elements expanded, names resolved, units checked.
+pub mod model;
+pub mod resolve;
+// The structure: what is held, what is solvable, what can be seen.
+pub mod check;
+// Graph to equations; all that follows is total.
+pub mod motion;
+// Equations to matrices and their parameter Jacobians.
+pub mod linear;
+// Frequency response by sparse elimination.
+pub mod response;
+// Expressions to straight-line programs.
+pub mod program;
+pub mod schedule;
+// Programs interpreted at run time.
+pub mod evaluate;
+// Programs printed as Rust.
+pub mod rust;
+// For people: equations, matrices, LaTeX, dot.
+pub mod show;
+// The whole compiler in one function.
+pub mod compile;

@@ -1,0 +1,249 @@
+//! The model graph: an axle with its options taken, its names resolved and its units checked.
+//!
+//! It is what the text says and nothing derived from it: coordinates, links between them, inputs, outputs.
+//! Every expression lives in [`Model::graph`]. `parse` and `resolve` make it; all later stages read it.
+//!
+//! Sign convention: a link's stretch `s` is positive in extension and its law gives the *resisting* force
+//! `f(s, v)`, positive in tension (`k s + c v` for a spring and damper). A coordinate `q` of the stretch receives
+//! the generalised force `-(∂s/∂q) f` (virtual work).
+
+use crate::expr::{CoordinateId, Expr, Graph, LinkId};
+use crate::source::Span;
+use crate::units::Unit;
+
+/// An axle with its options taken and its names resolved.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// The name, a Rust identifier in snake case.
+    pub name: String,
+    /// The sentence that describes it; may be empty.
+    pub doc: String,
+    /// The options taken, in the order of the family.
+    pub choices: Vec<(String, String)>,
+    /// Where every expression of the model lives.
+    pub graph: Graph,
+    /// In the order of the text.
+    pub parameters: Vec<Parameter>,
+    /// Derived quantities (`let`), in the order of the text.
+    pub definitions: Vec<Definition>,
+    /// Masses, nodes, roads and motions, in the order of the text.
+    pub coordinates: Vec<Coordinate>,
+    /// Force inputs, in the order of the text.
+    pub forces: Vec<ForceInput>,
+    /// At most one for a direction.
+    pub gravities: Vec<Gravity>,
+    /// In the order of the text.
+    pub links: Vec<Link>,
+    /// Declared outputs, in the order of the text; where a model declares none, the acceleration of every mass.
+    pub outputs: Vec<Output>,
+    /// In the order of the text.
+    pub channels: Vec<Channel>,
+}
+
+/// Where something was declared: its span, and the declaration as one canonical line of model text.
+///
+/// The line is printed from the syntax tree, not cut from the file, so that every door generates the same bytes.
+#[derive(Clone, Debug)]
+pub struct Declared {
+    /// The name's place in its source.
+    pub span: Span,
+    /// For example `link tire: wheel - pad { spring k_tire; damper c_tire; }`.
+    pub line: String,
+}
+
+/// A parameter.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// The name, a Rust identifier.
+    pub name: String,
+    /// A coherent SI unit.
+    pub unit: Unit,
+    /// The sentence.
+    pub doc: String,
+    /// In SI.
+    pub default: Default,
+    /// Bounds in SI, lower below upper.
+    pub range: Option<(f64, f64)>,
+    /// Declared `known`: never estimated unless a campaign asks for it, so the identifiability rules leave it alone.
+    pub known: bool,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// What a parameter is when nobody gives it a value.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Default {
+    /// It must be given.
+    None,
+    /// A value in SI.
+    Value(f64),
+    /// The value of another parameter, by its place in `Model::parameters`.
+    Same(u16),
+}
+
+/// A derived quantity. Its expression may be shared with other names.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// The name.
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// In parameters and earlier definitions.
+    pub value: Expr,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// A direction of motion. Names of coordinates and links are unique within a direction.
+#[derive(Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct Direction(pub String);
+
+/// A point (or angle) that moves.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// The name, unique in its direction.
+    pub name: String,
+    /// z, x, ...
+    pub direction: Direction,
+    /// What moves it.
+    pub kind: CoordinateKind,
+    /// True for an angle (rad, inertia in kg m²), false for a position (m, mass in kg).
+    pub angle: bool,
+    /// The sentence; may be empty.
+    pub doc: String,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// What moves a coordinate.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum CoordinateKind {
+    /// Newton: an inertia in kg (kg m² for an angle).
+    Mass(Expr),
+    /// A massless point: its force balance holds at every instant.
+    Node,
+    /// A road under a tyre: a prescribed motion on which a tyre can also roll.
+    Road,
+    /// Any other prescribed motion.
+    Motion,
+}
+
+/// An input that pushes a coordinate.
+#[derive(Clone, Debug)]
+pub struct ForceInput {
+    /// The name, unique in its direction.
+    pub name: String,
+    /// What it pushes, in its positive direction.
+    pub on: CoordinateId,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// A uniform acceleration `-g` of every mass (not angle) of a direction.
+#[derive(Clone, Debug)]
+pub struct Gravity {
+    /// The name, for example `g`.
+    pub name: String,
+    /// The direction that it pulls along, towards the negative side.
+    pub direction: Direction,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// A massless connection of coordinates.
+#[derive(Clone, Debug)]
+pub struct Link {
+    /// The name, unique in its direction.
+    pub name: String,
+    /// The direction it was declared in.
+    pub direction: Direction,
+    /// The stretch: coordinates with their coefficients (functions of parameters only), each coordinate once.
+    pub stretch: Vec<(CoordinateId, Expr)>,
+    /// Unit of the stretch: m, or 1 (rad).
+    pub unit: Unit,
+    /// The force.
+    pub law: Law,
+    /// The sentence; may be empty.
+    pub doc: String,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// The constitutive law of a link: the sum of its terms.
+#[derive(Clone, Debug)]
+pub struct Law {
+    /// In the order of the text, elements expanded.
+    pub terms: Vec<Term>,
+    /// Inner states of all terms, in the order of the text.
+    pub inner: Vec<Inner>,
+}
+
+/// One summand of a law, a resisting force that is positive in tension.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub enum Term {
+    /// `k s`
+    Spring(Expr),
+    /// `c v`
+    Damper(Expr),
+    /// `b dv/dt`
+    Inerter(Expr),
+    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, and parameters.
+    Force(Expr),
+}
+
+/// An inner state of a law.
+#[derive(Clone, Debug)]
+pub struct Inner {
+    /// The name, unique in the link (elements prefix theirs with their own name).
+    pub name: String,
+    /// Its unit.
+    pub unit: Unit,
+    /// Its time derivative, in stretch, rate, inner states and parameters.
+    pub rate: Expr,
+}
+
+/// Something to be seen.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Signal {
+    /// The position, velocity or acceleration of a coordinate.
+    Motion(CoordinateId, Quantity),
+    /// The resisting force of a link, positive in tension.
+    LinkForce(LinkId),
+    /// The stretch of a link.
+    LinkStretch(LinkId),
+}
+
+/// Which derivative of a motion.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Quantity {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+/// An output of the model.
+#[derive(Clone, Debug)]
+pub struct Output {
+    /// `z_body_acceleration`, or the name that the text gives.
+    pub name: String,
+    /// What is seen.
+    pub signal: Signal,
+    /// Its unit.
+    pub unit: Unit,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// A ratio of two signals of the same unit or not, such as `pad_to_body`.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// The name.
+    pub name: String,
+    /// Above the line.
+    pub numerator: Signal,
+    /// Below the line.
+    pub denominator: Signal,
+    /// Where.
+    pub declared: Declared,
+}

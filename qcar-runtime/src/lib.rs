@@ -1,0 +1,19 @@
+//! The workbench: from a measurement campaign to a finding.
+//!
+//! The modules stand in the order of the data; a file uses only what is declared above it.
+
+pub mod model;
+// What every part reports through.
+pub mod error;
+// The measurement as it lies on disk.
+pub mod campaign;
+// From time histories to transmissibilities.
+pub mod spectrum;
+// Sweeps to transmissibilities, with their uncertainty.
+pub mod transmissibility;
+// The model seen as the measurement sees it.
+pub mod response;
+// Bounded nonlinear least squares.
+pub mod least_squares;
+// The rig fit of thesis section 3.5.
+pub mod fit;

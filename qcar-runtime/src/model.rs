@@ -1,0 +1,249 @@
+//! The seam between compiler and workbench: what a compiled axle model offers.
+//!
+//! Generated types and the run-time evaluator implement [`Model`]; the workbench knows nothing else of an axle.
+//! All quantities are SI. Slices have the lengths that [`About`] states; a shorter one is a caller's bug and panics
+//! once, at the top of the call, so that no bounds check is left in the straight-line code below it.
+
+use std::borrow::Cow;
+
+/// A compiled axle model.
+pub trait Model: Send + Sync {
+    /// Names, units, sizes and sparsity.
+    fn about(&self) -> &About;
+
+    /// Computes once what depends on the parameters alone: `p` (one value a parameter) to `constants`.
+    fn prepare(&self, p: &[f64], constants: &mut [f64]);
+
+    /// The equations of motion `dx = f(x, u)` for a prepared parameter set.
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]);
+
+    /// The outputs `y = h(x, u)` for a prepared parameter set.
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]);
+
+    /// Nonzeros of A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x, D = ∂h/∂u, in the order of [`About::matrices`].
+    ///
+    /// A linear model ignores `x` and `u`.
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// Nonzeros of the parameter Jacobians of A, B, C and D, in the order of [`About::sensitivities`].
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// Nonzeros of ∂f/∂p and ∂h/∂p, in the order of [`About::parameter_jacobian`].
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
+    ///
+    /// See [`ResponseLayout`] for what is written where.
+    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>);
+}
+
+/// Where a frequency response is written: structure of arrays, a row of `omega.len()` lines for each entry.
+pub struct ResponseMut<'a> {
+    /// Real parts, row after row, in the order of [`ResponseLayout::outputs`].
+    pub re: &'a mut [f64],
+    /// Imaginary parts.
+    pub im: &'a mut [f64],
+    /// Real and imaginary parts of the parameter Jacobian, in the order of [`ResponseLayout::jacobian`], where wanted.
+    pub jacobian: Option<(&'a mut [f64], &'a mut [f64])>,
+}
+
+/// What there is to know of a model without evaluating it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct About {
+    /// Snake case.
+    pub name: Cow<'static, str>,
+    /// The sentence that describes it.
+    pub doc: Cow<'static, str>,
+    /// In the order of `p`.
+    pub parameters: Cow<'static, [Parameter]>,
+    /// In the order of `x`.
+    pub states: Cow<'static, [State]>,
+    /// In the order of `u`.
+    pub inputs: Cow<'static, [Input]>,
+    /// In the order of `y`.
+    pub outputs: Cow<'static, [Output]>,
+    /// Harmonic excitations: each prescribed motion and each force input.
+    pub excitations: Cow<'static, [Excitation]>,
+    /// Named ratios of two signals.
+    pub channels: Cow<'static, [Channel]>,
+    /// The force elements.
+    pub links: Cow<'static, [Link]>,
+    /// Length of `constants`.
+    pub constants: usize,
+    /// True where f and h are linear in x and u.
+    pub linear: bool,
+    /// The nonzeros of A, B, C and D.
+    pub matrices: Cow<'static, [Entry]>,
+    /// The nonzeros of their parameter Jacobians, with the parameter.
+    pub sensitivities: Cow<'static, [(Entry, u16)]>,
+    /// The nonzeros of ∂f/∂p (block A's rows) and ∂h/∂p (block C's rows): is it an output, row, parameter.
+    pub parameter_jacobian: Cow<'static, [(bool, u16, u16)]>,
+    /// For each excitation; empty for a nonlinear model.
+    pub responses: Cow<'static, [ResponseLayout]>,
+}
+
+/// A parameter of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Name.
+    pub name: Cow<'static, str>,
+    /// Unit, as in `N s/m`.
+    pub unit: Cow<'static, str>,
+    /// Sentence.
+    pub doc: Cow<'static, str>,
+    /// What it is when nobody gives it a value.
+    pub default: Default,
+    /// Bounds.
+    pub range: Option<(f64, f64)>,
+    /// True where it is never estimated unless a campaign asks for it.
+    pub known: bool,
+}
+
+/// What a parameter is when nobody gives it a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Default {
+    /// It must be given.
+    None,
+    /// A value.
+    Value(f64),
+    /// The value of another parameter, by its place.
+    Same(u16),
+}
+
+/// A state of the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct State {
+    /// `z_wheel`, `vz_wheel` or, for an inner state, `damper.f`.
+    pub name: Cow<'static, str>,
+    /// Unit.
+    pub unit: Cow<'static, str>,
+}
+
+/// An entry of `u`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    /// `z_pad`, `vz_pad`, `az_pad`, `f_wheel_z`, `g`.
+    pub name: Cow<'static, str>,
+    /// Unit.
+    pub unit: Cow<'static, str>,
+    /// What it is.
+    pub kind: InputKind,
+}
+
+/// What an entry of `u` is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum InputKind {
+    /// The position, velocity or acceleration of the prescribed motion that is this excitation.
+    Motion(u16, Quantity),
+    /// The force that is this excitation.
+    Force(u16),
+    /// A uniform acceleration, m/s².
+    Gravity,
+}
+
+/// A harmonic excitation: unit displacement of a prescribed motion, or unit force.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Excitation {
+    /// `pad`, `f_wheel_z`.
+    pub name: Cow<'static, str>,
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
+    /// True for a force (response per N), false for a motion (response per m).
+    pub force: bool,
+    /// True for a road.
+    pub road: bool,
+}
+
+/// A derivative of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Quantity {
+    Position,
+    Velocity,
+    Acceleration,
+}
+
+/// What can be measured: where, along which axis, what.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Signal {
+    /// A mass, node, motion or link.
+    pub location: Cow<'static, str>,
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
+    /// What.
+    pub kind: SignalKind,
+}
+
+/// What a signal measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum SignalKind {
+    /// A motion of a mass, node or prescribed motion.
+    Motion(Quantity),
+    /// The resisting force of a link, N, positive in tension.
+    Force,
+    /// The stretch of a link, m, positive in extension.
+    Stretch,
+}
+
+/// An entry of `y`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// `z_body_acceleration`.
+    pub name: Cow<'static, str>,
+    /// Unit.
+    pub unit: Cow<'static, str>,
+    /// What it measures.
+    pub signal: Signal,
+}
+
+/// A named ratio of two signals, each an output or a prescribed motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// `pad_to_body`.
+    pub name: Cow<'static, str>,
+    /// Above the line.
+    pub numerator: Signal,
+    /// Below the line.
+    pub denominator: Signal,
+}
+
+/// A force element.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// Name.
+    pub name: Cow<'static, str>,
+    /// Axis.
+    pub axis: Cow<'static, str>,
+    /// The coordinates it acts between, in the order of its stretch.
+    pub ends: Cow<'static, [Cow<'static, str>]>,
+}
+
+/// A place in A, B, C or D.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Entry {
+    /// Which.
+    pub matrix: Matrix,
+    /// Row.
+    pub row: u16,
+    /// Column.
+    pub column: u16,
+}
+
+/// A matrix of the state-space form.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "the names of the field")]
+pub enum Matrix {
+    A,
+    B,
+    C,
+    D,
+}
+
+/// The rows of the response to one excitation. What is not listed is zero at every frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ResponseLayout {
+    /// Outputs (places in `y`) that respond.
+    pub outputs: Cow<'static, [u16]>,
+    /// Nonzeros of the parameter Jacobian: place in `outputs` of this layout, parameter.
+    pub jacobian: Cow<'static, [(u16, u16)]>,
+}
