@@ -34,6 +34,8 @@ pub enum Symbol {
     Force(u16),
     /// Gravity of a direction, by its place in `Model::gravities`, m/s².
     Gravity(u16),
+    /// The force of a rolling tyre on its wheel along a direction, by the direction's place in the model, N.
+    ContactForce(u16),
     /// The angular frequency ω of a harmonic excitation, rad/s.
     Frequency,
 }

@@ -163,6 +163,9 @@ pub struct Link {
     pub unit: Unit,
     /// The force.
     pub law: Law,
+    /// The terms that replace those of `law` while a tyre rolls over a profile, where the text gives them; a road
+    /// must be in the stretch. The inner states are the same.
+    pub rolling: Option<Vec<Term>>,
     /// The sentence; may be empty.
     pub doc: String,
     /// Where.

@@ -15,7 +15,10 @@ pub struct Value(pub u32);
 #[expect(missing_docs, reason = "each mirrors the node of its name in `expr::Node`")]
 pub enum Op {
     Constant(f64),
+    /// A leaf, given by the caller.
     Input(Symbol),
+    /// What depends on the parameters alone and was computed once for a parameter set, by its place.
+    Prepared(u32),
     Neg(Value),
     Add(Value, Value),
     Sub(Value, Value),
@@ -34,8 +37,6 @@ pub enum Op {
 pub struct Program {
     /// What each value is, in an order in which it can be computed.
     pub ops: Vec<Op>,
-    /// How many leading `ops` depend on parameters only: they are computed once for a parameter set.
-    pub prologue: usize,
     /// The results.
     pub outputs: Vec<Value>,
 }

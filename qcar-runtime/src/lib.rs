@@ -17,3 +17,15 @@ pub mod response;
 pub mod least_squares;
 // The rig fit of thesis section 3.5.
 pub mod fit;
+// The road under a rolling tyre.
+pub mod road;
+// Contact geometry of the tyre.
+pub mod tyre;
+// Time integration.
+pub mod solver;
+// The whole model over a cleat, and replays of the rig.
+pub mod simulate;
+// Peak and after-shake errors, comfort metrics.
+pub mod compare;
+// Gradients of K&C curves.
+pub mod kc;

@@ -35,6 +35,28 @@ pub trait Model: Send + Sync {
     ///
     /// See [`ResponseLayout`] for what is written where.
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>);
+
+    /// The resisting force (N, positive in tension) of the tyre link while it rolls, at stretch `s` (m, negative in
+    /// compression) and rate `v` (m/s), with the inner states in `x`. Zero without [`About::contact`].
+    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64;
+
+    /// The equations of motion with the tyre rolling over a profile: its link is taken out, the forces of `contact`
+    /// act on its wheel instead, and its inner states follow `contact.s` and `contact.v`.
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]);
+
+    /// The outputs with the tyre rolling over a profile.
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]);
+}
+
+/// What a tyre that rolls over a profile gives to its model.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Equivalent stretch, m: minus the deflection on a flat road that would have the same contact.
+    pub s: f64,
+    /// Its rate, m/s.
+    pub v: f64,
+    /// The force on the wheel along [`ContactAbout::axes`], N.
+    pub force: [f64; 2],
 }
 
 /// Where a frequency response is written: structure of arrays, a row of `omega.len()` lines for each entry.
@@ -68,6 +90,8 @@ pub struct About {
     pub channels: Cow<'static, [Channel]>,
     /// The force elements.
     pub links: Cow<'static, [Link]>,
+    /// The tyre link that can roll over a profile.
+    pub contact: Option<ContactAbout>,
     /// Length of `constants`.
     pub constants: usize,
     /// True where f and h are linear in x and u.
@@ -216,6 +240,27 @@ pub struct Link {
     pub axis: Cow<'static, str>,
     /// The coordinates it acts between, in the order of its stretch.
     pub ends: Cow<'static, [Cow<'static, str>]>,
+}
+
+/// The tyre link that can roll over a profile: the one whose stretch joins a mass to a road.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactAbout {
+    /// Its place in [`About::links`].
+    pub link: u16,
+    /// The mass that it carries: places of its position and velocity in `x`, along the direction of the link and,
+    /// where that mass moves in a second direction too, along that one.
+    pub axes: Cow<'static, [ContactAxis]>,
+}
+
+/// A direction in which the wheel of a rolling tyre moves.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ContactAxis {
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
+    /// Place of the wheel's position in `x`.
+    pub position: u16,
+    /// Place of its velocity.
+    pub velocity: u16,
 }
 
 /// A place in A, B, C or D.
