@@ -141,6 +141,23 @@ pub struct State {
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: Cow<'static, str>,
+    /// The mass or node that moves, or the link of an inner state.
+    pub location: Cow<'static, str>,
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
+    /// What it is.
+    pub kind: StateKind,
+}
+
+/// What a state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StateKind {
+    /// The position of a mass or node.
+    Position,
+    /// The velocity of a mass.
+    Velocity,
+    /// An inner state of a link's law.
+    Inner,
 }
 
 /// An entry of `u`.
@@ -150,6 +167,8 @@ pub struct Input {
     pub name: Cow<'static, str>,
     /// Unit.
     pub unit: Cow<'static, str>,
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
     /// What it is.
     pub kind: InputKind,
 }
