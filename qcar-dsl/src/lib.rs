@@ -10,8 +10,9 @@ pub mod units;
 // Expressions: one hash-consed graph for a model.
 pub mod expr;
 // Text to tree.
-pub mod parse;
 pub mod syntax;
+// Comes after the tree that it builds.
+pub mod parse;
 // The tree as canonical text.
 pub mod print;
 // Tree to graph: options taken, elements expanded, names resolved, units checked.

@@ -1,14 +1,35 @@
 //! Where text comes from, and places in it.
 
-/// A place in a source: which source, and the token span within it.
+/// A place in a source, as plain data, so that models and reports can be sent to other threads.
 ///
-/// Within a procedural macro the token span is the compiler's own, so that rustc draws its caret there.
-#[derive(Clone, Copy, Debug)]
+/// For a text it is a range of bytes. For the tokens of an inline macro, which has no text of its own, `start` is the
+/// place of the token in the list that the parser kept of the compiler's spans.
+///
+/// Two places are equal wherever they are: two syntax trees are equal when they say the same.
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Span {
-    /// Which source: an index into the list that `compile` was given and loaded.
+    /// Which source: an index into the list of sources of one compilation; the model file itself is the first.
     pub source: u16,
-    /// The token, or the first of several.
-    pub token: proc_macro2::Span,
+    /// The first byte.
+    pub start: u32,
+    /// One past the last byte.
+    pub end: u32,
+}
+
+impl PartialEq for Span {
+    fn eq(&self, _: &Span) -> bool {
+        true
+    }
+}
+
+impl Span {
+    /// The smallest place that covers both; of places in different sources, the first.
+    pub fn join(self, other: Span) -> Span {
+        if self.source != other.source {
+            return self;
+        }
+        Span { source: self.source, start: self.start.min(other.start), end: self.end.max(other.end) }
+    }
 }
 
 /// A text with a name, usually a path as the user wrote it.
@@ -19,3 +40,29 @@ pub struct Source {
     /// Empty for the tokens of an inline macro.
     pub text: String,
 }
+
+impl Source {
+    /// Line and column of a byte, both counted from 1, columns in characters.
+    pub fn line_column(&self, byte: u32) -> (usize, usize) {
+        let before = &self.text[..self.border(byte as usize)];
+        let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
+        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+    }
+
+    /// The text of the line that holds a byte.
+    pub fn line(&self, byte: u32) -> &str {
+        let byte = self.border(byte as usize);
+        let start = self.text[..byte].rfind('\n').map_or(0, |newline| newline + 1);
+        let end = self.text[byte..].find('\n').map_or(self.text.len(), |newline| byte + newline);
+        self.text[start..end].trim_end_matches('\r')
+    }
+
+    /// The nearest border between characters at or before a byte.
+    fn border(&self, byte: usize) -> usize {
+        (0..=byte.min(self.text.len())).rev().find(|&b| self.text.is_char_boundary(b)).unwrap_or(0)
+    }
+}
+
+/// Loads a file that a model names: `(name of the source that names it, path as written there)` to its text, or the
+/// reason why it cannot be read. The compiler itself reads no files.
+pub type Load<'a> = &'a dyn Fn(&str, &str) -> Result<Source, String>;
