@@ -28,13 +28,15 @@ pub enum Symbol {
     Stretch(LinkId),
     /// The rate `v = ds/dt` of a link, inside its law.
     Rate(LinkId),
+    /// The resisting force of a link but for what its inerters add, N, positive in tension.
+    LinkForce(LinkId),
     /// An inner state of a link's law, by its place in the law.
     Inner(LinkId, u16),
     /// A force input, by its place in `Model::forces`, N.
     Force(u16),
     /// Gravity of a direction, by its place in `Model::gravities`, m/s².
     Gravity(u16),
-    /// The force of a rolling tyre on its wheel along a direction, by the direction's place in the model, N.
+    /// The force of a rolling tyre on its wheel, by the place of its direction in `about::Contact::axes`, N.
     ContactForce(u16),
     /// The angular frequency ω of a harmonic excitation, rad/s.
     Frequency,

@@ -20,7 +20,9 @@ pub mod model;
 pub mod resolve;
 // The structure: what is held, what is solvable, what can be seen.
 pub mod check;
-// Graph to equations; all that follows is total.
+// All that follows is total. What is at which place of the vectors.
+pub mod about;
+// Graph to equations.
 pub mod motion;
 // Equations to matrices and their parameter Jacobians.
 pub mod linear;

@@ -2,7 +2,7 @@
 //!
 //! A program computes its outputs from its inputs by a list of operations, each a value of its own, in order.
 //! The same program is printed as Rust and interpreted at run time, operation by operation, so that both
-//! give the same bits.
+//! give the same bits. Whole powers are products already, and a divisor that serves twice is a reciprocal.
 
 use crate::expr::{Function, Symbol};
 
@@ -24,7 +24,6 @@ pub enum Op {
     Sub(Value, Value),
     Mul(Value, Value),
     Div(Value, Value),
-    Powi(Value, i32),
     Pow(Value, Value),
     Min(Value, Value),
     Max(Value, Value),
@@ -33,10 +32,60 @@ pub enum Op {
 }
 
 /// A straight-line program.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
     /// What each value is, in an order in which it can be computed.
     pub ops: Vec<Op>,
     /// The results.
     pub outputs: Vec<Value>,
+}
+
+/// The programs of a model. [`crate::about::About`] says what their outputs are.
+///
+/// `matrices`, `sensitivities` and `parameter_jacobian` read parameters as `Op::Input(Symbol::Parameter)`, and so does
+/// `prepare`; all others read what depends on parameters alone as `Op::Prepared`, which are the outputs of `prepare`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Programs {
+    /// The constants of a parameter set.
+    pub prepare: Program,
+    /// `dx = f(x, u)`
+    pub derivative: Program,
+    /// `y = h(x, u)`
+    pub outputs: Program,
+    /// Nonzeros of A, B, C and D; of a linear model it reads parameters only.
+    pub matrices: Program,
+    /// Nonzeros of the parameter Jacobians of A, B, C and D.
+    pub sensitivities: Program,
+    /// Nonzeros of ∂f/∂p and ∂h/∂p.
+    pub parameter_jacobian: Program,
+    /// The frequency response to each excitation; empty for a nonlinear model.
+    pub responses: Vec<Response>,
+    /// What a rolling tyre changes, where a tyre can roll.
+    pub rolling: Option<Rolling>,
+}
+
+/// The response to one excitation at one `Symbol::Frequency`.
+///
+/// With n outputs and m Jacobian entries in its layout, `value` gives n real parts, then n imaginary parts;
+/// `with_jacobian` gives these 2n, then the real parts of the m entries, then their imaginary parts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Response {
+    /// The response alone.
+    pub value: Program,
+    /// The response and its parameter Jacobian.
+    pub with_jacobian: Program,
+}
+
+/// The programs of a model whose tyre rolls over a profile.
+///
+/// They read the equivalent stretch and its rate as `Symbol::Stretch` and `Symbol::Rate` of the tyre's link, and (but
+/// for `contact_force`) the forces on the wheel as `Symbol::ContactForce`, counted along `Contact::axes`.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Rolling {
+    /// One output: the resisting force of the tyre's law.
+    pub contact_force: Program,
+    /// `dx = f(x, u, contact)`
+    pub derivative: Program,
+    /// `y = h(x, u, contact)`
+    pub outputs: Program,
 }
