@@ -1,0 +1,70 @@
+//! The length of the next step: PI control after Gustafsson, as in Hairer, Nørsett, Wanner, II.4 and IV.2.
+
+/// The damping of the controller against steps that swing.
+const BETA: f64 = 0.04;
+/// Of the error exponent, one fifth, what is left to the proportional part.
+const ALPHA: f64 = 0.2 - 0.75 * BETA;
+/// A step is chosen to miss the tolerance by this factor on the safe side.
+const SAFETY: f64 = 0.9;
+/// A step changes at most by these factors.
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 10.0;
+
+/// What is known of the step size.
+pub(super) struct Control {
+    /// The next step, s, if nothing cuts it short; zero before the first.
+    pub step: f64,
+    longest: f64,
+    last_error: f64,
+    just_rejected: bool,
+}
+
+impl Control {
+    pub fn new(longest: f64) -> Self {
+        Self {
+            step: 0.0,
+            longest,
+            last_error: 1e-4,
+            just_rejected: false,
+        }
+    }
+
+    /// End and length of the next step from `t`; it reaches `end` exactly rather than leave a sliver before it.
+    pub fn next(&self, t: f64, end: f64) -> (f64, f64) {
+        let left = end - t;
+        let steps = (left / self.step.min(self.longest)).ceil();
+        if steps <= 1.0 {
+            (end, left)
+        } else if steps <= 2.0 {
+            (t + 0.5 * left, 0.5 * left)
+        } else {
+            let h = self.step.min(self.longest);
+            (t + h, h)
+        }
+    }
+
+    /// Takes or refuses a step of length `h` by its error over the tolerance, and sets the next length.
+    ///
+    /// An error that is not finite, or not a number, is refused like any other that is not small.
+    pub fn judge(&mut self, error: f64, h: f64) -> bool {
+        let accepted = error <= 1.0;
+        if accepted {
+            let factor = SAFETY * self.last_error.powf(BETA) / error.max(1e-16).powf(ALPHA);
+            let most = if self.just_rejected { 1.0 } else { GROW };
+            // A step that was cut short by an end says nothing against the length that was meant.
+            let grown = h * factor.clamp(SHRINK, most);
+            self.step = if h < self.step && factor > 1.0 {
+                grown.max(self.step)
+            } else {
+                grown
+            }
+            .min(self.longest);
+            self.last_error = error.max(1e-4);
+        } else {
+            let factor = SAFETY / error.powf(ALPHA);
+            self.step = h * if factor.is_finite() { factor.max(SHRINK) } else { SHRINK };
+        }
+        self.just_rejected = !accepted;
+        accepted
+    }
+}

@@ -1,0 +1,303 @@
+//! The explicit Runge–Kutta pair of order 5(4) of Dormand and Prince, with dense output and PI step control.
+//!
+//! J. R. Dormand, P. J. Prince, "A family of embedded Runge–Kutta formulae", J. Comp. Appl. Math. 6 (1980) 19–26;
+//! dense output and step control after Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.4–II.6.
+
+use super::control::Control;
+use super::events::{Crossing, LOOK_AHEAD, Watch};
+use super::{After, Effort, Reason, Report, Step, System, all_finite, legs, shortest_step};
+
+/// What the adaptive integrator is held to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Relative tolerance of every state.
+    pub relative: f64,
+    /// Absolute tolerance of each state, in its unit.
+    pub absolute: Vec<f64>,
+    /// The longest step, s: nothing in the right-hand side that lasts longer can be stepped over.
+    pub longest_step: f64,
+    /// The most steps that are attempted, taken or not.
+    pub most_steps: usize,
+}
+
+/// An adaptive integrator with its workspace.
+pub struct DormandPrince {
+    settings: Settings,
+    /// State at the start and at the end of the step.
+    x: Vec<f64>,
+    x_end: Vec<f64>,
+    stage: Vec<f64>,
+    /// The stages' derivatives; the last is the first of the next step.
+    k: [Vec<f64>; 7],
+    quartic: Vec<f64>,
+    watch: Watch,
+    control: Control,
+    effort: Effort,
+}
+
+impl DormandPrince {
+    /// An integrator for systems of `settings.absolute.len()` states and the given number of event functions.
+    pub fn new(settings: Settings, events: usize) -> Self {
+        let n = settings.absolute.len();
+        let row = || vec![0.0; n];
+        Self {
+            x: row(),
+            x_end: row(),
+            stage: row(),
+            k: std::array::from_fn(|_| row()),
+            quartic: row(),
+            watch: Watch::new(n, events),
+            control: Control::new(settings.longest_step),
+            effort: Effort::default(),
+            settings,
+        }
+    }
+
+    /// Integrates from `span.0` to `span.1`, on from `x`, and leaves there the state where it stopped.
+    ///
+    /// `breaks` are the ascending times at which the right-hand side jumps.
+    pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
+        self.effort = Effort::default();
+        self.control = Control::new(self.settings.longest_step);
+        self.x.copy_from_slice(x);
+        let (mut reason, mut time) = (Reason::End, span.0);
+        for leg in legs(span, breaks) {
+            (reason, time) = self.leg(system, leg, shortest_step(span.0, span.1));
+            if reason != Reason::End {
+                break;
+            }
+        }
+        x.copy_from_slice(&self.x);
+        Report {
+            reason,
+            time,
+            effort: self.effort,
+        }
+    }
+
+    /// Integrates over one smooth leg: why and when it stopped.
+    fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64), shortest: f64) -> (Reason, f64) {
+        let mut t = start;
+        let mut fresh = true;
+        while t < end {
+            if std::mem::take(&mut fresh) && !self.begin(system, t, end) {
+                return (Reason::NotFinite, t);
+            }
+            if self.effort.accepted + self.effort.rejected >= self.settings.most_steps {
+                return (Reason::TooManySteps, t);
+            }
+            let (t_end, h) = self.control.next(t, end);
+            let error = self.attempt(system, t, t_end, h);
+            if !self.control.judge(error, h) {
+                self.effort.rejected += 1;
+                if self.control.step < shortest {
+                    return (
+                        if error.is_finite() {
+                            Reason::StepTooSmall
+                        } else {
+                            Reason::NotFinite
+                        },
+                        t,
+                    );
+                }
+                continue;
+            }
+            self.effort.accepted += 1;
+            let cut = self.settle(system, t, t_end, h);
+            t = cut.map_or(t_end, |(_, crossing)| crossing.time);
+            match cut {
+                Some((After::Stop, crossing)) => return (Reason::Event(crossing.index), t),
+                Some(_) => fresh = true,
+                None => {}
+            }
+        }
+        (Reason::End, t)
+    }
+
+    /// Enters a leg: its first slope, and a first step where none is known. False where it is not finite.
+    fn begin<S: System>(&mut self, system: &mut S, t: f64, end: f64) -> bool {
+        system.enter(t, &mut self.x);
+        system.derivative(t, &self.x, &mut self.k[0]);
+        self.effort.evaluations += 1;
+        if !all_finite(&self.x) || !all_finite(&self.k[0]) {
+            return false;
+        }
+        if self.control.step == 0.0 {
+            self.control.step = self.first_step(system, t, end).max(shortest_step(t, end));
+        }
+        self.watch
+            .begin(system, t, LOOK_AHEAD * self.control.step, &self.x, &self.k[0]);
+        true
+    }
+
+    /// A first step from the sizes of the first and second derivatives (Hairer, Nørsett, Wanner, II.4).
+    fn first_step<S: System>(&mut self, system: &mut S, t: f64, end: f64) -> f64 {
+        let longest = self.settings.longest_step.min(end - t);
+        let (d0, d1) = (self.norm(&self.x), self.norm(&self.k[0]));
+        let guess = if d0 < 1e-5 || d1 < 1e-5 { 1e-6 } else { 0.01 * d0 / d1 }.min(longest);
+        combine(&mut self.stage, &self.x, guess, [1.0], [&self.k[0]]);
+        self.evaluate(system, t + guess, 1);
+        combine(&mut self.stage, &self.k[1], -1.0, [1.0], [&self.k[0]]);
+        let steepest = d1.max(self.norm(&self.stage) / guess);
+        let step = if steepest <= 1e-15 {
+            guess.max(1e-6)
+        } else {
+            (0.01 / steepest).powf(0.2)
+        };
+        if step.is_finite() {
+            step.min(100.0 * guess).min(longest)
+        } else {
+            guess
+        }
+    }
+
+    /// The root mean square of `v`, each entry measured by the tolerance of its state.
+    fn norm(&self, v: &[f64]) -> f64 {
+        let scaled = v.iter().zip(&self.x).zip(&self.settings.absolute);
+        let sum: f64 = scaled
+            .map(|((v, x), a)| (v / (a + self.settings.relative * x.abs())).powi(2))
+            .sum();
+        (sum / v.len().max(1) as f64).sqrt()
+    }
+
+    /// `k[stage] = f(t, x)` at the prepared stage.
+    fn evaluate<S: System>(&mut self, system: &mut S, t: f64, stage: usize) {
+        system.derivative(t, &self.stage, &mut self.k[stage]);
+        self.effort.evaluations += 1;
+    }
+
+    /// Goes through the stages to `x_end`: the error over the tolerance, not a number where anything is not finite.
+    fn attempt<S: System>(&mut self, system: &mut S, t: f64, t_end: f64, h: f64) -> f64 {
+        combine(&mut self.stage, &self.x, h, A2, [&self.k[0]]);
+        self.evaluate(system, t + 0.2 * h, 1);
+        combine(&mut self.stage, &self.x, h, A3, [&self.k[0], &self.k[1]]);
+        self.evaluate(system, t + 0.3 * h, 2);
+        combine(&mut self.stage, &self.x, h, A4, [&self.k[0], &self.k[1], &self.k[2]]);
+        self.evaluate(system, t + 0.8 * h, 3);
+        combine(
+            &mut self.stage,
+            &self.x,
+            h,
+            A5,
+            [&self.k[0], &self.k[1], &self.k[2], &self.k[3]],
+        );
+        self.evaluate(system, t + 8.0 / 9.0 * h, 4);
+        combine(
+            &mut self.stage,
+            &self.x,
+            h,
+            A6,
+            [&self.k[0], &self.k[1], &self.k[2], &self.k[3], &self.k[4]],
+        );
+        self.evaluate(system, t_end, 5);
+        combine(
+            &mut self.x_end,
+            &self.x,
+            h,
+            A7,
+            [&self.k[0], &self.k[2], &self.k[3], &self.k[4], &self.k[5]],
+        );
+        system.derivative(t_end, &self.x_end, &mut self.k[6]);
+        self.effort.evaluations += 1;
+        self.measure(h)
+    }
+
+    /// The error estimate over the tolerance, root mean square, and the dense output's quartic from the same stages.
+    fn measure(&mut self, h: f64) -> f64 {
+        let n = self.x.len();
+        let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
+        let (x, x_end, absolute) = (&self.x[..n], &self.x_end[..n], &self.settings.absolute[..n]);
+        let quartic = &mut self.quartic[..n];
+        let (mut sum, mut probe) = (0.0, 0.0);
+        for i in 0..n {
+            let k = [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]];
+            quartic[i] = dot(DENSE, k);
+            let scale = absolute[i] + self.settings.relative * x[i].abs().max(x_end[i].abs());
+            let scaled = h * dot(ERROR, k) / scale;
+            sum += scaled * scaled;
+            // An infinite state would hide in its own tolerance; zero times it is not a number.
+            probe += 0.0 * (x_end[i] + k6[i]);
+        }
+        (sum / n.max(1) as f64).sqrt() + probe
+    }
+
+    /// Makes an accepted step the past, up to the first event that ends it: that event, with what follows.
+    fn settle<S: System>(&mut self, system: &mut S, t: f64, t_end: f64, h: f64) -> Option<(After, Crossing)> {
+        let states = [&self.x[..], &self.x_end[..]];
+        let slopes = [&self.k[0][..], &self.k[6][..]];
+        let step = Step {
+            start: t,
+            end: t_end,
+            length: h,
+            states,
+            slopes,
+            quartic: &self.quartic,
+        };
+        let cut = self.watch.first_cut(system, &step, &mut self.effort);
+        match cut {
+            Some((_, crossing)) => {
+                system.accept(&step.until(crossing.time));
+                self.x.copy_from_slice(&self.watch.state);
+            }
+            None => {
+                system.accept(&step);
+                std::mem::swap(&mut self.x, &mut self.x_end);
+                self.k.swap(0, 6);
+            }
+        }
+        cut
+    }
+}
+
+/// `out = x + h Σ a k`.
+#[inline(always)]
+fn combine<const N: usize>(out: &mut [f64], x: &[f64], h: f64, a: [f64; N], k: [&Vec<f64>; N]) {
+    let n = out.len();
+    let (x, a, k) = (&x[..n], a.map(|a| a * h), k.map(|k| &k[..n]));
+    for i in 0..n {
+        out[i] = x[i] + dot(a, std::array::from_fn(|j| k[j][i]));
+    }
+}
+
+#[inline(always)]
+fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
+    (1..N).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
+}
+
+// The tableau; the second stage has no weight in A7, ERROR and DENSE, and the seventh none in A7.
+const A2: [f64; 1] = [1.0 / 5.0];
+const A3: [f64; 2] = [3.0 / 40.0, 9.0 / 40.0];
+const A4: [f64; 3] = [44.0 / 45.0, -56.0 / 15.0, 32.0 / 9.0];
+const A5: [f64; 4] = [19372.0 / 6561.0, -25360.0 / 2187.0, 64448.0 / 6561.0, -212.0 / 729.0];
+const A6: [f64; 5] = [
+    9017.0 / 3168.0,
+    -355.0 / 33.0,
+    46732.0 / 5247.0,
+    49.0 / 176.0,
+    -5103.0 / 18656.0,
+];
+const A7: [f64; 5] = [
+    35.0 / 384.0,
+    500.0 / 1113.0,
+    125.0 / 192.0,
+    -2187.0 / 6784.0,
+    11.0 / 84.0,
+];
+/// Fifth-order less fourth-order weights.
+const ERROR: [f64; 6] = [
+    71.0 / 57600.0,
+    -71.0 / 16695.0,
+    71.0 / 1920.0,
+    -17253.0 / 339200.0,
+    22.0 / 525.0,
+    -1.0 / 40.0,
+];
+/// Weights of the quartic of the dense output.
+const DENSE: [f64; 6] = [
+    -12715105075.0 / 11282082432.0,
+    87487479700.0 / 32700410799.0,
+    -10690763975.0 / 1880347072.0,
+    701980252875.0 / 199316789632.0,
+    -1453857185.0 / 822651844.0,
+    69997945.0 / 29380423.0,
+];

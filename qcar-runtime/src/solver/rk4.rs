@@ -1,0 +1,144 @@
+//! The classical Runge–Kutta method of fourth order with steps of equal length.
+
+use super::events::{LOOK_AHEAD, Watch};
+use super::{After, Effort, Reason, Report, Step, System, all_finite, legs};
+
+/// A fixed-step integrator with its workspace.
+pub struct Rk4 {
+    step: f64,
+    most_steps: usize,
+    x: Vec<f64>,
+    x_end: Vec<f64>,
+    stage: Vec<f64>,
+    /// The stages' derivatives, and that at the end of the step, which the dense output needs.
+    k: [Vec<f64>; 5],
+    watch: Watch,
+    effort: Effort,
+}
+
+impl Rk4 {
+    /// An integrator for systems of `states` states and `events` event functions.
+    ///
+    /// No step is longer than `step` (s); each leg between breaks is divided into equal ones. After `most_steps` it
+    /// gives up: events that crowd together without end, as those of a ball coming to rest, must not keep it for ever.
+    pub fn new(step: f64, most_steps: usize, states: usize, events: usize) -> Self {
+        let row = || vec![0.0; states];
+        Self {
+            step,
+            most_steps,
+            x: row(),
+            x_end: row(),
+            stage: row(),
+            k: std::array::from_fn(|_| row()),
+            watch: Watch::new(states, events),
+            effort: Effort::default(),
+        }
+    }
+
+    /// Integrates from `span.0` to `span.1`, on from `x`, and leaves there the state where it stopped.
+    ///
+    /// `breaks` are the ascending times at which the right-hand side jumps.
+    pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
+        self.effort = Effort::default();
+        self.x.copy_from_slice(x);
+        let (mut reason, mut time) = (Reason::End, span.0);
+        for leg in legs(span, breaks) {
+            (reason, time) = self.leg(system, leg);
+            if reason != Reason::End {
+                break;
+            }
+        }
+        x.copy_from_slice(&self.x);
+        Report {
+            reason,
+            time,
+            effort: self.effort,
+        }
+    }
+
+    /// Integrates over one smooth leg; an event that restarts divides what is left of it anew.
+    fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64)) -> (Reason, f64) {
+        let mut t = start;
+        while t < end {
+            self.begin(system, t);
+            let from = t;
+            let steps = ((end - from) / self.step).ceil().max(1.0);
+            let mut taken = 0.0;
+            while taken < steps {
+                if self.effort.accepted >= self.most_steps {
+                    return (Reason::TooManySteps, t);
+                }
+                taken += 1.0;
+                let t_end = if taken == steps {
+                    end
+                } else {
+                    from + (end - from) * (taken / steps)
+                };
+                if !self.advance(system, t, t_end - t) {
+                    return (Reason::NotFinite, t);
+                }
+                match self.settle(system, t, t_end) {
+                    None => t = t_end,
+                    Some((After::Stop, index, time)) => return (Reason::Event(index), time),
+                    Some((_, _, time)) => {
+                        t = time;
+                        break;
+                    }
+                }
+            }
+        }
+        (Reason::End, t)
+    }
+
+    fn begin<S: System>(&mut self, system: &mut S, t: f64) {
+        system.enter(t, &mut self.x);
+        system.derivative(t, &self.x, &mut self.k[0]);
+        self.effort.evaluations += 1;
+        self.watch.begin(system, t, LOOK_AHEAD * self.step, &self.x, &self.k[0]);
+    }
+
+    /// One step to `x_end` with its slope there. False where it is not finite.
+    fn advance<S: System>(&mut self, system: &mut S, t: f64, h: f64) -> bool {
+        for (stage, c) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
+            for ((out, x), k) in self.stage.iter_mut().zip(&self.x).zip(&self.k[stage - 1]) {
+                *out = x + c * h * k;
+            }
+            system.derivative(t + c * h, &self.stage, &mut self.k[stage]);
+        }
+        let [k0, k1, k2, k3, k_end] = &mut self.k;
+        for (i, out) in self.x_end.iter_mut().enumerate() {
+            *out = self.x[i] + h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
+        }
+        system.derivative(t + h, &self.x_end, k_end);
+        self.effort.evaluations += 4;
+        all_finite(&self.x_end) && all_finite(k_end)
+    }
+
+    /// Makes a step the past, up to the first event that ends it: what follows, which event, and when.
+    fn settle<S: System>(&mut self, system: &mut S, t: f64, t_end: f64) -> Option<(After, usize, f64)> {
+        self.effort.accepted += 1;
+        let states = [&self.x[..], &self.x_end[..]];
+        let slopes = [&self.k[0][..], &self.k[4][..]];
+        let step = Step {
+            start: t,
+            end: t_end,
+            length: t_end - t,
+            states,
+            slopes,
+            quartic: &[],
+        };
+        let cut = self.watch.first_cut(system, &step, &mut self.effort);
+        match &cut {
+            Some((_, crossing)) => {
+                system.accept(&step.until(crossing.time));
+                self.x.copy_from_slice(&self.watch.state);
+            }
+            None => {
+                system.accept(&step);
+                std::mem::swap(&mut self.x, &mut self.x_end);
+                self.k.swap(0, 4);
+            }
+        }
+        cut.map(|(after, crossing)| (after, crossing.index, crossing.time))
+    }
+}

@@ -1,0 +1,53 @@
+//! A step with its dense output.
+
+/// An accepted step, from `start` to `end`.
+///
+/// The interpolant is the quartic of Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.6: the
+/// cubic Hermite polynomial through both ends and both slopes, plus a term that the method's stages give. It is
+/// continuous with its slope from step to step, and accurate to fourth order for Dormand–Prince, third for RK4.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// Where it begins, s.
+    pub start: f64,
+    /// Where it ends, s; before `start + length` where an event cut it short.
+    pub end: f64,
+    /// The length over which the interpolant is defined, s.
+    pub(super) length: f64,
+    /// State at `start` and at `start + length`.
+    pub(super) states: [&'a [f64]; 2],
+    /// Derivative at `start` and at `start + length`.
+    pub(super) slopes: [&'a [f64]; 2],
+    /// The term of fourth order divided by the length; empty for a cubic.
+    pub(super) quartic: &'a [f64],
+}
+
+impl<'a> Step<'a> {
+    /// The state where the step begins.
+    pub fn start_state(&self) -> &'a [f64] {
+        self.states[0]
+    }
+
+    /// Writes the state at time `t` of the step.
+    pub fn at(&self, t: f64, state: &mut [f64]) {
+        let n = state.len();
+        let [x0, x1] = self.states.map(|x| &x[..n]);
+        let [f0, f1] = self.slopes.map(|f| &f[..n]);
+        let h = self.length;
+        let a = (t - self.start) / h;
+        let b = 1.0 - a;
+        for i in 0..n {
+            let rise = x1[i] - x0[i];
+            let bend = h * f0[i] - rise;
+            state[i] = x0[i] + a * (rise + b * (bend + a * (rise - h * f1[i] - bend)));
+        }
+        let weight = h * (a * b) * (a * b);
+        for (x, q) in state.iter_mut().zip(self.quartic) {
+            *x += weight * q;
+        }
+    }
+
+    /// The same step, ended at `t` by an event.
+    pub(super) fn until(&self, t: f64) -> Self {
+        Self { end: t, ..*self }
+    }
+}
