@@ -1,1 +1,303 @@
-//! (to come)
+//! Bounded nonlinear least squares with an analytic Jacobian.
+//!
+//! Minimises `½ ‖r(x)‖²` over `lower ≤ x ≤ upper` by the trust-region reflective method: the interior Newton-like
+//! steps of Branch, Coleman & Li, "A subspace, interior, and conjugate gradient method for large-scale
+//! bound-constrained minimization problems", SIAM J. Sci. Comput. 21 (1999), with the Gauss-Newton matrix in place
+//! of the Hessian. Variables are scaled by the largest norm that their Jacobian column ever had (Moré, "The
+//! Levenberg-Marquardt algorithm: implementation and theory", 1978), so units do not matter.
+
+// JᵀJ and Jᵀr, the one part whose cost grows with the number of residuals.
+mod normal;
+// The step that minimises the quadratic model within the trust region.
+mod region;
+// What bounds do to a step.
+mod reflect;
+
+// What the Jacobian at the optimum says about the parameters.
+pub mod information;
+
+use nalgebra::{DMatrix, DVector};
+use normal::NormalEquations;
+use reflect::{Interior, Model, Step};
+
+/// Residuals and their Jacobian.
+pub trait Problem {
+    /// Number of variables.
+    fn variables(&self) -> usize;
+
+    /// Number of residuals.
+    fn residuals(&self) -> usize;
+
+    /// Writes `r(x)` and its Jacobian, column after column: `jacobian[column * residuals + row]`.
+    ///
+    /// Both at once, since nearly every step is accepted and most models share work between the two.
+    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]);
+}
+
+/// An interval for each variable; infinite where there is none. Each lower bound lies below its upper bound.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds {
+    /// Lower ends.
+    pub lower: Vec<f64>,
+    /// Upper ends.
+    pub upper: Vec<f64>,
+}
+
+impl Bounds {
+    /// No bounds at all.
+    pub fn none(variables: usize) -> Self {
+        Self {
+            lower: vec![f64::NEG_INFINITY; variables],
+            upper: vec![f64::INFINITY; variables],
+        }
+    }
+}
+
+/// When to stop. Every tolerance is relative, so none depends on units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Options {
+    /// Largest cosine between the residual and a Jacobian column whose variable is free to move.
+    pub gradient: f64,
+    /// Reduction of the cost, foreseen and made, relative to the cost.
+    pub cost: f64,
+    /// Length of the step relative to the length of `x`, both in scaled variables.
+    pub step: f64,
+    /// Evaluations of the residual.
+    pub evaluations: usize,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self {
+            gradient: 1e-8,
+            cost: 1e-10,
+            step: 1e-8,
+            evaluations: 200,
+        }
+    }
+}
+
+/// Why the search stopped.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Stop {
+    /// The residual is orthogonal to whatever the free variables can change: a stationary point.
+    Gradient,
+    /// The cost no longer falls.
+    Cost,
+    /// The step no longer changes the variables.
+    Step,
+    /// There is no variable to move.
+    NothingToFit,
+    /// The evaluations were used up before anything settled.
+    Evaluations,
+    /// The residual or its Jacobian is not a finite number, at the start or wherever the search tried to go.
+    NotFinite,
+}
+
+impl Stop {
+    /// True where the search ended at a minimum, as far as its tolerances can tell.
+    pub fn converged(self) -> bool {
+        matches!(self, Stop::Gradient | Stop::Cost | Stop::Step | Stop::NothingToFit)
+    }
+
+    /// The reason as a sentence.
+    pub fn sentence(self) -> &'static str {
+        match self {
+            Stop::Gradient => "the gradient vanished",
+            Stop::Cost => "the cost no longer fell",
+            Stop::Step => "the step no longer changed the parameters",
+            Stop::NothingToFit => "there was nothing to fit",
+            Stop::Evaluations => "the evaluations were used up before it converged",
+            Stop::NotFinite => "the model gave a value that is not a finite number",
+        }
+    }
+}
+
+/// Where the search ended.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// The variables, within their bounds.
+    pub x: Vec<f64>,
+    /// `½ ‖r‖²` there.
+    pub cost: f64,
+    /// `½ ‖r‖²` at the start.
+    pub start_cost: f64,
+    /// The residual there.
+    pub residual: DVector<f64>,
+    /// Its Jacobian there.
+    pub jacobian: DMatrix<f64>,
+    /// For each variable: −1 on its lower bound, +1 on its upper bound, 0 between.
+    pub at_bound: Vec<i8>,
+    /// Why it stopped.
+    pub stop: Stop,
+    /// Evaluations of residual and Jacobian.
+    pub evaluations: usize,
+    /// Steps taken.
+    pub iterations: usize,
+}
+
+/// Searches for a local minimum from `start`, which is moved into the bounds where it lies outside.
+pub fn minimize<P: Problem + ?Sized>(problem: &mut P, start: &[f64], bounds: &Bounds, options: &Options) -> Outcome {
+    let mut search = Search::new(problem, start, bounds);
+    let stop = search.run(options);
+    search.finish(stop)
+}
+
+/// A point with its residual and Jacobian.
+struct Point {
+    x: DVector<f64>,
+    residual: DVector<f64>,
+    jacobian: DMatrix<f64>,
+    cost: f64,
+}
+
+impl Point {
+    fn new(variables: usize, residuals: usize) -> Self {
+        Self {
+            x: DVector::zeros(variables),
+            residual: DVector::zeros(residuals),
+            jacobian: DMatrix::zeros(residuals, variables),
+            cost: f64::NAN,
+        }
+    }
+
+    fn evaluate<P: Problem + ?Sized>(&mut self, problem: &mut P) {
+        problem.evaluate(
+            self.x.as_slice(),
+            self.residual.as_mut_slice(),
+            self.jacobian.as_mut_slice(),
+        );
+        self.cost = 0.5 * self.residual.norm_squared();
+    }
+}
+
+/// The state of a search. `trial` is a second point so that nothing is allocated for a rejected step.
+struct Search<'a, P: ?Sized> {
+    problem: &'a mut P,
+    bounds: &'a Bounds,
+    here: Point,
+    trial: Point,
+    normal: NormalEquations,
+    start_cost: f64,
+    radius: f64,
+    evaluations: usize,
+    iterations: usize,
+}
+
+impl<'a, P: Problem + ?Sized> Search<'a, P> {
+    fn new(problem: &'a mut P, start: &[f64], bounds: &'a Bounds) -> Self {
+        let (n, m) = (problem.variables(), problem.residuals());
+        let mut here = Point::new(n, m);
+        here.x = reflect::strictly_inside(start, bounds);
+        here.evaluate(problem);
+        let start_cost = here.cost;
+        let normal = NormalEquations::new(n);
+        Self {
+            problem,
+            bounds,
+            here,
+            trial: Point::new(n, m),
+            normal,
+            start_cost,
+            radius: 0.0,
+            evaluations: 1,
+            iterations: 0,
+        }
+    }
+
+    fn run(&mut self, options: &Options) -> Stop {
+        if self.here.x.is_empty() {
+            return Stop::NothingToFit;
+        }
+        if !self.normal.assemble(&self.here.jacobian, &self.here.residual) {
+            return Stop::NotFinite;
+        }
+        loop {
+            let interior = Interior::new(&self.here.x, &self.normal, self.bounds);
+            let optimality = interior.optimality(&self.normal, self.here.cost);
+            if optimality <= options.gradient {
+                return Stop::Gradient;
+            }
+            if self.iterations == 0 {
+                self.radius = interior.first_radius(&self.here.x);
+            }
+            if let Some(stop) = self.iterate(&interior, optimality, options) {
+                return stop;
+            }
+            self.iterations += 1;
+        }
+    }
+
+    /// Shrinks the trust region until a step lowers the cost, and takes that step.
+    fn iterate(&mut self, interior: &Interior, optimality: f64, options: &Options) -> Option<Stop> {
+        let model = Model::new(interior, &self.normal);
+        let mut finite = true;
+        loop {
+            if self.evaluations >= options.evaluations {
+                return Some(Stop::Evaluations);
+            }
+            let step = model.step(&self.here.x, self.bounds, self.radius, optimality);
+            self.try_step(&step);
+            let usable = self.trial.cost.is_finite() && self.trial.jacobian.iter().all(|value| value.is_finite());
+            let reduction = if usable {
+                self.here.cost - self.trial.cost
+            } else {
+                f64::NEG_INFINITY
+            };
+            let settled = self.settled(&step, interior, reduction, options);
+            self.adapt_radius(&step, reduction);
+            finite &= usable || !settled.is_some_and(|stop| stop == Stop::Step);
+            if reduction > 0.0 {
+                std::mem::swap(&mut self.here, &mut self.trial);
+                self.normal.assemble(&self.here.jacobian, &self.here.residual);
+                return settled;
+            }
+            if let Some(stop) = settled {
+                return Some(if finite { stop } else { Stop::NotFinite });
+            }
+        }
+    }
+
+    fn try_step(&mut self, step: &Step) {
+        self.trial.x = reflect::within(&(&self.here.x + &step.step), self.bounds);
+        self.trial.evaluate(self.problem);
+        self.evaluations += 1;
+    }
+
+    /// The tests of Moré (1978), section 8, on what the step promised and what it did.
+    fn settled(&self, step: &Step, interior: &Interior, reduction: f64, options: &Options) -> Option<Stop> {
+        let cost = self.here.cost;
+        let ratio = reduction / step.predicted;
+        if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {
+            return Some(Stop::Cost);
+        }
+        let length = interior.scaled_length(&step.step);
+        (length <= options.step * (options.step + interior.scaled_length(&self.here.x))).then_some(Stop::Step)
+    }
+
+    fn adapt_radius(&mut self, step: &Step, reduction: f64) {
+        let ratio = reduction / step.predicted;
+        let length = step.scaled.norm();
+        if ratio.is_nan() || ratio < 0.25 {
+            self.radius = 0.25 * length;
+        } else if ratio > 0.75 && length > 0.95 * self.radius {
+            self.radius *= 2.0;
+        }
+    }
+
+    fn finish(self, stop: Stop) -> Outcome {
+        let at_bound = reflect::at_bound(&self.here.x, self.bounds, &self.normal);
+        Outcome {
+            x: self.here.x.as_slice().to_vec(),
+            cost: self.here.cost,
+            start_cost: self.start_cost,
+            residual: self.here.residual,
+            jacobian: self.here.jacobian,
+            at_bound,
+            stop,
+            evaluations: self.evaluations,
+            iterations: self.iterations,
+        }
+    }
+}
