@@ -1,1 +1,27 @@
-//! (to come)
+//! The measurement as it lies on disk: a folder with `campaign.toml`, time histories, curves and roads.
+//!
+//! [`Campaign::open`] reads the list and the header line of each file; the numbers of a run are read when asked for.
+//! Everything is SI. Whatever is wrong comes back as an [`InputError`](crate::error::InputError) that names the file,
+//! the place and the remedy.
+
+mod unit;
+// A file of columns of numbers.
+mod table;
+// What a campaign lists, as types.
+mod contents;
+// TOML read key by key, all problems gathered.
+mod fields;
+// From `campaign.toml` to the types.
+mod manifest;
+// Time histories of runs.
+mod history;
+// Quasi-static curves and roads.
+mod curve;
+// The answer that some campaigns are published with.
+mod truth;
+
+pub use contents::{Axis, Campaign, Channel, Parameter, Quantity, Road, Role, Run, Side, Spacing, Sweep, Test};
+pub use curve::{Curve, DynamicCurve, RoadSamples};
+pub use history::History;
+pub use truth::{Effect, Truth};
+pub use unit::{Dimension, dimension};

@@ -1,1 +1,107 @@
-//! (to come)
+//! What every part of the workbench reports through when what it was given cannot be used.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// The input cannot be used: every problem that was found, in the order of the files.
+///
+/// The command line prints it and exits with status 2.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{}", paragraphs(.problems))]
+pub struct InputError {
+    /// At least one.
+    pub problems: Vec<Problem>,
+}
+
+/// One thing that is wrong with the input, where, and what to do about it.
+///
+/// The texts are fragments of one sentence: `found "mm/s", expected "m/s"; convert the column and declare m/s`.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{file}{place}: found {found}, expected {expected}; {remedy}", file = .file.display())]
+pub struct Problem {
+    /// The file at fault, as it was opened.
+    pub file: PathBuf,
+    /// Where in it.
+    pub place: Place,
+    /// What is there.
+    pub found: String,
+    /// What belongs there.
+    pub expected: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+/// A place in a file. Lines and columns count from 1.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line of a table.
+    Line(u64),
+    /// A cell of a table: its line and the name of its column.
+    Cell(u64, String),
+    /// A whole column of a table, or a named item that has no line of its own.
+    Name(String),
+    /// A key of a TOML file: line, column in characters, and path such as `run[2].kind` (empty for broken syntax).
+    Key(usize, usize, String),
+}
+
+impl fmt::Display for Place {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::File => Ok(()),
+            Place::Line(line) => write!(out, ", line {line}"),
+            Place::Cell(line, column) => write!(out, ", line {line}, column `{column}`"),
+            Place::Name(name) => write!(out, ", `{name}`"),
+            Place::Key(line, column, key) if key.is_empty() => write!(out, ", line {line}, column {column}"),
+            Place::Key(line, column, key) => write!(out, ", line {line}, column {column}, `{key}`"),
+        }
+    }
+}
+
+impl Problem {
+    /// A problem; see the fields of [`Problem`] for how to word it.
+    pub fn new(
+        file: impl Into<PathBuf>,
+        place: Place,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Self {
+        let (found, expected, remedy) = (found.into(), expected.into(), remedy.into());
+        Problem {
+            file: file.into(),
+            place,
+            found,
+            expected,
+            remedy,
+        }
+    }
+}
+
+impl From<Problem> for InputError {
+    fn from(problem: Problem) -> Self {
+        InputError {
+            problems: vec![problem],
+        }
+    }
+}
+
+impl InputError {
+    /// `value` if nothing was wrong, else all of `problems`.
+    ///
+    /// # Errors
+    /// Where `problems` is not empty.
+    pub fn unless_empty<T>(problems: Vec<Problem>, value: Option<T>) -> Result<T, InputError> {
+        match value {
+            Some(value) if problems.is_empty() => Ok(value),
+            _ => Err(InputError { problems }),
+        }
+    }
+}
+
+fn paragraphs(problems: &[Problem]) -> String {
+    problems.iter().map(Problem::to_string).collect::<Vec<_>>().join("\n")
+}

@@ -1,0 +1,264 @@
+//! What a campaign lists. See the format's description in `docs/campaign-format.md`.
+
+use std::path::PathBuf;
+
+/// A campaign as its `campaign.toml` describes it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Campaign {
+    /// Where it lies.
+    pub folder: PathBuf,
+    /// Short name.
+    pub name: String,
+    /// What was measured.
+    pub description: String,
+    /// The axle model that the engineer starts from.
+    pub model: String,
+    /// What is known before any fit, corner values, SI; in the order of the file. A model's parameters may be among them.
+    pub vehicle: Vec<(String, f64)>,
+    /// Start values, in the order of the file.
+    pub parameters: Vec<Parameter>,
+    /// The sensors, in the order of the file.
+    pub channels: Vec<Channel>,
+    /// The tests, in the order of the file.
+    pub runs: Vec<Run>,
+    /// The road profiles.
+    pub roads: Vec<Road>,
+    /// What is odd but no error, as sentences to show to the engineer.
+    pub notices: Vec<String>,
+}
+
+/// The start value of a model parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name in the model.
+    pub name: String,
+    /// Start value, in `unit`; inside `range`.
+    pub value: f64,
+    /// A coherent SI unit; see [`dimension`](super::dimension).
+    pub unit: String,
+    /// Bounds of the estimation, lower below upper.
+    pub range: Option<(f64, f64)>,
+    /// False where it is known and stays.
+    pub fit: bool,
+    /// Where the value comes from.
+    pub comment: String,
+}
+
+/// A sensor: a column of the time histories.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The column's name.
+    pub name: String,
+    /// `pad`, or a mass, link or input of the model.
+    pub location: String,
+    /// Where on the vehicle.
+    pub side: Side,
+    /// Along which axis.
+    pub axis: Axis,
+    /// What it measures, in the SI unit of that quantity.
+    pub quantity: Quantity,
+}
+
+/// Where on the vehicle a sensor sits. A centre sensor measures the mean of both corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Side {
+    Left,
+    Right,
+    Centre,
+    Front,
+    Rear,
+}
+
+/// A direction of the vehicle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Axis {
+    /// Up.
+    Z,
+    /// Forward.
+    X,
+}
+
+/// What a sensor measures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Quantity {
+    /// m/s², zero at rest.
+    Acceleration,
+    /// m/s.
+    Velocity,
+    /// m; on a link, its stretch.
+    Displacement,
+    /// N; on a link, its force.
+    Force,
+}
+
+/// A test and the file that holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Relative to the folder of the campaign.
+    pub file: String,
+    /// What it may be used for.
+    pub role: Role,
+    /// What was done.
+    pub test: Test,
+}
+
+/// What a run may be used for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Role {
+    /// Parameters may be fitted to it.
+    Fit,
+    /// It judges, and no fit sees it.
+    HeldOut,
+}
+
+/// What was done in a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Test {
+    /// 4-poster, single axle (thesis section 3.4.1).
+    Sweep(Sweep),
+    /// K&C, quasi-static vertical cycle through the travel.
+    Bounce,
+    /// K&C, vertical sine.
+    DynamicBounce {
+        /// m/s.
+        peak_velocity: f64,
+        /// m.
+        amplitude: f64,
+    },
+    /// K&C, longitudinal cycle limited by force.
+    Longitudinal,
+    /// One wheel over an obstacle at constant speed.
+    Cleat {
+        /// m/s.
+        speed: f64,
+        /// Hz.
+        sample_rate: f64,
+        /// The name of its road.
+        cleat: String,
+    },
+    /// Any excitation, recorded with its response.
+    TimeHistory {
+        /// Hz.
+        sample_rate: f64,
+        /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
+        band_limited: bool,
+    },
+}
+
+/// A sine sweep of constant peak velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sweep {
+    /// m/s.
+    pub peak_velocity: f64,
+    /// Hz.
+    pub start_frequency: f64,
+    /// Hz, above the start and below half the sample rate.
+    pub end_frequency: f64,
+    /// How the frequency grows.
+    pub spacing: Spacing,
+    /// Hz.
+    pub sample_rate: f64,
+}
+
+/// How the frequency of a sweep grows with time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Spacing {
+    Logarithmic,
+    Linear,
+}
+
+/// A road profile and the file that holds it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Road {
+    /// As cleat runs call it.
+    pub name: String,
+    /// Relative to the folder of the campaign.
+    pub file: String,
+}
+
+impl Campaign {
+    /// A value of `[vehicle]`, SI.
+    pub fn vehicle(&self, name: &str) -> Option<f64> {
+        self.vehicle
+            .iter()
+            .find(|(key, _)| key == name)
+            .map(|&(_, value)| value)
+    }
+
+    /// The start value of a parameter.
+    pub fn parameter(&self, name: &str) -> Option<&Parameter> {
+        self.parameters.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// A sensor by its name.
+    pub fn channel(&self, name: &str) -> Option<&Channel> {
+        self.channels.iter().find(|channel| channel.name == name)
+    }
+
+    /// Where `campaign.toml` lies, to be named in errors.
+    pub fn manifest(&self) -> PathBuf {
+        self.folder.join("campaign.toml")
+    }
+}
+
+impl Test {
+    /// The rate of a time history, Hz; `None` for curves.
+    pub fn sample_rate(&self) -> Option<f64> {
+        match self {
+            Test::Sweep(sweep) => Some(sweep.sample_rate),
+            Test::Cleat { sample_rate, .. } | Test::TimeHistory { sample_rate, .. } => Some(*sample_rate),
+            Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal => None,
+        }
+    }
+}
+
+impl Side {
+    pub(super) const NAMES: &[(&str, Side)] = &[
+        ("left", Side::Left),
+        ("right", Side::Right),
+        ("centre", Side::Centre),
+        ("front", Side::Front),
+        ("rear", Side::Rear),
+    ];
+}
+
+impl Axis {
+    pub(super) const NAMES: &[(&str, Axis)] = &[("z", Axis::Z), ("x", Axis::X)];
+
+    /// As models and campaigns write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Axis::Z => "z",
+            Axis::X => "x",
+        }
+    }
+}
+
+impl Quantity {
+    pub(super) const NAMES: &[(&str, Quantity)] = &[
+        ("acceleration", Quantity::Acceleration),
+        ("velocity", Quantity::Velocity),
+        ("displacement", Quantity::Displacement),
+        ("force", Quantity::Force),
+    ];
+
+    /// Its SI unit.
+    pub fn unit(self) -> &'static str {
+        match self {
+            Quantity::Acceleration => "m/s^2",
+            Quantity::Velocity => "m/s",
+            Quantity::Displacement => "m",
+            Quantity::Force => "N",
+        }
+    }
+}
+
+impl Role {
+    pub(super) const NAMES: &[(&str, Role)] = &[("fit", Role::Fit), ("held_out", Role::HeldOut)];
+}
+
+impl Spacing {
+    pub(super) const NAMES: &[(&str, Spacing)] = &[("logarithmic", Spacing::Logarithmic), ("linear", Spacing::Linear)];
+}

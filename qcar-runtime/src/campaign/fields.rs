@@ -1,0 +1,295 @@
+//! TOML read key by key: each getter notes what is wrong and goes on, so that one reading finds every problem.
+
+use std::cell::RefCell;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::error::{InputError, Place, Problem};
+
+/// A TOML file, with what was found wrong in it so far.
+pub(super) struct Document {
+    file: PathBuf,
+    text: String,
+    problems: RefCell<Vec<Problem>>,
+}
+
+/// A table of the document, read by its getters; [`Section::finish`] then refuses what nobody has asked for.
+pub(super) struct Section<'a> {
+    document: &'a Document,
+    /// `run[2].`, to be put before a key; empty at the top.
+    prefix: String,
+    span: Range<usize>,
+    table: &'a DeTable<'a>,
+    asked: RefCell<Vec<&'static str>>,
+}
+
+impl Document {
+    /// Reads a text file, which is TOML if [`Document::parse`] says so.
+    pub fn read(file: &Path) -> Result<Document, InputError> {
+        match std::fs::read_to_string(file) {
+            Ok(text) => Ok(Document {
+                file: file.into(),
+                text,
+                problems: RefCell::default(),
+            }),
+            Err(error) => {
+                let remedy = "give the folder of a campaign, and save its campaign.toml as UTF-8 text";
+                Err(Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into())
+            }
+        }
+    }
+
+    /// The syntax tree.
+    pub fn parse(&self) -> Result<Spanned<DeTable<'_>>, InputError> {
+        DeTable::parse(&self.text).map_err(|error| {
+            let place = self.place(error.span().unwrap_or_default(), String::new());
+            let remedy = "correct the syntax at this place";
+            Problem::new(
+                &self.file,
+                place,
+                format!("broken syntax ({})", error.message().trim()),
+                "TOML",
+                remedy,
+            )
+            .into()
+        })
+    }
+
+    /// The top of the document.
+    pub fn top<'a>(&'a self, tree: &'a Spanned<DeTable<'a>>) -> Section<'a> {
+        self.section(String::new(), 0..0, tree.get_ref())
+    }
+
+    /// `value`, unless something is wrong with the document.
+    pub fn finish<T>(self, value: Option<T>) -> Result<T, InputError> {
+        InputError::unless_empty(self.problems.into_inner(), value)
+    }
+
+    fn section<'a>(&'a self, prefix: String, span: Range<usize>, table: &'a DeTable<'a>) -> Section<'a> {
+        Section {
+            document: self,
+            prefix,
+            span,
+            table,
+            asked: RefCell::default(),
+        }
+    }
+
+    fn place(&self, span: Range<usize>, key: String) -> Place {
+        let before = &self.text[..span.start.min(self.text.len())];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        Place::Key(line, column, key)
+    }
+
+    fn note(&self, span: Range<usize>, key: String, found: String, expected: String, remedy: String) {
+        let place = self.place(span, key);
+        self.problems
+            .borrow_mut()
+            .push(Problem::new(&self.file, place, found, expected, remedy));
+    }
+}
+
+impl<'a> Section<'a> {
+    /// Notes a problem with the value of `key`, or with the whole section where it has no such key.
+    pub fn wrong(&self, key: &str, found: impl Into<String>, expected: impl Into<String>, remedy: impl Into<String>) {
+        let span = self.table.get(key).map_or(self.span.clone(), Spanned::span);
+        self.document
+            .note(span, self.path(key), found.into(), expected.into(), remedy.into());
+    }
+
+    /// A text.
+    pub fn text(&self, key: &'static str) -> Option<String> {
+        let value = self.required(key, "a text in quotes")?;
+        self.typed(key, value.as_str().map(str::to_string), value, "a text in quotes")
+    }
+
+    /// A text, empty where the key is left out.
+    pub fn remark(&self, key: &'static str) -> String {
+        self.optional(key).and_then(|_| self.text(key)).unwrap_or_default()
+    }
+
+    /// A finite number.
+    pub fn number(&self, key: &'static str) -> Option<f64> {
+        let value = self.required(key, "a number")?;
+        self.typed(key, number(value), value, "a finite number")
+    }
+
+    /// A number above zero.
+    pub fn positive(&self, key: &'static str) -> Option<f64> {
+        let number = self.number(key)?;
+        if number > 0.0 {
+            return Some(number);
+        }
+        self.wrong(key, format!("{number}"), "a number above zero", "correct the value");
+        None
+    }
+
+    /// `true` or `false`.
+    pub fn boolean(&self, key: &'static str) -> Option<bool> {
+        let value = self.required(key, "true or false")?;
+        self.typed(key, value.as_bool(), value, "true or false")
+    }
+
+    /// Lower and upper bound, `None` where the key is left out.
+    pub fn range(&self, key: &'static str) -> Option<(f64, f64)> {
+        let value = self.optional(key)?;
+        let bounds = value
+            .as_array()
+            .and_then(|array| match array.iter().collect::<Vec<_>>()[..] {
+                [lower, upper] => Some((number(lower.get_ref())?, number(upper.get_ref())?)),
+                _ => None,
+            });
+        let (lower, upper) = self.typed(key, bounds, value, "two finite numbers, `[lower, upper]`")?;
+        if lower < upper {
+            return Some((lower, upper));
+        }
+        self.wrong(
+            key,
+            format!("[{lower}, {upper}]"),
+            "the lower bound below the upper",
+            "put them in that order",
+        );
+        None
+    }
+
+    /// One of several words.
+    pub fn choice<T: Copy>(&self, key: &'static str, names: &[(&'static str, T)]) -> Option<T> {
+        let text = self.text(key)?;
+        let choice = names.iter().find(|(name, _)| *name == text).map(|&(_, choice)| choice);
+        if choice.is_none() {
+            let words: Vec<_> = names.iter().map(|(name, _)| format!("\"{name}\"")).collect();
+            self.wrong(
+                key,
+                format!("\"{text}\""),
+                words.join(" or "),
+                "write one of these words",
+            );
+        }
+        choice
+    }
+
+    /// The sections of `[[key]]`, in the order of the file; none where it is left out.
+    pub fn sections(&self, key: &'static str) -> Vec<Section<'a>> {
+        let Some(value) = self.optional(key) else {
+            return Vec::new();
+        };
+        let Some(array) = value.as_array() else {
+            self.typed(key, None::<()>, value, "an array of tables");
+            return Vec::new();
+        };
+        let member = |(at, member): (usize, &'a Spanned<DeValue<'a>>)| {
+            let path = format!("{}[{}]", self.path(key), at + 1);
+            match member.get_ref().as_table() {
+                Some(table) => Some(self.document.section(format!("{path}."), member.span(), table)),
+                None => {
+                    let found = member.get_ref().type_str().to_string();
+                    self.document
+                        .note(member.span(), path, found, "a table".into(), format!("write [[{key}]]"));
+                    None
+                }
+            }
+        };
+        array.iter().enumerate().filter_map(member).collect()
+    }
+
+    /// The section `[key]`, `None` where it is left out.
+    pub fn section(&self, key: &'static str) -> Option<Section<'a>> {
+        let value = self.optional(key)?;
+        let table = self.typed(key, value.as_table(), value, "a table")?;
+        Some(
+            self.document
+                .section(format!("{}.", self.path(key)), self.table.get(key)?.span(), table),
+        )
+    }
+
+    /// The sections `[this.NAME]`, that is all of this section, with their names, in the order of the file.
+    pub fn named_sections(&self) -> Vec<(String, Section<'a>)> {
+        let member = |name: &'a str| {
+            let value = self.table.get(name)?;
+            let table = self.typed(name, value.get_ref().as_table(), value.get_ref(), "a table")?;
+            Some((
+                name.to_string(),
+                self.document
+                    .section(format!("{}.", self.path(name)), value.span(), table),
+            ))
+        };
+        self.names().into_iter().filter_map(member).collect()
+    }
+
+    /// The numbers of this section, that is all of it, with their names, in the order of the file.
+    pub fn numbers(&self) -> Vec<(String, f64)> {
+        let member = |name: &'a str| {
+            let value = self.table.get(name)?.get_ref();
+            Some((
+                name.to_string(),
+                self.typed(name, number(value), value, "a finite number")?,
+            ))
+        };
+        self.names().into_iter().filter_map(member).collect()
+    }
+
+    /// Refuses the keys that no getter has asked for.
+    pub fn finish(&self) {
+        let asked = self.asked.borrow();
+        for name in self.names().into_iter().filter(|name| !asked.contains(name)) {
+            let known: Vec<_> = asked.iter().map(|key| format!("`{key}`")).collect();
+            self.wrong(
+                name,
+                "an unknown key",
+                format!("one of {}", known.join(", ")),
+                "correct its name or remove it",
+            );
+        }
+    }
+
+    fn path(&self, key: &str) -> String {
+        format!("{}{key}", self.prefix)
+    }
+
+    /// Keys in the order of the file; the tree sorts them by name.
+    fn names(&self) -> Vec<&'a str> {
+        let mut keys: Vec<_> = self.table.keys().collect();
+        keys.sort_by_key(|key| key.span().start);
+        keys.into_iter().map(|key| key.get_ref().as_ref()).collect()
+    }
+
+    fn optional(&self, key: &'static str) -> Option<&'a DeValue<'a>> {
+        if !self.asked.borrow().contains(&key) {
+            self.asked.borrow_mut().push(key);
+        }
+        self.table.get(key).map(Spanned::get_ref)
+    }
+
+    fn required(&self, key: &'static str, expected: &str) -> Option<&'a DeValue<'a>> {
+        let value = self.optional(key);
+        if value.is_none() {
+            self.wrong(key, "no such key", expected, format!("add `{key} = ...`"));
+        }
+        value
+    }
+
+    fn typed<T>(&self, key: &str, value: Option<T>, raw: &DeValue<'_>, expected: &str) -> Option<T> {
+        if value.is_none() {
+            let found = match raw {
+                DeValue::Float(number) => number.to_string(),
+                other => format!("a value of type {}", other.type_str()),
+            };
+            self.wrong(key, found, expected, "correct the value");
+        }
+        value
+    }
+}
+
+/// A decimal number, whole or not.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    let number = match value {
+        DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok()?,
+        DeValue::Float(number) => number.as_str().parse::<f64>().ok()?,
+        _ => return None,
+    };
+    number.is_finite().then_some(number)
+}

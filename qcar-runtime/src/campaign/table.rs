@@ -1,0 +1,226 @@
+//! A CSV file, plain or gzip, as named columns of finite numbers.
+
+use std::fs::File;
+use std::io::{BufReader, Read};
+use std::path::{Path, PathBuf};
+
+use csv::{ByteRecord, ReaderBuilder, Trim};
+use flate2::read::MultiGzDecoder;
+
+use crate::error::{InputError, Place, Problem};
+
+/// A file read to its end.
+pub(super) struct Table {
+    pub file: PathBuf,
+    pub names: Vec<String>,
+    /// As many as names, all of one length, which is at least 1; every number is finite.
+    pub columns: Vec<Vec<f64>>,
+    /// The line of each row in the file, since empty lines are skipped.
+    pub lines: Vec<u64>,
+}
+
+impl Table {
+    /// The place of a cell.
+    pub fn cell(&self, row: usize, name: &str) -> Place {
+        Place::Cell(self.lines[row], name.to_string())
+    }
+
+    /// Takes out a column that [`check_names`] has found.
+    pub fn take(&mut self, name: &str) -> Vec<f64> {
+        let at = self
+            .names
+            .iter()
+            .position(|n| n == name)
+            .expect("the header was checked for this column");
+        std::mem::take(&mut self.columns[at])
+    }
+}
+
+/// The names in the header line of `file`.
+pub(super) fn header(file: &Path) -> Result<Vec<String>, InputError> {
+    names(file, &mut open(file)?)
+}
+
+/// Reads all of `file`.
+pub(super) fn read(file: &Path) -> Result<Table, InputError> {
+    let mut reader = open(file)?;
+    let names = names(file, &mut reader)?;
+    let mut table = Table {
+        file: file.into(),
+        columns: vec![Vec::new(); names.len()],
+        names,
+        lines: Vec::new(),
+    };
+    let mut record = ByteRecord::new();
+    while reader
+        .read_byte_record(&mut record)
+        .map_err(|e| unreadable(file, table.lines.last(), &e))?
+    {
+        push(&mut table, &record)?;
+    }
+    if table.lines.is_empty() {
+        return Err(Problem::new(
+            file,
+            Place::Line(2),
+            "the end of the file",
+            "rows of numbers",
+            "export the data again",
+        )
+        .into());
+    }
+    Ok(table)
+}
+
+/// What is wrong with the columns of a file, whose names must be `required` and may be `allowed`.
+pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allowed: &[&str]) -> Vec<Problem> {
+    let mut problems = Vec::new();
+    for name in required.iter().filter(|name| !names.iter().any(|n| n == *name)) {
+        let found = format!("the columns {}", list(names));
+        let remedy = format!("add the column `{name}`, or correct the header line (columns are separated by commas)");
+        problems.push(Problem::new(
+            file,
+            Place::Line(1),
+            found,
+            format!("a column `{name}`"),
+            remedy,
+        ));
+    }
+    for (at, name) in names.iter().enumerate() {
+        let place = || Place::Cell(1, name.clone());
+        if names[..at].contains(name) {
+            problems.push(Problem::new(
+                file,
+                place(),
+                "a second column of this name",
+                "each name once",
+                "rename or remove one",
+            ));
+        } else if !required.contains(&name.as_str()) && !allowed.contains(&name.as_str()) {
+            let known: Vec<_> = required.iter().chain(allowed).collect();
+            let remedy =
+                "rename or remove the column, or declare it as a [[channel]] if it is a sensor of a time history";
+            problems.push(Problem::new(
+                file,
+                place(),
+                "an unknown column",
+                format!("one of {}", list(&known)),
+                remedy,
+            ));
+        }
+    }
+    problems
+}
+
+fn list<T: AsRef<str>>(names: &[T]) -> String {
+    names
+        .iter()
+        .map(|name| format!("`{}`", name.as_ref()))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
+    let opened = File::open(file).and_then(|f| f.metadata().map(|about| (f, about.is_file())));
+    let plain = match opened {
+        Ok((plain, true)) => BufReader::new(plain),
+        Ok((_, false)) => return Err(missing(file, "a folder")),
+        Err(error) => return Err(missing(file, &error.to_string())),
+    };
+    let bytes: Box<dyn Read> = if file.extension().is_some_and(|e| e == "gz") {
+        Box::new(MultiGzDecoder::new(plain))
+    } else {
+        Box::new(plain)
+    };
+    Ok(ReaderBuilder::new()
+        .flexible(true)
+        .trim(Trim::All)
+        .has_headers(false)
+        .from_reader(bytes))
+}
+
+fn missing(file: &Path, found: &str) -> InputError {
+    let remedy = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+    Problem::new(file, Place::File, found, "a readable file", remedy).into()
+}
+
+fn unreadable(file: &Path, last_line: Option<&u64>, error: &csv::Error) -> InputError {
+    let place = last_line.map_or(Place::File, |line| Place::Line(line + 1));
+    let expected = "UTF-8 comma-separated numbers (gzip-compressed where the name ends in .gz)";
+    Problem::new(
+        file,
+        place,
+        error.to_string(),
+        expected,
+        "the file is damaged or incomplete; copy or export it again",
+    )
+    .into()
+}
+
+fn names(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<String>, InputError> {
+    let mut record = ByteRecord::new();
+    if !reader
+        .read_byte_record(&mut record)
+        .map_err(|e| unreadable(file, None, &e))?
+    {
+        let remedy = "the file is empty; export the data again";
+        return Err(Problem::new(
+            file,
+            Place::Line(1),
+            "the end of the file",
+            "a header line of column names",
+            remedy,
+        )
+        .into());
+    }
+    record
+        .iter()
+        .map(|name| text(file, Place::Line(1), name))
+        .map(|name| Ok(unmarked(name?).to_string()))
+        .collect()
+}
+
+/// Spreadsheets put a byte-order mark before the first name.
+fn unmarked(name: &str) -> &str {
+    name.trim_start_matches('\u{feff}')
+}
+
+fn text<'a>(file: &Path, place: Place, bytes: &'a [u8]) -> Result<&'a str, InputError> {
+    let remedy = "save the file as UTF-8 text; a compressed file needs a name that ends in .gz";
+    std::str::from_utf8(bytes)
+        .map_err(|_| Problem::new(file, place, "bytes that are not text", "UTF-8 text", remedy).into())
+}
+
+fn push(table: &mut Table, record: &ByteRecord) -> Result<(), InputError> {
+    let line = record.position().map_or(0, csv::Position::line);
+    if record.len() != table.names.len() {
+        let (found, expected) = (
+            format!("{} cells", record.len()),
+            format!("{} as in the header line", table.names.len()),
+        );
+        let remedy = "complete the line; decimals take a point and columns a comma";
+        return Err(Problem::new(&table.file, Place::Line(line), found, expected, remedy).into());
+    }
+    for (at, bytes) in record.iter().enumerate() {
+        let number = number(&table.file, || Place::Cell(line, table.names[at].clone()), bytes)?;
+        table.columns[at].push(number);
+    }
+    table.lines.push(line);
+    Ok(())
+}
+
+fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, InputError> {
+    let text = text(file, place(), bytes)?;
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => Ok(number),
+        _ => {
+            let found = if text.is_empty() {
+                "an empty cell".into()
+            } else {
+                format!("\"{text}\"")
+            };
+            let remedy =
+                "a sample that was lost cannot be guessed: repair the record, or leave out the column or the run";
+            Err(Problem::new(file, place(), found, "a finite number", remedy).into())
+        }
+    }
+}

@@ -1,0 +1,72 @@
+//! `truth.toml`: the answer that some campaigns are published with. Nothing but a test may look at it.
+
+use std::path::Path;
+
+use super::fields::{Document, Section};
+use crate::error::InputError;
+
+/// What a campaign was made from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Truth {
+    /// Where the data come from.
+    pub generator: String,
+    /// The effects that the base model lacks.
+    pub effects: Vec<Effect>,
+    /// True values of the base model's parameters, SI, in the order of the file.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// An effect of the measured axle that the base model lacks.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// `coulomb_friction`.
+    pub name: String,
+    /// A link, mass or sensor location of the model.
+    pub at: String,
+    /// True values of its parameters, SI, in the order of the file.
+    pub parameters: Vec<(String, f64)>,
+}
+
+impl Truth {
+    /// Reads a `truth.toml`.
+    ///
+    /// # Errors
+    /// All problems of the file together.
+    pub fn read(file: &Path) -> Result<Truth, InputError> {
+        let document = Document::read(file)?;
+        let truth = {
+            let tree = document.parse()?;
+            truth(&document.top(&tree))
+        };
+        document.finish(truth)
+    }
+}
+
+fn truth(top: &Section<'_>) -> Option<Truth> {
+    let generator = top.remark("generator");
+    let effects: Vec<_> = top.sections("effects").iter().map(effect).collect();
+    let parameters = top
+        .section("parameters")
+        .map(|section| section.numbers())
+        .unwrap_or_default();
+    top.finish();
+    Some(Truth {
+        generator,
+        effects: effects.into_iter().collect::<Option<_>>()?,
+        parameters,
+    })
+}
+
+fn effect(section: &Section<'_>) -> Option<Effect> {
+    let (name, at) = (section.text("name"), section.text("at"));
+    let parameters = section
+        .section("parameters")
+        .map(|section| section.numbers())
+        .unwrap_or_default();
+    section.finish();
+    Some(Effect {
+        name: name?,
+        at: at?,
+        parameters,
+    })
+}

@@ -1,0 +1,403 @@
+//! A campaign is read as it stands, and whatever is wrong with it is said with file, place and remedy.
+
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Write as _;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use qcar_runtime::campaign::{Axis, Campaign, Quantity, Role, Side, Spacing, Test, Truth};
+use qcar_runtime::error::InputError;
+use tempfile::TempDir;
+
+const MANIFEST: &str = r#"format = 1
+name = "bench"
+description = "Two sweeps, curves and a cleat"
+model = "quarter_car"
+
+[vehicle]
+m_corner = 400
+gravity = 9.81
+
+[parameters.k_tire]
+value = 2.0e5
+unit = "N/m"
+range = [1.0e5, 4.0e5]
+fit = true
+comment = "static load over deflection"
+
+[parameters.c_tire]
+value = 150.0
+unit = "N s/m"
+fit = false
+
+[[channel]]
+name = "pad_left_z"
+location = "pad"
+side = "left"
+axis = "z"
+quantity = "acceleration"
+unit = "m/s^2"
+
+[[channel]]
+name = "body_centre_z"
+location = "body"
+side = "centre"
+axis = "z"
+quantity = "acceleration"
+unit = "m/s^2"
+
+[[run]]
+kind = "sweep"
+file = "sweep.csv"
+role = "fit"
+peak_velocity = 0.1
+start_frequency = 0.5
+end_frequency = 30.0
+spacing = "logarithmic"
+sample_rate = 100.0
+
+[[run]]
+kind = "bounce"
+file = "bounce.csv"
+role = "fit"
+
+[[run]]
+kind = "dynamic_bounce"
+file = "dynamic.csv"
+role = "held_out"
+peak_velocity = 0.075
+amplitude = 0.02
+
+[[run]]
+kind = "cleat"
+file = "cleat.csv.gz"
+role = "held_out"
+speed = 8.3333
+sample_rate = 100.0
+cleat = "step"
+
+[[run]]
+kind = "time_history"
+file = "random.csv"
+role = "fit"
+sample_rate = 610.35
+band_limited = true
+
+[[road]]
+name = "step"
+file = "road.csv"
+"#;
+
+const SWEEP: &str = "time,pad_left_z,body_centre_z\n0.00,1,2\n0.01,3,4\n0.02,5,6\n0.03,7,8\n0.04,9,10\n";
+const CURVE: &str = "displacement,force\n0.01,300\n0.0,0\n-0.01,-300\n";
+const DYNAMIC: &str = "time,displacement,velocity,force\n0,0.02,0,500\n0.1,0.01,-0.07,200\n0.2,0,-0.075,-100\n";
+const CLEAT: &str = "time,body_centre_z\n0.00,0.5\n0.01,0.25\n0.02,0.125\n";
+const RANDOM: &str = "time,body_centre_z\n0.0,1\n0.0016,2\n0.0033,3\n0.0049,4\n0.0066,5\n";
+const ROAD: &str = "x,z,slope\n0,0,0\n0.5,0,0.1\n1.0,0.05,0\n";
+
+/// A sound campaign, with `text` put for each `(file, old, text)`.
+fn campaign(edits: &[(&str, &str, &str)]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let files = [
+        ("campaign.toml", MANIFEST),
+        ("sweep.csv", SWEEP),
+        ("bounce.csv", CURVE),
+        ("dynamic.csv", DYNAMIC),
+        ("cleat.csv.gz", CLEAT),
+        ("random.csv", RANDOM),
+        ("road.csv", ROAD),
+    ];
+    for (file, content) in files {
+        let mut content = content.to_string();
+        for (_, old, text) in edits.iter().filter(|edit| edit.0 == file) {
+            assert!(content.contains(old), "{file} holds no {old:?}");
+            content = content.replacen(old, text, 1);
+        }
+        write(&folder.path().join(file), &content);
+    }
+    folder
+}
+
+fn write(file: &Path, content: &str) {
+    if file.extension().unwrap() != "gz" {
+        return fs::write(file, content).unwrap();
+    }
+    let mut encoder = GzEncoder::new(fs::File::create(file).unwrap(), Compression::default());
+    encoder.write_all(content.as_bytes()).unwrap();
+    encoder.finish().unwrap();
+}
+
+/// Opens a campaign and reads everything in it.
+fn read_all(folder: &Path) -> Result<(), InputError> {
+    let campaign = Campaign::open(folder)?;
+    for run in &campaign.runs {
+        match run.test {
+            Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory { .. } => drop(campaign.history(run)?),
+            Test::Bounce | Test::Longitudinal => drop(campaign.curve(run)?),
+            Test::DynamicBounce { .. } => drop(campaign.dynamic_curve(run)?),
+        }
+    }
+    campaign.roads.iter().try_for_each(|road| campaign.road(road).map(drop))
+}
+
+#[test]
+fn a_sound_campaign_is_read_as_it_stands() {
+    let folder = campaign(&[]);
+    let campaign = Campaign::open(folder.path()).unwrap();
+    assert_eq!(
+        (campaign.name.as_str(), campaign.model.as_str()),
+        ("bench", "quarter_car")
+    );
+    assert_eq!(campaign.vehicle("m_corner"), Some(400.0));
+    assert_eq!(campaign.vehicle("r_tire"), None);
+    let k_tire = campaign.parameter("k_tire").unwrap();
+    assert_eq!(
+        (k_tire.value, k_tire.range, k_tire.fit),
+        (2.0e5, Some((1.0e5, 4.0e5)), true)
+    );
+    assert_eq!(campaign.parameters[1].range, None);
+    let body = campaign.channel("body_centre_z").unwrap();
+    assert_eq!(
+        (body.side, body.axis, body.quantity),
+        (Side::Centre, Axis::Z, Quantity::Acceleration)
+    );
+    let Test::Sweep(sweep) = campaign.runs[0].test else {
+        panic!("the first run is a sweep")
+    };
+    assert_eq!((sweep.start_frequency, sweep.spacing), (0.5, Spacing::Logarithmic));
+    assert_eq!(campaign.runs[2].role, Role::HeldOut);
+    assert!(campaign.notices.is_empty());
+    read_all(folder.path()).unwrap();
+}
+
+#[test]
+fn numbers_come_back_as_written() {
+    let folder = campaign(&[]);
+    let campaign = Campaign::open(folder.path()).unwrap();
+    let sweep = campaign.history(&campaign.runs[0]).unwrap();
+    assert_eq!(sweep.signal("body_centre_z"), Some(&[2.0, 4.0, 6.0, 8.0, 10.0][..]));
+    assert_eq!((sweep.len(), sweep.start, sweep.sample_rate), (5, 0.0, 100.0));
+    let cleat = campaign.history(&campaign.runs[3]).unwrap();
+    assert_eq!(cleat.signal("body_centre_z"), Some(&[0.5, 0.25, 0.125][..]));
+    assert_eq!(cleat.signal("pad_left_z"), None);
+    assert_eq!(campaign.curve(&campaign.runs[1]).unwrap().force, [300.0, 0.0, -300.0]);
+    assert_eq!(
+        campaign.dynamic_curve(&campaign.runs[2]).unwrap().velocity,
+        [0.0, -0.07, -0.075]
+    );
+    assert_eq!(campaign.road(&campaign.roads[0]).unwrap().slope, [0.0, 0.1, 0.0]);
+}
+
+#[test]
+fn a_channel_that_no_run_recorded_is_noticed() {
+    let folder = campaign(&[("sweep.csv", "pad_left_z,body_centre_z", "body_centre_z,pad_left_z")]);
+    assert!(Campaign::open(folder.path()).unwrap().notices.is_empty());
+    let header = (
+        "sweep.csv",
+        "time,pad_left_z,body_centre_z\n0.00,1,2\n0.01,3,4\n",
+        "time,body_centre_z\n0,1\n0.01,2\n",
+    );
+    let notices = Campaign::open(campaign(&[header]).path()).unwrap().notices;
+    assert!(
+        notices.len() == 1 && notices[0].contains("`pad_left_z` is recorded in no run"),
+        "{notices:?}"
+    );
+}
+
+#[test]
+fn the_answer_of_a_published_campaign_is_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("truth.toml");
+    let text = "generator = \"a program\"\neffects = [ { name = \"dry\", at = \"damper\", parameters = { f = 95.0 } } ]\n\
+                [parameters]\nk_tire = 2.1e5\nc_tire = 120\n";
+    fs::write(&file, text).unwrap();
+    let truth = Truth::read(&file).unwrap();
+    assert_eq!(
+        truth.parameters,
+        [("k_tire".to_string(), 2.1e5), ("c_tire".to_string(), 120.0)]
+    );
+    assert_eq!(
+        (truth.effects[0].at.as_str(), truth.effects[0].parameters[0].1),
+        ("damper", 95.0)
+    );
+    fs::write(&file, text.replace("at =", "on =")).unwrap();
+    assert_eq!(
+        Truth::read(&file).unwrap_err().problems.len(),
+        2,
+        "a missing key and an unknown one"
+    );
+}
+
+/// What each case puts in place of what, in which file.
+const MISTAKES: &[(&str, (&str, &str, &str))] = &[
+    ("broken syntax", ("campaign.toml", "name = \"bench\"", "name = bench")),
+    ("another version", ("campaign.toml", "format = 1", "format = 2")),
+    ("missing key", ("campaign.toml", "model = \"quarter_car\"\n", "")),
+    (
+        "unknown key",
+        ("campaign.toml", "amplitude = 0.02", "amplitude = 0.02\nphase = 0"),
+    ),
+    (
+        "misspelt key",
+        ("campaign.toml", "side = \"centre\"", "sid = \"centre\""),
+    ),
+    (
+        "unknown section",
+        ("campaign.toml", "[[road]]", "[sensors]\na = 1\n\n[[road]]"),
+    ),
+    ("wrong type", ("campaign.toml", "fit = true", "fit = \"yes\"")),
+    (
+        "text for a number",
+        ("campaign.toml", "m_corner = 400", "m_corner = \"400 kg\""),
+    ),
+    ("infinite number", ("campaign.toml", "value = 150.0", "value = inf")),
+    (
+        "unknown kind",
+        ("campaign.toml", "kind = \"bounce\"", "kind = \"bump\""),
+    ),
+    (
+        "unknown role",
+        ("campaign.toml", "role = \"held_out\"", "role = \"holdout\""),
+    ),
+    ("unknown side", ("campaign.toml", "side = \"left\"", "side = \"l\"")),
+    ("unknown axis", ("campaign.toml", "axis = \"z\"", "axis = \"Z\"")),
+    (
+        "unknown quantity",
+        ("campaign.toml", "quantity = \"acceleration\"", "quantity = \"jerk\""),
+    ),
+    (
+        "wrong unit of a channel",
+        ("campaign.toml", "unit = \"m/s^2\"", "unit = \"g\""),
+    ),
+    (
+        "unit of another quantity",
+        ("campaign.toml", "unit = \"m/s^2\"", "unit = \"m/s\""),
+    ),
+    (
+        "parameter in a unit that is not SI",
+        ("campaign.toml", "unit = \"N/m\"", "unit = \"N/mm\""),
+    ),
+    (
+        "start outside its range",
+        ("campaign.toml", "value = 2.0e5", "value = 2.0e6"),
+    ),
+    ("reversed range", ("campaign.toml", "[1.0e5, 4.0e5]", "[4.0e5, 1.0e5]")),
+    ("half a range", ("campaign.toml", "[1.0e5, 4.0e5]", "[1.0e5]")),
+    (
+        "channel twice",
+        ("campaign.toml", "name = \"body_centre_z\"", "name = \"pad_left_z\""),
+    ),
+    (
+        "channel named time",
+        ("campaign.toml", "name = \"pad_left_z\"", "name = \"time\""),
+    ),
+    (
+        "file twice",
+        ("campaign.toml", "file = \"random.csv\"", "file = \"sweep.csv\""),
+    ),
+    ("speed of zero", ("campaign.toml", "speed = 8.3333", "speed = 0.0")),
+    (
+        "unknown cleat",
+        ("campaign.toml", "cleat = \"step\"", "cleat = \"steep\""),
+    ),
+    (
+        "reversed sweep",
+        ("campaign.toml", "start_frequency = 0.5", "start_frequency = 31.0"),
+    ),
+    (
+        "sweep above half the rate",
+        ("campaign.toml", "end_frequency = 30.0", "end_frequency = 60.0"),
+    ),
+    (
+        "missing file",
+        ("campaign.toml", "file = \"bounce.csv\"", "file = \"kc/bounce.csv\""),
+    ),
+    ("empty file", ("bounce.csv", CURVE, "")),
+    ("header only", ("bounce.csv", "\n0.01,300\n0.0,0\n-0.01,-300\n", "\n")),
+    ("missing column", ("dynamic.csv", "velocity", "speed")),
+    ("unknown column", ("sweep.csv", "body_centre_z", "body_center_z")),
+    ("column twice", ("sweep.csv", "body_centre_z", "pad_left_z")),
+    ("semicolons", ("bounce.csv", "displacement,force", "displacement;force")),
+    ("missing cell", ("sweep.csv", "0.02,5,6", "0.02,5")),
+    ("empty cell", ("sweep.csv", "0.02,5,6", "0.02,,6")),
+    ("text cell", ("sweep.csv", "0.02,5,6", "0.02,5,overload")),
+    ("NaN", ("sweep.csv", "0.02,5,6", "0.02,nan,6")),
+    ("infinity", ("bounce.csv", "300", "inf")),
+    ("time goes back", ("sweep.csv", "0.02,5,6", "0.005,5,6")),
+    ("time stands", ("cleat.csv.gz", "0.02", "0.01")),
+    ("gap", ("sweep.csv", "0.03,7,8\n0.04", "0.13,7,8\n0.14")),
+    (
+        "another sample rate",
+        (
+            "campaign.toml",
+            "sample_rate = 100.0\n\n[[run]]\nkind = \"bounce\"",
+            "sample_rate = 1000.0\n\n[[run]]\nkind = \"bounce\"",
+        ),
+    ),
+    (
+        "a sample rate that is a little off",
+        ("campaign.toml", "sample_rate = 610.35", "sample_rate = 800.0"),
+    ),
+    ("single sample", ("cleat.csv.gz", "0.01,0.25\n0.02,0.125\n", "")),
+    ("no channel", ("random.csv", RANDOM, "time\n0\n0.0016\n")),
+    ("dynamic time goes back", ("dynamic.csv", "0.2,0,", "0.05,0,")),
+    ("road goes back", ("road.csv", "1.0,0.05", "0.4,0.05")),
+];
+
+#[test]
+fn every_mistake_is_named_with_its_place_and_remedy() {
+    let mut report = String::new();
+    for (name, edit) in MISTAKES {
+        let folder = campaign(&[*edit]);
+        let error = read_all(folder.path()).expect_err(name);
+        let _ = write!(
+            report,
+            "## {name}\n{}\n\n",
+            error.to_string().replace(folder.path().to_str().unwrap(), "DIR")
+        );
+    }
+    insta::assert_snapshot!(report);
+}
+
+#[test]
+fn a_folder_without_a_campaign_is_named() {
+    let error = Campaign::open("no/such/campaign").unwrap_err().to_string();
+    assert!(error.starts_with("no/such/campaign/campaign.toml: found "), "{error}");
+}
+
+#[test]
+fn problems_of_one_file_come_together() {
+    let folder = campaign(&[
+        ("campaign.toml", "role = \"fit\"", "role = \"train\""),
+        ("campaign.toml", "speed = 8.3333", "speed = -1"),
+        ("campaign.toml", "unit = \"m/s^2\"", "unit = \"mm/s^2\""),
+    ]);
+    assert_eq!(Campaign::open(folder.path()).unwrap_err().problems.len(), 3);
+}
+
+#[test]
+fn a_cut_or_false_gzip_file_is_refused() {
+    let folder = campaign(&[]);
+    let file = folder.path().join("cleat.csv.gz");
+    let whole = fs::read(&file).unwrap();
+    for length in [0, 5, whole.len() / 2, whole.len() - 4] {
+        fs::write(&file, &whole[..length]).unwrap();
+        let error = read_all(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("cleat.csv.gz"), "{length} bytes: {error}");
+    }
+    fs::write(&file, CLEAT).unwrap();
+    assert!(read_all(folder.path()).unwrap_err().to_string().contains("gz"));
+    fs::write(folder.path().join("sweep.csv"), whole).unwrap();
+    assert!(read_all(folder.path()).unwrap_err().to_string().contains("sweep.csv"));
+}
+
+#[test]
+fn a_curve_is_no_time_history() {
+    let folder = campaign(&[]);
+    let campaign = Campaign::open(folder.path()).unwrap();
+    assert!(campaign.history(&campaign.runs[1]).is_err());
+    assert!(campaign.curve(&campaign.runs[0]).is_err());
+    assert!(campaign.dynamic_curve(&campaign.runs[1]).is_err());
+}
