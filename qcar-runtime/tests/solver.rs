@@ -1,5 +1,6 @@
 //! Both integrators against closed forms: order, dense output, events, jumps, and what they refuse.
 
+use differential_equations::prelude::{ExplicitRungeKutta, IVP};
 use qcar_runtime::solver::{After, DormandPrince, Event, Reason, Report, Rk4, Settings, Step, System};
 
 /// A right-hand side as a closure, sampled on its dense output at the given ascending times.
@@ -402,4 +403,35 @@ fn a_stiff_problem_stops_with_its_reason() {
     assert_eq!(report.reason, Reason::TooManySteps);
     assert_eq!(report.effort.accepted + report.effort.rejected, 2_000);
     assert!(report.to_string().contains("too stiff"), "{report}");
+}
+
+/// A driven wheel hop with a hardening spring and a digressive damper.
+fn nonlinear(t: f64, x: &[f64], dx: &mut [f64]) {
+    dx[0] = x[1];
+    dx[1] = 40.0 * (9.0 * t).sin() - 400.0 * x[0] * (1.0 + 30.0 * x[0] * x[0]) - 30.0 * x[1] / (1.0 + x[1].abs());
+}
+
+#[test]
+fn a_nonlinear_solution_agrees_with_an_independent_program() {
+    let times: Vec<f64> = (1..=200).map(|i| 0.01 * f64::from(i)).collect();
+    let independent = IVP::ode_from_fn(
+        |t, x: &[f64; 2], dx: &mut [f64; 2]| nonlinear(t, x, dx),
+        0.0,
+        2.0,
+        [0.1, 0.0],
+    )
+    .t_eval(&times)
+    .method(ExplicitRungeKutta::dop853().rtol(1e-11).atol(1e-11))
+    .solve()
+    .expect("the oracle solves it");
+    let mut ours = sampled(nonlinear, times);
+    let report = run(&mut ours, settings(1e-8, 2, 1.0), 2.0, &mut [0.1, 0.0]);
+    assert_eq!((report.reason, ours.states.len()), (Reason::End, 200));
+    for (theirs, ours) in independent.y.iter().zip(&ours.states) {
+        assert!(
+            (theirs[0] - ours[0]).abs() < 1e-7 && (theirs[1] - ours[1]).abs() < 1e-6,
+            "{theirs:?} {ours:?}"
+        );
+    }
+    assert_eq!(independent.y.len(), 200);
 }
