@@ -1,1 +1,110 @@
-//! (to come)
+//! The model seen as the measurement sees it: ratios of two signals over frequency, with their parameter Jacobian.
+
+// Every parameter has a value, and ties are followed.
+pub mod parameters;
+// Where a measured signal is found among the rows of a response.
+pub mod signal;
+// The response of a nonlinear model about an operating point.
+mod linearized;
+// Ratios as complex numbers, for people and for other programs.
+pub mod ratio;
+// Ratios as logarithms, for the fit.
+pub mod logarithm;
+
+use crate::model::{Model, ResponseLayout, ResponseMut};
+pub use linearized::OperatingPoint;
+
+/// The frequency response of a model to one excitation on a fixed grid; its buffers are reused.
+pub struct Response<'m, M: ?Sized> {
+    model: &'m M,
+    excitation: usize,
+    omega: Vec<f64>,
+    layout: ResponseLayout,
+    /// Where a nonlinear model is linearised; `None` for a linear one.
+    about: Option<OperatingPoint>,
+    constants: Vec<f64>,
+    re: Vec<f64>,
+    im: Vec<f64>,
+    jacobian_re: Vec<f64>,
+    jacobian_im: Vec<f64>,
+}
+
+impl<'m, M: Model + ?Sized> Response<'m, M> {
+    /// A response on `frequency` (Hz, above zero). A nonlinear model is linearised at rest.
+    pub fn new(model: &'m M, excitation: usize, frequency: &[f64]) -> Self {
+        let about = model.about();
+        let point = (!about.linear).then(|| OperatingPoint::rest(about));
+        Self::with_point(model, excitation, frequency, point)
+    }
+
+    /// A response of a nonlinear model about `point`, which is held while parameters change.
+    pub fn at(model: &'m M, excitation: usize, frequency: &[f64], point: OperatingPoint) -> Self {
+        Self::with_point(model, excitation, frequency, Some(point))
+    }
+
+    fn with_point(model: &'m M, excitation: usize, frequency: &[f64], point: Option<OperatingPoint>) -> Self {
+        let about = model.about();
+        let layout = match point {
+            None => about.responses[excitation].clone(),
+            Some(_) => linearized::layout(about),
+        };
+        let lines = frequency.len();
+        let (rows, entries) = (layout.outputs.len() * lines, layout.jacobian.len() * lines);
+        Self {
+            model,
+            excitation,
+            omega: frequency.iter().map(|f| std::f64::consts::TAU * f).collect(),
+            layout,
+            about: point,
+            constants: vec![0.0; about.constants],
+            re: vec![0.0; rows],
+            im: vec![0.0; rows],
+            jacobian_re: vec![0.0; entries],
+            jacobian_im: vec![0.0; entries],
+        }
+    }
+
+    /// Computes all rows and their Jacobian for the parameters `p`.
+    pub fn evaluate(&mut self, p: &[f64]) {
+        let jacobian = Some((&mut self.jacobian_re[..], &mut self.jacobian_im[..]));
+        let into = ResponseMut {
+            re: &mut self.re,
+            im: &mut self.im,
+            jacobian,
+        };
+        match &self.about {
+            None => {
+                self.model.prepare(p, &mut self.constants);
+                self.model.response(self.excitation, &self.constants, &self.omega, into);
+            }
+            Some(point) => linearized::response(self.model, self.excitation, p, point, &self.omega, into),
+        }
+    }
+
+    /// Angular frequencies, rad/s.
+    pub fn omega(&self) -> &[f64] {
+        &self.omega
+    }
+
+    /// What each row is.
+    pub fn layout(&self) -> &ResponseLayout {
+        &self.layout
+    }
+
+    /// Real and imaginary parts of a row.
+    pub fn row(&self, row: usize) -> (&[f64], &[f64]) {
+        let range = self.lines(row);
+        (&self.re[range.clone()], &self.im[range])
+    }
+
+    /// Real and imaginary parts of an entry of the Jacobian.
+    pub fn entry(&self, entry: usize) -> (&[f64], &[f64]) {
+        let range = self.lines(entry);
+        (&self.jacobian_re[range.clone()], &self.jacobian_im[range])
+    }
+
+    fn lines(&self, row: usize) -> std::ops::Range<usize> {
+        let lines = self.omega.len();
+        row * lines..(row + 1) * lines
+    }
+}

@@ -1,0 +1,160 @@
+//! Ratios as logarithms, for the fit.
+//!
+//! A magnitude in dB and a phase are the two parts of `ln T`, and `ln (N/D) = ln N − ln D`: each signal is taken to its
+//! logarithm once, however many channels it belongs to, and a channel is a difference. So are the derivatives.
+
+use super::Response;
+use super::parameters::Values;
+use super::signal::Term;
+use crate::model::Model;
+use std::f64::consts::FRAC_PI_2;
+
+/// The logarithms of some signals, and their derivatives along some parameters, on the grid of a [`Response`].
+pub struct Logarithms {
+    terms: Vec<Term>,
+    columns: usize,
+    /// For each term: (column, entry of the response's Jacobian).
+    sources: Vec<Vec<(usize, usize)>>,
+    /// Powers of jω never change: for each term `k ln ω`.
+    offset: Vec<Vec<f64>>,
+    /// `1/N` of the term at hand, so that its derivatives need no division.
+    reciprocal: (Vec<f64>, Vec<f64>),
+    lines: usize,
+    magnitude: Vec<f64>,
+    angle: Vec<f64>,
+    d_magnitude: Vec<f64>,
+    d_angle: Vec<f64>,
+}
+
+impl Logarithms {
+    /// Prepares for `terms` and for the parameters `free`, each with those tied to it.
+    pub fn new<M: Model + ?Sized>(
+        response: &Response<'_, M>,
+        terms: Vec<Term>,
+        values: &Values,
+        free: &[usize],
+    ) -> Self {
+        let (lines, columns) = (response.omega().len(), free.len());
+        let sources = terms
+            .iter()
+            .map(|term| sources(response, *term, values, free))
+            .collect();
+        let power_of = |term: &Term| {
+            response
+                .omega()
+                .iter()
+                .map(|omega| f64::from(term.power) * omega.ln())
+                .collect()
+        };
+        Self {
+            offset: terms.iter().map(power_of).collect(),
+            reciprocal: (vec![0.0; lines], vec![0.0; lines]),
+            sources,
+            columns,
+            lines,
+            magnitude: vec![0.0; terms.len() * lines],
+            angle: vec![0.0; terms.len() * lines],
+            d_magnitude: vec![0.0; terms.len() * columns * lines],
+            d_angle: vec![0.0; terms.len() * columns * lines],
+            terms,
+        }
+    }
+
+    /// Takes the logarithms of an evaluated response.
+    pub fn evaluate<M: Model + ?Sized>(&mut self, response: &Response<'_, M>) {
+        for term in 0..self.terms.len() {
+            self.take(term, response);
+            self.differentiate(term, response);
+        }
+    }
+
+    /// `ln |signal|` and its angle (rad, not unwrapped) for each line.
+    pub fn signal(&self, term: usize) -> (&[f64], &[f64]) {
+        let range = term * self.lines..(term + 1) * self.lines;
+        (&self.magnitude[range.clone()], &self.angle[range])
+    }
+
+    /// Their derivatives along a column.
+    pub fn slope(&self, term: usize, column: usize) -> (&[f64], &[f64]) {
+        let range = self.slope_range(term, column);
+        (&self.d_magnitude[range.clone()], &self.d_angle[range])
+    }
+
+    /// True where a term depends on a column.
+    pub fn depends(&self, term: usize, column: usize) -> bool {
+        self.sources[term].iter().any(|&(of, _)| of == column)
+    }
+
+    fn slope_range(&self, term: usize, column: usize) -> std::ops::Range<usize> {
+        let start = (term * self.columns + column) * self.lines;
+        start..start + self.lines
+    }
+
+    fn take<M: Model + ?Sized>(&mut self, term: usize, response: &Response<'_, M>) {
+        let range = term * self.lines..(term + 1) * self.lines;
+        let turn = FRAC_PI_2 * f64::from(self.terms[term].power);
+        let (magnitude, angle) = (&mut self.magnitude[range.clone()], &mut self.angle[range]);
+        let offset = &self.offset[term];
+        let Some(row) = self.terms[term].row else {
+            magnitude.copy_from_slice(offset);
+            angle.fill(turn);
+            return;
+        };
+        let (re, im) = response.row(row);
+        for line in 0..offset.len() {
+            magnitude[line] = 0.5 * (re[line] * re[line] + im[line] * im[line]).ln() + offset[line];
+            angle[line] = im[line].atan2(re[line]) + turn;
+        }
+    }
+
+    /// `d ln N = dN / N`.
+    fn differentiate<M: Model + ?Sized>(&mut self, term: usize, response: &Response<'_, M>) {
+        let Some(row) = self.terms[term].row else { return };
+        self.invert(response.row(row));
+        let whole = self.slope_range(term, 0).start..self.slope_range(term, self.columns).start;
+        self.d_magnitude[whole.clone()].fill(0.0);
+        self.d_angle[whole].fill(0.0);
+        for &(column, entry) in &self.sources[term] {
+            let range = self.slope_range(term, column);
+            let into = (&mut self.d_magnitude[range.clone()], &mut self.d_angle[range]);
+            add_product(into, response.entry(entry), (&self.reciprocal.0, &self.reciprocal.1));
+        }
+    }
+
+    fn invert(&mut self, (re, im): (&[f64], &[f64])) {
+        let (to_re, to_im) = (&mut self.reciprocal.0[..re.len()], &mut self.reciprocal.1[..re.len()]);
+        for line in 0..re.len() {
+            let scale = 1.0 / (re[line] * re[line] + im[line] * im[line]);
+            to_re[line] = re[line] * scale;
+            to_im[line] = -im[line] * scale;
+        }
+    }
+}
+
+/// `into += a b` of complex rows.
+fn add_product(into: (&mut [f64], &mut [f64]), a: (&[f64], &[f64]), b: (&[f64], &[f64])) {
+    let lines = into.0.len();
+    let (into_re, into_im) = (&mut into.0[..lines], &mut into.1[..lines]);
+    let (a_re, a_im, b_re, b_im) = (&a.0[..lines], &a.1[..lines], &b.0[..lines], &b.1[..lines]);
+    for line in 0..lines {
+        into_re[line] += a_re[line] * b_re[line] - a_im[line] * b_im[line];
+        into_im[line] += a_re[line] * b_im[line] + a_im[line] * b_re[line];
+    }
+}
+
+fn sources<M: Model + ?Sized>(
+    response: &Response<'_, M>,
+    term: Term,
+    values: &Values,
+    free: &[usize],
+) -> Vec<(usize, usize)> {
+    let column = |parameter: u16| {
+        free.iter()
+            .position(|&free| free == values.leader(usize::from(parameter)))
+    };
+    let entries = response.layout().jacobian.iter().enumerate();
+    entries
+        .filter(|(_, (row, _))| term.row == Some(usize::from(*row)))
+        .filter_map(|(entry, (_, parameter))| column(*parameter).map(|column| (column, entry)))
+        .collect()
+}

@@ -1,0 +1,190 @@
+//! From what is given to a value for every parameter of the model.
+
+use crate::model::{About, Default};
+use std::collections::BTreeMap;
+use thiserror::Error;
+
+/// A value for every parameter, and which of them move together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Values {
+    p: Vec<f64>,
+    /// For each parameter the one that it takes its value from: itself, unless its default ties it.
+    leader: Vec<usize>,
+}
+
+/// Why a parameter has no value.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum ParameterError {
+    /// The model has no such parameter.
+    #[error("model `{model}` has no parameter `{name}`; {}", unknown_remedy(.nearest))]
+    Unknown {
+        /// As given.
+        name: String,
+        /// The model's name.
+        model: String,
+        /// The model's parameter with the most similar name.
+        nearest: Option<String>,
+    },
+    /// Nobody gives the parameter a value.
+    #[error("model `{model}` needs `{name}` ({doc}), which has no value and no default; give it one in {unit}")]
+    Missing {
+        /// The parameter.
+        name: String,
+        /// The model's name.
+        model: String,
+        /// Its unit.
+        unit: String,
+        /// Its sentence.
+        doc: String,
+    },
+    /// The value is not a number.
+    #[error("`{name}` is {value}; give it a finite number")]
+    NotFinite {
+        /// The parameter.
+        name: String,
+        /// As given.
+        value: f64,
+    },
+}
+
+impl ParameterError {
+    /// The parameter that it is about.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Unknown { name, .. } | Self::Missing { name, .. } | Self::NotFinite { name, .. } => name,
+        }
+    }
+}
+
+fn unknown_remedy(nearest: &Option<String>) -> String {
+    match nearest {
+        Some(nearest) => {
+            format!("did you mean `{nearest}`? Otherwise remove it, or choose the model that it belongs to")
+        }
+        None => "remove it, or choose the model that it belongs to".to_owned(),
+    }
+}
+
+impl Values {
+    /// Gives every parameter of the model its value: from `given`, else from `vehicle`, else from its default.
+    ///
+    /// All of `given` must belong to the model; `vehicle` may hold more, since it describes the car.
+    ///
+    /// # Errors
+    /// Every parameter that the model lacks, that has no value, or whose value is not finite.
+    pub fn resolve(
+        about: &About,
+        given: &BTreeMap<String, f64>,
+        vehicle: &BTreeMap<String, f64>,
+    ) -> Result<Self, Vec<ParameterError>> {
+        let mut errors: Vec<_> = given.keys().filter_map(|name| unknown(about, name)).collect();
+        let stated: Vec<Option<f64>> = about
+            .parameters
+            .iter()
+            .map(|p| given.get(&*p.name).or_else(|| vehicle.get(&*p.name)).copied())
+            .collect();
+        let leader: Vec<usize> = (0..stated.len()).map(|k| leader(about, &stated, k)).collect();
+        let p = leader
+            .iter()
+            .map(|&k| stated[k].or(default(about, k)).unwrap_or(f64::NAN))
+            .collect();
+        errors.extend((0..stated.len()).filter_map(|k| invalid(about, k, leader[k] == k, stated[k])));
+        if errors.is_empty() {
+            Ok(Self { p, leader })
+        } else {
+            Err(errors)
+        }
+    }
+
+    /// All values, in the model's order.
+    pub fn as_slice(&self) -> &[f64] {
+        &self.p
+    }
+
+    /// The parameter that this one takes its value from; itself unless it is tied.
+    pub fn leader(&self, parameter: usize) -> usize {
+        self.leader[parameter]
+    }
+
+    /// Changes a parameter together with all that are tied to it.
+    pub fn set(&mut self, parameter: usize, value: f64) {
+        for (p, leader) in self.p.iter_mut().zip(&self.leader) {
+            if *leader == parameter {
+                *p = value;
+            }
+        }
+    }
+}
+
+/// Follows ties up to a parameter that is stated or has a default of its own.
+fn leader(about: &About, stated: &[Option<f64>], parameter: usize) -> usize {
+    let mut at = parameter;
+    // As many steps as there are parameters end every chain, and every circle too.
+    for _ in 0..stated.len() {
+        match about.parameters[at].default {
+            Default::Same(other) if stated[at].is_none() => at = usize::from(other),
+            _ => return at,
+        }
+    }
+    at
+}
+
+fn default(about: &About, parameter: usize) -> Option<f64> {
+    match about.parameters[parameter].default {
+        Default::Value(value) => Some(value),
+        Default::None | Default::Same(_) => None,
+    }
+}
+
+fn invalid(about: &About, k: usize, leads: bool, stated: Option<f64>) -> Option<ParameterError> {
+    let parameter = &about.parameters[k];
+    match stated.or(default(about, k)) {
+        Some(value) if value.is_finite() => None,
+        Some(value) => Some(ParameterError::NotFinite {
+            name: parameter.name.to_string(),
+            value,
+        }),
+        None if !leads => None,
+        None => Some(ParameterError::Missing {
+            name: parameter.name.to_string(),
+            model: about.name.to_string(),
+            unit: parameter.unit.to_string(),
+            doc: parameter.doc.to_string(),
+        }),
+    }
+}
+
+fn unknown(about: &About, name: &str) -> Option<ParameterError> {
+    if about.parameters.iter().any(|p| p.name == name) {
+        return None;
+    }
+    let nearest = about
+        .parameters
+        .iter()
+        .map(|p| (distance(name, &p.name), &p.name))
+        .min();
+    let nearest = nearest
+        .filter(|(distance, _)| 3 * distance <= name.len())
+        .map(|(_, nearest)| nearest.to_string());
+    Some(ParameterError::Unknown {
+        name: name.to_owned(),
+        model: about.name.to_string(),
+        nearest,
+    })
+}
+
+/// Levenshtein's edit distance.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, a) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, b) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(a != *b);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}

@@ -1,0 +1,97 @@
+//! Ratios as complex numbers, for people and for other programs.
+
+use super::Response;
+use super::parameters::Values;
+use super::signal::{SignalError, Term, locate};
+use crate::model::{Model, Signal};
+use nalgebra::Complex;
+
+/// A ratio of two signals over frequency.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratio {
+    /// A value for each frequency.
+    pub value: Vec<Complex<f64>>,
+    /// For each parameter of the model that is seen and leads its ties: its place, and a derivative for each frequency.
+    pub jacobian: Vec<(usize, Vec<Complex<f64>>)>,
+}
+
+/// The ratio of two signals when `excitation` alone acts, at `frequency` (Hz, above zero).
+///
+/// # Errors
+/// Where the model cannot give one of the signals.
+pub fn ratio<M: Model + ?Sized>(
+    model: &M,
+    values: &Values,
+    excitation: usize,
+    numerator: &Signal,
+    denominator: &Signal,
+    frequency: &[f64],
+) -> Result<Ratio, SignalError> {
+    let mut response = Response::new(model, excitation, frequency);
+    let above = locate(model.about(), response.layout(), excitation, numerator)?;
+    let below = locate(model.about(), response.layout(), excitation, denominator)?;
+    response.evaluate(values.as_slice());
+    let (n, d) = (signal(&response, above), signal(&response, below));
+    let value: Vec<_> = n.iter().zip(&d).map(|(n, d)| n / d).collect();
+    let leaders = (0..values.as_slice().len()).filter(|&k| values.leader(k) == k);
+    let jacobian = leaders.filter_map(|leader| {
+        let (dn, dd) = (
+            slope(&response, above, values, leader),
+            slope(&response, below, values, leader),
+        );
+        (dn.is_some() || dd.is_some()).then(|| {
+            let at =
+                |slope: &Option<Vec<Complex<f64>>>, line: usize| slope.as_ref().map_or(Complex::default(), |s| s[line]);
+            (
+                leader,
+                (0..frequency.len())
+                    .map(|i| (at(&dn, i) - value[i] * at(&dd, i)) / d[i])
+                    .collect(),
+            )
+        })
+    });
+    Ok(Ratio {
+        jacobian: jacobian.collect(),
+        value,
+    })
+}
+
+fn signal<M: Model + ?Sized>(response: &Response<'_, M>, term: Term) -> Vec<Complex<f64>> {
+    let values = match term.row {
+        Some(row) => pairs(response.row(row)),
+        None => vec![Complex::from(1.0); response.omega().len()],
+    };
+    differentiate(values, term.power, response.omega())
+}
+
+/// The derivative of a signal along a parameter and all that are tied to it; `None` where it is zero throughout.
+fn slope<M: Model + ?Sized>(
+    response: &Response<'_, M>,
+    term: Term,
+    values: &Values,
+    leader: usize,
+) -> Option<Vec<Complex<f64>>> {
+    let mut total: Option<Vec<Complex<f64>>> = None;
+    for (entry, &(row, parameter)) in response.layout().jacobian.iter().enumerate() {
+        if term.row != Some(usize::from(row)) || values.leader(usize::from(parameter)) != leader {
+            continue;
+        }
+        let sum = total.get_or_insert_with(|| vec![Complex::default(); response.omega().len()]);
+        for (sum, value) in sum.iter_mut().zip(pairs(response.entry(entry))) {
+            *sum += value;
+        }
+    }
+    total.map(|total| differentiate(total, term.power, response.omega()))
+}
+
+fn pairs((re, im): (&[f64], &[f64])) -> Vec<Complex<f64>> {
+    re.iter().zip(im).map(|(&re, &im)| Complex::new(re, im)).collect()
+}
+
+fn differentiate(values: Vec<Complex<f64>>, power: i32, omega: &[f64]) -> Vec<Complex<f64>> {
+    values
+        .iter()
+        .zip(omega)
+        .map(|(value, &omega)| value * Complex::new(0.0, omega).powi(power))
+        .collect()
+}

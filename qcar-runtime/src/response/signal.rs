@@ -1,0 +1,173 @@
+//! Where a measured signal is found among the rows of a response.
+
+use crate::model::{About, Excitation, Quantity, ResponseLayout, Signal, SignalKind};
+use thiserror::Error;
+
+/// A signal under one excitation: a row of its response, or the excitation itself, times a power of jω.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Term {
+    /// The row, counted as in [`ResponseLayout::outputs`]; `None` for the excitation itself.
+    pub row: Option<usize>,
+    /// The power of jω: differentiation of a motion that the model has as position or velocity, or integration.
+    pub power: i32,
+}
+
+/// Why a model cannot give a signal.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum SignalError {
+    /// There is no such mass, link or excitation.
+    #[error(
+        "model `{model}` has no `{location}` along {axis}; it has {known}. Choose a model that has it, or leave the channel out"
+    )]
+    Unknown {
+        /// What was asked for.
+        location: String,
+        /// Along which axis.
+        axis: String,
+        /// The model's name.
+        model: String,
+        /// What there is instead.
+        known: String,
+    },
+    /// The place is there, but no output tells of this quantity.
+    #[error(
+        "model `{model}` does not output the {quantity} of `{location}`; add `output {location}.{quantity};` to it"
+    )]
+    NoOutput {
+        /// Where.
+        location: String,
+        /// What.
+        quantity: &'static str,
+        /// The model's name.
+        model: String,
+    },
+    /// The signal is zero at every frequency.
+    #[error(
+        "in model `{model}`, `{location}` does not move along {axis} when `{excitation}` does; leave the channel out"
+    )]
+    Silent {
+        /// Where.
+        location: String,
+        /// Along which axis.
+        axis: String,
+        /// What excites.
+        excitation: String,
+        /// The model's name.
+        model: String,
+    },
+}
+
+/// Finds `signal` in the response to `excitation`.
+///
+/// # Errors
+/// Where the model has no such place, no such output, or no response of it.
+pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal: &Signal) -> Result<Term, SignalError> {
+    let source = &about.excitations[excitation];
+    if let Some(power) = power_of_excitation(source, signal) {
+        return Ok(Term { row: None, power });
+    }
+    let (output, power) = best_output(about, signal).ok_or_else(|| missing(about, signal))?;
+    match layout.outputs.iter().position(|&row| usize::from(row) == output) {
+        Some(row) => Ok(Term { row: Some(row), power }),
+        None => Err(SignalError::Silent {
+            location: signal.location.to_string(),
+            axis: signal.axis.to_string(),
+            excitation: source.name.to_string(),
+            model: about.name.to_string(),
+        }),
+    }
+}
+
+fn power_of_excitation(source: &Excitation, signal: &Signal) -> Option<i32> {
+    let here = source.name == signal.location && source.axis == signal.axis;
+    match signal.kind {
+        SignalKind::Motion(quantity) if here && !source.force => Some(order(quantity)),
+        SignalKind::Force if here && source.force => Some(0),
+        _ => None,
+    }
+}
+
+/// The output with this signal, or that of another derivative of the same motion.
+fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
+    let powers = about.outputs.iter().enumerate().filter_map(|(place, output)| {
+        let here = output.signal.location == signal.location && output.signal.axis == signal.axis;
+        let power = match (signal.kind, output.signal.kind) {
+            (SignalKind::Motion(wanted), SignalKind::Motion(found)) => order(wanted) - order(found),
+            (wanted, found) if wanted == found => 0,
+            _ => return None,
+        };
+        here.then_some((place, power))
+    });
+    powers.min_by_key(|&(_, power)| power.abs())
+}
+
+fn order(quantity: Quantity) -> i32 {
+    match quantity {
+        Quantity::Position => 0,
+        Quantity::Velocity => 1,
+        Quantity::Acceleration => 2,
+    }
+}
+
+fn missing(about: &About, signal: &Signal) -> SignalError {
+    let model = about.name.to_string();
+    let location = signal.location.to_string();
+    let known = places(about, &signal.axis);
+    if known.iter().any(|place| *place == signal.location) {
+        SignalError::NoOutput {
+            location,
+            quantity: quantity(signal.kind),
+            model,
+        }
+    } else {
+        let known = known
+            .iter()
+            .map(|place| format!("`{place}`"))
+            .collect::<Vec<_>>()
+            .join(", ");
+        let known = if known.is_empty() {
+            "nothing there".to_owned()
+        } else {
+            known
+        };
+        SignalError::Unknown {
+            location,
+            axis: signal.axis.to_string(),
+            model,
+            known,
+        }
+    }
+}
+
+/// The masses, links and excitations along an axis, each once.
+pub fn places<'a>(about: &'a About, axis: &str) -> Vec<&'a str> {
+    let outputs = about
+        .outputs
+        .iter()
+        .filter(|o| o.signal.axis == axis)
+        .map(|o| &*o.signal.location);
+    let links = about.links.iter().filter(|l| l.axis == axis);
+    let ends = links.clone().flat_map(|l| l.ends.iter()).map(|end| &**end);
+    let excitations = about.excitations.iter().filter(|e| e.axis == axis).map(|e| &*e.name);
+    let mut all: Vec<&str> = Vec::new();
+    for place in outputs
+        .chain(ends)
+        .chain(links.clone().map(|l| &*l.name))
+        .chain(excitations)
+    {
+        if !all.contains(&place) {
+            all.push(place);
+        }
+    }
+    all
+}
+
+fn quantity(kind: SignalKind) -> &'static str {
+    match kind {
+        SignalKind::Motion(Quantity::Position) => "position",
+        SignalKind::Motion(Quantity::Velocity) => "velocity",
+        SignalKind::Motion(Quantity::Acceleration) => "acceleration",
+        SignalKind::Force => "force",
+        SignalKind::Stretch => "stretch",
+    }
+}
