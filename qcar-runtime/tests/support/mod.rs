@@ -75,13 +75,13 @@ fn system(p: &[f64]) -> System {
         )
     };
     let pull = |tire: f64| DVector::from_column_slice(&[0.0, tire, 0.0]);
-    (
-        masses,
-        chain(p[5], p[3], p[7]),
-        chain(p[6], p[4], p[8]),
-        pull(p[3]),
-        pull(p[4]),
-    )
+    System {
+        m: DVector::from_column_slice(&[p[0] - p[1] - p[2], p[1], p[2]]),
+        k: chain(p[5], p[3], p[7]),
+        c: chain(p[6], p[4], p[8]),
+        pull_k: pull(p[3]),
+        pull_c: pull(p[4]),
+    }
 }
 
 /// Accelerations of the masses for a unit displacement of the pad.
