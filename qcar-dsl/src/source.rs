@@ -28,7 +28,11 @@ impl Span {
         if self.source != other.source {
             return self;
         }
-        Span { source: self.source, start: self.start.min(other.start), end: self.end.max(other.end) }
+        Span {
+            source: self.source,
+            start: self.start.min(other.start),
+            end: self.end.max(other.end),
+        }
     }
 }
 
@@ -46,20 +50,28 @@ impl Source {
     pub fn line_column(&self, byte: u32) -> (usize, usize) {
         let before = &self.text[..self.border(byte as usize)];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
-        (before.matches('\n').count() + 1, before[line_start..].chars().count() + 1)
+        (
+            before.matches('\n').count() + 1,
+            before[line_start..].chars().count() + 1,
+        )
     }
 
     /// The text of the line that holds a byte.
     pub fn line(&self, byte: u32) -> &str {
         let byte = self.border(byte as usize);
         let start = self.text[..byte].rfind('\n').map_or(0, |newline| newline + 1);
-        let end = self.text[byte..].find('\n').map_or(self.text.len(), |newline| byte + newline);
+        let end = self.text[byte..]
+            .find('\n')
+            .map_or(self.text.len(), |newline| byte + newline);
         self.text[start..end].trim_end_matches('\r')
     }
 
     /// The nearest border between characters at or before a byte.
     fn border(&self, byte: usize) -> usize {
-        (0..=byte.min(self.text.len())).rev().find(|&b| self.text.is_char_boundary(b)).unwrap_or(0)
+        (0..=byte.min(self.text.len()))
+            .rev()
+            .find(|&b| self.text.is_char_boundary(b))
+            .unwrap_or(0)
     }
 }
 

@@ -1,0 +1,241 @@
+//! The track: a tyre of area contact over a cleat, its overlap summed column by column.
+
+use crate::corner::{BODY, COORDINATES, Corner, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL};
+use crate::integrate::step;
+use crate::rig::RATE;
+
+/// A cleat: flat, a vertical step, a descent and a smooth return, sampled every millimetre.
+pub struct Road {
+    pub z: Vec<f64>,
+    pub slope: Vec<f64>,
+}
+
+/// Spacing of the samples, m.
+pub const SPACING: f64 = 1e-3;
+const START: f64 = 1.5;
+
+impl Road {
+    /// The profile of a cleat of height `h`, m, on 18 m of road: 78 % of it lost on a straight descent, the rest on
+    /// a return whose slope fades like a cosine, so that the curvature is continuous.
+    pub fn cleat(h: f64) -> Self {
+        let straight = 0.366;
+        let slope = 0.78 * h / straight;
+        let rest = 0.22 * h;
+        let fade = 2.0 * rest / slope;
+        let z = |x: f64| {
+            let along = x - START;
+            let u = ((along - straight) / fade).min(1.0);
+            if along < SPACING / 2.0 {
+                0.0
+            } else if along < straight {
+                h - slope * along
+            } else {
+                rest - slope * fade / 2.0 * (u + (std::f64::consts::PI * u).sin() / std::f64::consts::PI)
+            }
+        };
+        let z: Vec<f64> = (0..=18_000).map(|i| z(f64::from(i) * SPACING)).collect();
+        let slope = (0..z.len())
+            .map(|i| {
+                if i + 1 < z.len() {
+                    (z[i + 1] - z[i]) / SPACING
+                } else {
+                    0.0
+                }
+            })
+            .collect();
+        Self { z, slope }
+    }
+
+    fn height(&self, x: f64) -> f64 {
+        let place = (x / SPACING).clamp(0.0, (self.z.len() - 2) as f64);
+        let i = place as usize;
+        self.z[i] + (self.z[i + 1] - self.z[i]) * (place - i as f64)
+    }
+}
+
+/// Overlap of the circle with the ground.
+#[derive(Default)]
+struct Overlap {
+    area: f64,
+    moment: [f64; 2],
+    growth: [f64; 3],
+    shrinkage: [f64; 3],
+}
+
+/// Half a millimetre: the width of a column of the sum.
+const COLUMN: f64 = 5e-4;
+
+fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Overlap {
+    let mut sum = Overlap::default();
+    let columns = (2.0 * radius / COLUMN) as usize;
+    for k in 0..columns {
+        let dx = -radius + (k as f64 + 0.5) * COLUMN;
+        let reach = (radius * radius - dx * dx).sqrt();
+        let (bottom, ground) = (centre[1] - reach, road.height(centre[0] + dx));
+        let depth = (ground - bottom).min(2.0 * reach);
+        if depth <= 0.0 {
+            continue;
+        }
+        let area = depth * COLUMN;
+        sum.area += area;
+        sum.moment[0] += area * dx;
+        sum.moment[1] += area * (bottom + depth / 2.0 - centre[1]);
+        // The arc over this column moves with the wheel: normal speed times arc length is the area it sweeps.
+        let (nx, nz) = (dx / radius, -reach / radius);
+        let swept = (velocity[0] * nx + velocity[1] * nz) * COLUMN * radius / reach;
+        let part = if swept > 0.0 {
+            &mut sum.growth
+        } else {
+            &mut sum.shrinkage
+        };
+        part[0] += swept;
+        part[1] += swept * dx;
+        part[2] += swept * -reach;
+    }
+    sum
+}
+
+/// Area of a circle's segment of depth `d`, m².
+fn segment(radius: f64, d: f64) -> f64 {
+    let d = d.clamp(0.0, radius);
+    radius * radius * (1.0 - d / radius).acos() - (radius - d) * (2.0 * radius * d - d * d).sqrt()
+}
+
+fn deflection(radius: f64, area: f64) -> f64 {
+    let (mut low, mut high) = (0.0, radius);
+    for _ in 0..45 {
+        let middle = 0.5 * (low + high);
+        if segment(radius, middle) < area {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    0.5 * (low + high)
+}
+
+fn towards_centre(moment: [f64; 2], scale: f64) -> [f64; 2] {
+    let (x, z) = (-moment[0] / scale, -moment[1] / scale);
+    let length = x.hypot(z).max(1e-12);
+    [x / length, z / length]
+}
+
+/// The tyre of a corner over a road at constant speed.
+struct Rolling<'a> {
+    corner: &'a Corner<'a>,
+    road: &'a Road,
+    speed: f64,
+    drag: f64,
+}
+
+impl Rolling<'_> {
+    /// Force on the ring over and above the static load, and the drag at rest.
+    fn push(&self, t: f64, y: &State) -> Push {
+        let a = self.corner.axle;
+        let ring = self.corner.ring();
+        let centre = [self.speed * t + y[X_WHEEL], a.r_tire - a.static_tire_def + y[ring]];
+        let velocity = [self.speed + y[COORDINATES + X_WHEEL], y[COORDINATES + ring]];
+        let o = overlap(self.road, a.r_tire, centre, velocity);
+        if o.area <= 0.0 {
+            return Push {
+                z: -a.static_load(),
+                x: -self.drag,
+                compression_rate: 0.0,
+            };
+        }
+        let d = deflection(a.r_tire, o.area);
+        let width = 2.0 * (2.0 * a.r_tire * a.static_tire_def - a.static_tire_def.powi(2)).sqrt();
+        let e = towards_centre(o.moment, o.area);
+        let spring = (self.elastic(d) + y[crate::corner::TIRE_BRANCH]).max(0.0);
+        let grow = a.c_tire * o.growth[0] / width;
+        let shrink = (a.c_tire * o.shrinkage[0] / width).max(-spring);
+        let eg = towards_centre([o.growth[1], o.growth[2]], o.growth[0].max(1e-12));
+        let es = towards_centre([-o.shrinkage[1], -o.shrinkage[2]], (-o.shrinkage[0]).max(1e-12));
+        Push {
+            z: spring * e[1] + grow * eg[1] + shrink * es[1] - a.static_load(),
+            x: spring * e[0] + grow * eg[0] + shrink * es[0] - self.drag,
+            compression_rate: (o.growth[0] + o.shrinkage[0]) / width,
+        }
+    }
+
+    /// Static force over deflection: through zero and the static point with the rig's slope there.
+    fn elastic(&self, d: f64) -> f64 {
+        let a = self.corner.axle;
+        let (f0, d0) = (a.static_load(), a.static_tire_def);
+        let exponent = a.k_tire * d0 / f0;
+        let growth = self.corner.laws.tire_increase.unwrap_or(0.0);
+        f0 * (d / d0).powf(exponent) + 0.5 * a.k_tire * growth / d0 * (d - d0).max(0.0).powi(2)
+    }
+}
+
+/// Accelerations sampled at [`RATE`], m/s².
+#[derive(Default)]
+pub struct Track {
+    pub wheel_z: Vec<f64>,
+    pub body_z: Vec<f64>,
+    pub sf_z: Vec<f64>,
+    pub pwt_z: Vec<f64>,
+    pub wheel_x: Vec<f64>,
+    pub body_x: Vec<f64>,
+    pub sf_x: Vec<f64>,
+    pub pwt_x: Vec<f64>,
+}
+
+/// Steps of integration a sample.
+const FINER: usize = 4;
+
+/// Drives a corner over a road for `seconds`.
+pub fn run(corner: &Corner, road: &Road, speed: f64, seconds: f64) -> Track {
+    let mut rolling = Rolling {
+        corner,
+        road,
+        speed,
+        drag: 0.0,
+    };
+    rolling.drag = rolling.push(0.5 / speed, &[0.0; STATES]).x;
+    let h = 1.0 / (RATE * FINER as f64);
+    let derivative = |t: f64, y: &State| corner.derivative(0.0, y, rolling.push(t, y), false);
+    let mut y = [0.0; STATES];
+    let mut track = Track::default();
+    let mut mean = Average::default();
+    for i in 0..(seconds * RATE) as usize * FINER {
+        let t = i as f64 * h;
+        mean.take(&derivative(t, &y)[COORDINATES..2 * COORDINATES]);
+        if i % FINER == FINER - 1 {
+            track.push(&mean.give());
+        }
+        y = step(t, &y, h, &derivative);
+    }
+    track
+}
+
+/// The logger's anti-alias filter: the mean over a sample.
+#[derive(Default)]
+struct Average {
+    sum: [f64; COORDINATES],
+}
+
+impl Average {
+    fn take(&mut self, a: &[f64]) {
+        for (sum, a) in self.sum.iter_mut().zip(a) {
+            *sum += a / FINER as f64;
+        }
+    }
+
+    fn give(&mut self) -> [f64; COORDINATES] {
+        std::mem::replace(&mut self.sum, [0.0; COORDINATES])
+    }
+}
+
+impl Track {
+    fn push(&mut self, a: &[f64; COORDINATES]) {
+        self.wheel_z.push(a[WHEEL]);
+        self.body_z.push(a[BODY]);
+        self.sf_z.push(a[SF]);
+        self.pwt_z.push(a[PWT]);
+        self.wheel_x.push(a[X_WHEEL]);
+        self.body_x.push(a[X_BODY]);
+        self.sf_x.push(a[X_SF]);
+        self.pwt_x.push(a[X_PWT]);
+    }
+}

@@ -1,0 +1,365 @@
+//! The equations of motion of one corner, in z and x, written out by hand.
+
+use crate::axle::{Axle, GRAVITY, Mount};
+use crate::hidden::Laws;
+
+/// Vertical coordinates, by their place.
+pub const WHEEL: usize = 0;
+/// Body above this axle.
+pub const BODY: usize = 1;
+/// Top mount.
+pub const TM: usize = 2;
+/// Sub-frame.
+pub const SF: usize = 3;
+/// Powertrain.
+pub const PWT: usize = 4;
+/// Belt of the tyre.
+pub const BELT: usize = 5;
+/// Pitch angle of the sub-frame.
+pub const PITCH: usize = 6;
+/// Body above the other axle.
+pub const OTHER: usize = 7;
+/// Fluid of the hydraulic mount, as travel of the mount.
+pub const FLUID: usize = 8;
+/// Resonator on the wheel.
+pub const RESONATOR: usize = 9;
+/// Longitudinal wheel, body, sub-frame, powertrain, other wheel.
+pub const X_WHEEL: usize = 10;
+/// See [`X_WHEEL`].
+pub const X_BODY: usize = 11;
+/// See [`X_WHEEL`].
+pub const X_SF: usize = 12;
+/// See [`X_WHEEL`].
+pub const X_PWT: usize = 13;
+/// See [`X_WHEEL`].
+pub const X_OTHER: usize = 14;
+/// How many coordinates.
+pub const COORDINATES: usize = 15;
+const FRICTION: usize = 2 * COORDINATES;
+const TM_BRANCH: usize = FRICTION + 1;
+const PWT_BRANCH: usize = FRICTION + 2;
+/// Force of the relaxing branch of the tyre, N, positive in compression.
+pub const TIRE_BRANCH: usize = FRICTION + 3;
+/// Length of the state: positions, velocities, inner forces.
+pub const STATES: usize = FRICTION + 4;
+
+/// Positions, velocities, inner forces.
+pub type State = [f64; STATES];
+
+/// A corner with what is hidden in it.
+pub struct Corner<'a> {
+    pub axle: &'a Axle,
+    pub laws: &'a Laws,
+}
+
+/// Forces on every coordinate, N.
+type Forces = [f64; COORDINATES];
+
+/// What acts from outside: forces on the tyre's ring along z and x, and how fast its deflection grows.
+#[derive(Clone, Copy, Default)]
+pub struct Push {
+    pub z: f64,
+    pub x: f64,
+    pub compression_rate: f64,
+}
+
+impl Corner<'_> {
+    /// Body mass of this corner, kg.
+    fn body(&self) -> f64 {
+        let a = self.axle;
+        let mut rest = a.m_wheel;
+        if a.layout.top_mount {
+            rest += a.m_tm;
+        }
+        if a.layout.subframe {
+            rest += a.m_sf;
+        }
+        if a.layout.powertrain != Mount::None {
+            rest += a.m_pwt;
+        }
+        a.m_corner - rest
+    }
+
+    /// Which coordinate touches the road.
+    pub fn ring(&self) -> usize {
+        if self.laws.belt.is_some() { BELT } else { WHEEL }
+    }
+
+    /// The derivative of the state at a time, given as a share of the run, under a push of the tyre.
+    pub fn derivative(&self, share: f64, y: &State, push: Push, gravity: bool) -> State {
+        let mut f = [0.0; COORDINATES];
+        let mut dy = [0.0; STATES];
+        dy[..COORDINATES].copy_from_slice(&y[COORDINATES..FRICTION]);
+        f[self.ring()] += push.z;
+        f[X_WHEEL] += push.x;
+        self.tire_inside(y, push, &mut f, &mut dy);
+        self.strut(share, y, &mut f, &mut dy);
+        self.mounts(y, &mut f, &mut dy);
+        self.longitudinal(y, &mut f);
+        self.accelerate(&f, gravity, &mut dy);
+        dy
+    }
+
+    /// Sidewall, resonator, and the state of the relaxing branch.
+    fn tire_inside(&self, y: &State, push: Push, f: &mut Forces, dy: &mut State) {
+        let v = &y[COORDINATES..];
+        if let Some(belt) = self.laws.belt {
+            let force = belt.k_sidewall * (y[WHEEL] - y[BELT]) + belt.c_sidewall * (v[WHEEL] - v[BELT]);
+            f[WHEEL] -= force;
+            f[BELT] += force;
+        }
+        if let Some(r) = self.laws.resonator {
+            let force = r.k_resonator * (y[RESONATOR] - y[WHEEL]) + r.c_resonator * (v[RESONATOR] - v[WHEEL]);
+            f[RESONATOR] -= force;
+            f[WHEEL] += force;
+        }
+        if let Some(t) = self.laws.tire_relaxation {
+            let k = (t.stiffness_ratio - 1.0) * self.axle.k_tire;
+            let rate = std::f64::consts::TAU * t.relaxation_frequency;
+            dy[TIRE_BRANCH] = k * push.compression_rate - rate * y[TIRE_BRANCH];
+        }
+    }
+
+    /// Static and dynamic force of the tyre for a compression from rest, N, positive on the ring.
+    pub fn tire_force(&self, y: &State, compression: f64, rate: f64) -> f64 {
+        let a = self.axle;
+        let growth = self.laws.tire_increase.unwrap_or(0.0) / (2.0 * a.static_tire_def);
+        a.k_tire * compression * (1.0 + growth * compression) + a.c_tire * rate + y[TIRE_BRANCH]
+    }
+
+    fn pivot(&self, y: &State) -> (f64, f64) {
+        if !self.axle.layout.subframe {
+            return (y[BODY], y[COORDINATES + BODY]);
+        }
+        let arm = self.laws.pitch.map_or(0.0, |p| p.arm_offset);
+        (
+            y[SF] + arm * y[PITCH],
+            y[COORDINATES + SF] + arm * y[COORDINATES + PITCH],
+        )
+    }
+
+    fn push_pivot(&self, f: &mut Forces, force: f64) {
+        if !self.axle.layout.subframe {
+            f[BODY] += force;
+            return;
+        }
+        f[SF] += force;
+        f[PITCH] += self.laws.pitch.map_or(0.0, |p| p.arm_offset) * force;
+    }
+
+    /// Spring, damper and top mount.
+    fn strut(&self, share: f64, y: &State, f: &mut Forces, dy: &mut State) {
+        let (a, v) = (self.axle, &y[COORDINATES..]);
+        let arms = a.layout.subframe;
+        let (mr_spring, mr_damper) = if arms { (a.mr_spring, a.mr_damper) } else { (1.0, 1.0) };
+        let (pivot, pivot_v) = self.pivot(y);
+        let top = if a.layout.top_mount { TM } else { BODY };
+
+        let s = (y[BODY] - pivot - mr_spring * (y[WHEEL] - pivot)) / mr_spring;
+        let force = self.spring(s) / mr_spring;
+        f[BODY] -= force;
+        f[WHEEL] += mr_spring * force;
+        self.push_pivot(f, (1.0 - mr_spring) * force);
+
+        let s = (y[top] - pivot - mr_damper * (y[WHEEL] - pivot)) / mr_damper;
+        let rate = (v[top] - pivot_v - mr_damper * (v[WHEEL] - pivot_v)) / mr_damper;
+        let force = self.damper(share, s, rate, y, dy) / mr_damper;
+        f[top] -= force;
+        f[WHEEL] += mr_damper * force;
+        self.push_pivot(f, (1.0 - mr_damper) * force);
+
+        if a.layout.top_mount {
+            let (s, rate) = (y[BODY] - y[TM], v[BODY] - v[TM]);
+            let mut force = a.k_tm * s + a.c_tm * rate + self.laws.cubic_top_mount.unwrap_or(0.0) * s.powi(3);
+            if let Some(branch) = self.laws.top_mount_relaxation {
+                force += y[TM_BRANCH];
+                let fade = std::f64::consts::TAU * branch.relaxation_frequency;
+                dy[TM_BRANCH] = branch.k_maxwell * rate - fade * y[TM_BRANCH];
+            }
+            f[BODY] -= force;
+            f[TM] += force;
+        }
+    }
+
+    /// Resisting force of the spring at the wheel, N, over its stretch in wheel travel.
+    pub fn spring(&self, s: f64) -> f64 {
+        let rise = self.laws.rate_increase_at_40mm.unwrap_or(0.0) / 3.0 * (s / 0.04).powi(2);
+        let stop = self.laws.bump_stop.map_or(0.0, |b| b.k_stop * (s + b.gap).min(0.0));
+        self.axle.k_wheel_z * s * (1.0 + rise) + stop
+    }
+
+    /// Resisting force of the damper at the wheel without its friction, N.
+    pub fn damper_law(&self, share: f64, s: f64, v: f64) -> f64 {
+        let l = self.laws;
+        let mut c = self.axle.c_wheel_z * (1.0 - l.fade.unwrap_or(0.0) * share);
+        if let Some(ratio) = l.rebound_over_compression {
+            c *= 2.0 / (1.0 + ratio) * if v > 0.0 { ratio } else { 1.0 };
+        }
+        if let Some(d) = l.digressive {
+            c = d.c0 / (1.0 + v.abs() / d.v0);
+        }
+        let engaged = l.free_play.is_none_or(|gap| s.abs() > gap / 2.0);
+        let quadratic = l.quadratic_damping.unwrap_or(0.0) * v * v.abs();
+        if engaged { c * v + quadratic } else { 0.0 }
+    }
+
+    fn damper(&self, share: f64, s: f64, v: f64, y: &State, dy: &mut State) -> f64 {
+        let mut force = self.damper_law(share, s, v);
+        if let Some(friction) = self.laws.friction {
+            force += y[FRICTION];
+            dy[FRICTION] = friction.k_presliding * (v - v.abs() * y[FRICTION] / friction.f_coulomb);
+        }
+        force
+    }
+
+    /// Sub-frame and powertrain.
+    fn mounts(&self, y: &State, f: &mut Forces, dy: &mut State) {
+        let (a, v) = (self.axle, &y[COORDINATES..]);
+        if a.layout.subframe {
+            let (h, front) = self.laws.pitch.map_or((0.0, 0.5), |p| (p.half_length, p.front_share));
+            for (arm, part) in [(h, front), (-h, 1.0 - front)] {
+                let s = y[BODY] - y[SF] - arm * y[PITCH];
+                let rate = v[BODY] - v[SF] - arm * v[PITCH];
+                let force = part * (a.k_sf_z * s + a.c_sf_z * rate);
+                f[BODY] -= force;
+                f[SF] += force;
+                f[PITCH] += arm * force;
+            }
+        }
+        if let Some(other) = self.laws.apparent {
+            f[OTHER] -= other.k_wheel_z_other * y[OTHER] + other.c_wheel_z_other * v[OTHER];
+        }
+        let carrier = match a.layout.powertrain {
+            Mount::None => return,
+            Mount::Body => BODY,
+            Mount::Subframe => SF,
+        };
+        let (s, rate) = (y[PWT] - y[carrier], v[PWT] - v[carrier]);
+        let mut force = a.k_pwt_z * s + a.c_pwt_z * rate;
+        if let Some(branch) = self.laws.powertrain_relaxation {
+            force += y[PWT_BRANCH];
+            let fade = std::f64::consts::TAU * branch.relaxation_frequency;
+            dy[PWT_BRANCH] = branch.k_maxwell * rate - fade * y[PWT_BRANCH];
+        }
+        if let Some(h) = self.laws.hydraulic {
+            let push = h.k_volume * (s - y[FLUID]);
+            force += push;
+            f[FLUID] += push - h.c_track * v[FLUID];
+        }
+        f[PWT] -= force;
+        f[carrier] += force;
+    }
+
+    /// The x chain: wheel, sub-frame, body, powertrain and the other axle's wheel.
+    fn longitudinal(&self, y: &State, f: &mut Forces) {
+        let (a, v) = (self.axle, &y[COORDINATES..]);
+        let mut join = |upper: usize, lower: usize, k: f64, c: f64, extra: &dyn Fn(f64) -> f64| {
+            let s = y[upper] - y[lower];
+            let force = k * s + c * (v[upper] - v[lower]) + extra(s);
+            f[upper] -= force;
+            f[lower] += force;
+        };
+        let none = |_: f64| 0.0;
+        let saturation = |s: f64| self.saturation(s);
+        let carrier = if a.layout.subframe { X_SF } else { X_BODY };
+        join(X_WHEEL, carrier, a.k_wheel_x, a.c_wheel_x, &saturation);
+        join(X_OTHER, X_BODY, a.k_wheel_x, a.c_wheel_x, &none);
+        if a.layout.subframe {
+            join(X_SF, X_BODY, a.k_sf_x, a.c_sf_x, &none);
+        }
+        match a.layout.powertrain {
+            Mount::None => {}
+            Mount::Body => join(X_PWT, X_BODY, a.k_pwt_x, a.c_pwt_x, &none),
+            Mount::Subframe => join(X_PWT, X_SF, a.k_pwt_x, a.c_pwt_x, &none),
+        }
+    }
+
+    /// What the longitudinal bushing adds beyond its linear travel, N.
+    pub fn saturation(&self, s: f64) -> f64 {
+        let Some(law) = self.laws.saturation else { return 0.0 };
+        let beyond = (s.abs() - law.linear_travel).max(0.0);
+        let curvature = self.axle.k_wheel_x * law.rate_increase_at_twice_travel / (2.0 * law.linear_travel);
+        s.signum() * curvature * beyond * beyond
+    }
+
+    fn accelerate(&self, f: &Forces, gravity: bool, dy: &mut State) {
+        let (a, l) = (self.axle, self.laws);
+        let g = if gravity { GRAVITY } else { 0.0 };
+        let acceleration = &mut dy[COORDINATES..FRICTION];
+        let mut falls = |i: usize, m: f64, there: bool| {
+            if there {
+                acceleration[i] = f[i] / m - g;
+            }
+        };
+        let powertrain = a.layout.powertrain != Mount::None;
+        falls(BODY, self.body(), true);
+        falls(TM, a.m_tm, a.layout.top_mount);
+        falls(SF, a.m_sf, a.layout.subframe);
+        falls(PWT, a.m_pwt, powertrain);
+        falls(BELT, l.belt.map_or(1.0, |b| b.m_belt), l.belt.is_some());
+        falls(
+            RESONATOR,
+            l.resonator.map_or(1.0, |r| r.m_resonator),
+            l.resonator.is_some(),
+        );
+        let gear = l.inertance.unwrap_or(0.0);
+        falls(WHEEL, a.m_wheel - l.belt.map_or(0.0, |b| b.m_belt), true);
+        if gear > 0.0 {
+            self.couple_by_inerter(gear, f, g, acceleration);
+        }
+        if let Some(apparent) = l.apparent {
+            self.couple_by_body(apparent, f, g, acceleration);
+        }
+        if let Some(pitch) = l.pitch {
+            acceleration[PITCH] = f[PITCH] / pitch.inertia;
+        }
+        if let Some(h) = l.hydraulic {
+            acceleration[FLUID] = f[FLUID] / h.inertance;
+        }
+        let m_sf = if a.layout.subframe { a.m_sf } else { 0.0 };
+        let m_pwt = if powertrain { a.m_pwt } else { 0.0 };
+        acceleration[X_WHEEL] = f[X_WHEEL] / a.m_wheel;
+        acceleration[X_BODY] = f[X_BODY] / (a.m_half_vehicle - a.m_wheel - m_sf - m_pwt - a.m_wheel_other_axle);
+        acceleration[X_OTHER] = f[X_OTHER] / a.m_wheel_other_axle;
+        if a.layout.subframe {
+            acceleration[X_SF] = f[X_SF] / a.m_sf;
+        }
+        if powertrain {
+            acceleration[X_PWT] = f[X_PWT] / a.m_pwt;
+        }
+    }
+
+    /// An inerter beside the damper couples the masses at its two ends (upright layouts only).
+    fn couple_by_inerter(&self, b: f64, f: &Forces, g: f64, acceleration: &mut [f64]) {
+        let a = self.axle;
+        let (top, m_top) = if a.layout.top_mount {
+            (TM, a.m_tm)
+        } else {
+            (BODY, self.body())
+        };
+        let (m1, m2) = (m_top + b, a.m_wheel + b);
+        let (f1, f2) = (f[top] - m_top * g, f[WHEEL] - a.m_wheel * g);
+        let det = m1 * m2 - b * b;
+        acceleration[top] = (m2 * f1 + b * f2) / det;
+        acceleration[WHEEL] = (b * f1 + m1 * f2) / det;
+    }
+
+    /// A rigid body over both axles: the mass matrix of its heights above them.
+    fn couple_by_body(&self, apparent: crate::hidden::Apparent, f: &Forces, g: f64, acceleration: &mut [f64]) {
+        let a = self.axle;
+        let here = self.body();
+        let there = a.m_half_vehicle - a.m_corner - a.m_wheel_other_axle;
+        let total = here + there;
+        // Distances of the centre of gravity as shares of the wheelbase, which cancels.
+        let (from_here, from_there) = (there / total, here / total);
+        let radius = apparent.dynamic_index * from_here * from_there;
+        let m11 = total * (from_there * from_there + radius);
+        let m22 = total * (from_here * from_here + radius);
+        let m12 = total * (from_here * from_there - radius);
+        let f1 = f[BODY] - here * g;
+        let f2 = f[OTHER] - there * g;
+        let det = m11 * m22 - m12 * m12;
+        acceleration[BODY] = (m22 * f1 - m12 * f2) / det;
+        acceleration[OTHER] = (m11 * f2 - m12 * f1) / det;
+    }
+}

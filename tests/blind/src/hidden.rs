@@ -1,0 +1,140 @@
+//! What a campaign hides: the effects of the catalogue and some outside of it, by name, with hand-written laws.
+
+/// An effect with its true parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hidden {
+    /// A name of the catalogue, or any other.
+    pub name: String,
+    /// Link, mass or sensor location.
+    pub at: String,
+    /// SI.
+    pub parameters: Vec<(String, f64)>,
+}
+
+impl Hidden {
+    /// Written short.
+    pub fn new(name: &str, at: &str, parameters: &[(&str, f64)]) -> Self {
+        let parameters = parameters
+            .iter()
+            .map(|&(name, value)| (name.to_owned(), value))
+            .collect();
+        Self {
+            name: name.to_owned(),
+            at: at.to_owned(),
+            parameters,
+        }
+    }
+
+    /// A parameter; the caller names one that the effect has.
+    pub fn get(&self, name: &str) -> f64 {
+        let found = self.parameters.iter().find(|(n, _)| n == name);
+        found
+            .unwrap_or_else(|| panic!("the effect {} has no parameter {name}", self.name))
+            .1
+    }
+}
+
+/// The hidden effects as the equations of motion need them: what is absent is `None`.
+#[derive(Clone, Debug, Default)]
+pub struct Laws {
+    pub friction: Option<Friction>,
+    pub rebound_over_compression: Option<f64>,
+    pub digressive: Option<Digressive>,
+    pub rate_increase_at_40mm: Option<f64>,
+    pub bump_stop: Option<BumpStop>,
+    pub top_mount_relaxation: Option<Relaxation>,
+    pub powertrain_relaxation: Option<Relaxation>,
+    pub hydraulic: Option<Hydraulic>,
+    pub pitch: Option<Pitch>,
+    pub apparent: Option<Apparent>,
+    pub tire_increase: Option<f64>,
+    pub tire_relaxation: Option<TireRelaxation>,
+    pub belt: Option<Belt>,
+    pub saturation: Option<Saturation>,
+    pub free_play: Option<f64>,
+    pub inertance: Option<f64>,
+    pub resonator: Option<Resonator>,
+    /// Outside the catalogue: the damper fades by this share from the start of a run to its end.
+    pub fade: Option<f64>,
+    /// Outside the catalogue: a damper force c₂ v|v| on top, N s²/m².
+    pub quadratic_damping: Option<f64>,
+    /// Outside the catalogue: the top mount stiffens with the square of its stretch, N/m³.
+    pub cubic_top_mount: Option<f64>,
+}
+
+macro_rules! law {
+    ($(#[$doc:meta])* $name:ident { $($field:ident),* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name { $(pub $field: f64),* }
+
+        impl $name {
+            fn from(hidden: &Hidden) -> Self {
+                Self { $($field: hidden.get(stringify!($field))),* }
+            }
+        }
+    };
+}
+
+law!(/// Dahl's dry friction.
+    Friction { f_coulomb, k_presliding });
+law!(/// `c0 v / (1 + |v|/v0)`
+    Digressive { c0, v0 });
+law!(/// A stop that acts below `-gap` of wheel travel.
+    BumpStop { gap, k_stop });
+law!(/// A Maxwell branch.
+    Relaxation { k_maxwell, relaxation_frequency });
+law!(/// A spring in series with the fluid of an inertia track.
+    Hydraulic { k_volume, inertance, c_track });
+law!(/// A sub-frame that pitches on its front and rear bushings.
+    Pitch { inertia, half_length, front_share, arm_offset });
+law!(/// The body's other end on the other axle. Its wheelbase cancels.
+    Apparent { dynamic_index, k_wheel_z_other, c_wheel_z_other });
+law!(/// A Maxwell branch in the tyre, by its ratio of fast to slow stiffness.
+    TireRelaxation { stiffness_ratio, relaxation_frequency });
+law!(/// A rigid ring between wheel and road.
+    Belt { m_belt, k_sidewall, c_sidewall });
+law!(/// A bushing that stiffens beyond its linear travel.
+    Saturation { linear_travel, rate_increase_at_twice_travel });
+law!(/// A mass on a spring and damper on the wheel.
+    Resonator { m_resonator, k_resonator, c_resonator });
+
+impl Laws {
+    /// The laws of a set of effects. Sensor effects are not laws; the rig applies them.
+    pub fn of(effects: &[Hidden]) -> Self {
+        let mut laws = Self::default();
+        for effect in effects {
+            laws.add(effect);
+        }
+        laws
+    }
+
+    fn add(&mut self, effect: &Hidden) {
+        match (effect.name.as_str(), effect.at.as_str()) {
+            ("coulomb_friction", _) => self.friction = Some(Friction::from(effect)),
+            ("asymmetric_damper", _) => self.rebound_over_compression = Some(effect.get("rebound_over_compression")),
+            ("digressive_damper", _) => self.digressive = Some(Digressive::from(effect)),
+            ("progressive_spring", _) => self.rate_increase_at_40mm = Some(effect.get("rate_increase_at_40mm")),
+            ("bump_stop", _) => self.bump_stop = Some(BumpStop::from(effect)),
+            ("bushing_relaxation", "top_mount") => self.top_mount_relaxation = Some(Relaxation::from(effect)),
+            ("bushing_relaxation", _) => self.powertrain_relaxation = Some(Relaxation::from(effect)),
+            ("hydraulic_mount", _) => self.hydraulic = Some(Hydraulic::from(effect)),
+            ("subframe_pitch", _) => self.pitch = Some(Pitch::from(effect)),
+            ("apparent_mass", _) => self.apparent = Some(Apparent::from(effect)),
+            ("tire_progressive_stiffness", _) => {
+                self.tire_increase = Some(effect.get("tangent_increase_at_twice_static"));
+            }
+            ("tire_dynamic_stiffness", _) => self.tire_relaxation = Some(TireRelaxation::from(effect)),
+            ("tire_belt", _) => self.belt = Some(Belt::from(effect)),
+            ("bushing_saturation", _) => self.saturation = Some(Saturation::from(effect)),
+            ("free_play", _) => self.free_play = Some(effect.get("gap")),
+            ("inerter", _) => self.inertance = Some(effect.get("inertance")),
+            ("secondary_resonator", _) => self.resonator = Some(Resonator::from(effect)),
+            ("damper_fade", _) => self.fade = Some(effect.get("share")),
+            ("quadratic_damping", _) => self.quadratic_damping = Some(effect.get("c2")),
+            ("cubic_top_mount", _) => self.cubic_top_mount = Some(effect.get("k3")),
+            // Parts that the layout already holds, and sensors.
+            _ => {}
+        }
+    }
+}
