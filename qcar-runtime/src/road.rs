@@ -1,1 +1,284 @@
-//! (to come)
+//! The road under a rolling tyre: a line of straight pieces and vertical steps that goes on flat beyond its ends.
+//!
+//! Curved profiles come as samples, dense enough for a chord to stand for the curve between two of them.
+//! Everything that a contact needs of the ground between two points is the difference of two prefix integrals,
+//! so a query costs the same for a plank as for a measured road of a million samples.
+
+mod bounds;
+mod integrals;
+// What a road is made from: samples, shapes, noise.
+mod iso8608;
+mod samples;
+mod shapes;
+
+pub(crate) use bounds::{Bounds, Circle};
+pub(crate) use integrals::{Integrals, Moments};
+pub use iso8608::{Class, Random};
+pub use shapes::Shape;
+
+/// Height of the ground over the distance along it, for ever flat beyond the first and the last point.
+#[derive(Clone, Debug)]
+pub struct Road {
+    vertices: Vec<[f64; 2]>,
+    segments: Vec<Segment>,
+    integrals: Integrals,
+    bounds: Bounds,
+    index: Index,
+}
+
+/// A straight piece of ground, `origin + s·along` for `start <= s <= end`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Segment {
+    pub origin: [f64; 2],
+    pub along: [f64; 2],
+    pub start: f64,
+    pub end: f64,
+}
+
+/// Why something is not a road that a tyre can roll over.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum RoadError {
+    #[error("a road needs at least two points, found {found}")]
+    TooFew { found: usize },
+    #[error("x, z and slope must be columns of one length, found {x}, {z} and {slope} values")]
+    Lengths { x: usize, z: usize, slope: usize },
+    #[error("{column} of sample {sample} is {value}; expected a finite number")]
+    NotFinite {
+        column: &'static str,
+        sample: usize,
+        value: f64,
+    },
+    #[error(
+        "x falls from {before} m to {x} m at sample {sample}; x must never decrease (two points at one x are a step)"
+    )]
+    NotMonotonic { sample: usize, before: f64, x: f64 },
+    #[error("all points of the road lie at x = {x} m; expected a road that goes on")]
+    NoLength { x: f64 },
+    #[error(
+        "slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}; slope is that of the segment to the right of its point, and a step stands alone"
+    )]
+    SlopeContradictsHeight { x: f64, slope: f64, rise: f64 },
+    #[error(
+        "the road is rougher than its sampling: leaving out a sample changes it by {share:.2} of its own standard deviation, expected at most {limit}; sample it finer"
+    )]
+    Rough { share: f64, limit: f64 },
+    #[error("the road ends at x = {end} m, but the run reaches x = {needed} m; lengthen the road or shorten the run")]
+    TooShort { end: f64, needed: f64 },
+    #[error("{name} must be {expected}, found {value}")]
+    Shape {
+        name: &'static str,
+        expected: &'static str,
+        value: f64,
+    },
+}
+
+impl Road {
+    /// A road through points `[x, z]` in m, taken as they are: two points at one x are a vertical step.
+    ///
+    /// # Errors
+    /// Fewer than two points, a number that is not finite, x that decreases.
+    pub fn from_points(points: &[[f64; 2]]) -> Result<Self, RoadError> {
+        samples::check_points(points)?;
+        Ok(Self::through(samples::simplify(points, samples::EXACT)))
+    }
+
+    /// A road through samples of x (m), height z (m) and slope of the segment to the right of each sample.
+    ///
+    /// Where the slope of a sample leads to the next one (within 0.1 of the slope of the chord) the road follows the
+    /// chord; where it does not, the road follows the slope and then steps vertically at the next sample. Samples on
+    /// one line within 1 µm, the resolution of such files, become one segment.
+    ///
+    /// # Errors
+    /// Columns of unlike length, too few samples, a number that is not finite, x that decreases, a slope that
+    /// contradicts the heights at two samples in succession, and a road rougher than its sampling: one that changes by
+    /// more than a quarter of its standard deviation (root mean square) when each sample is replaced by the line
+    /// through its neighbours. A sine has that share at about nine samples a wavelength.
+    pub fn from_samples(x: &[f64], z: &[f64], slope: &[f64]) -> Result<Self, RoadError> {
+        let points = samples::points(x, z, slope)?;
+        samples::check_roughness(&points)?;
+        Ok(Self::through(samples::simplify(&points, samples::RESOLUTION)))
+    }
+
+    /// A shape after `run_in` metres of flat road, which goes on flat behind it.
+    ///
+    /// # Errors
+    /// A dimension of the shape or a run-in that is not positive.
+    pub fn from_shape(shape: &Shape, run_in: f64) -> Result<Self, RoadError> {
+        Self::from_points(&shape.points(run_in)?)
+    }
+
+    /// A random road of ISO 8608.
+    ///
+    /// # Errors
+    /// A length or spacing that does not suit the standard's band of wavelengths.
+    pub fn from_random(random: &Random) -> Result<Self, RoadError> {
+        Self::from_points(&random.points()?)
+    }
+
+    /// A flat road at height `z` (m).
+    pub fn flat(z: f64) -> Self {
+        Self::through(vec![[0.0, z], [1.0, z]])
+    }
+
+    /// The same road seen by a wheel that rolls the other way: x becomes -x.
+    pub fn mirrored(&self) -> Self {
+        Self::through(self.vertices.iter().rev().map(|&[x, z]| [-x, z]).collect())
+    }
+
+    /// Points where the straight pieces meet, m.
+    pub fn vertices(&self) -> &[[f64; 2]] {
+        &self.vertices
+    }
+
+    /// Height in m at `x`; above a step that of its right side.
+    pub fn height(&self, x: f64) -> f64 {
+        let segment = self.segments[self.segment_at(x)];
+        segment.origin[1] + (x - segment.origin[0]) * segment.along[1] / segment.along[0]
+    }
+
+    /// Slope at `x`; at a vertex that of its right side.
+    pub fn slope(&self, x: f64) -> f64 {
+        let [dx, dz] = self.segments[self.segment_at(x)].along;
+        dz / dx
+    }
+
+    /// First and last x of the described road, m.
+    pub fn extent(&self) -> [f64; 2] {
+        [self.vertices[0][0], self.vertices[self.vertices.len() - 1][0]]
+    }
+
+    /// Where the road steps vertically, m; a solver starts a new step there.
+    pub fn steps(&self) -> impl Iterator<Item = f64> {
+        self.vertices.windows(2).filter(|w| w[0][0] == w[1][0]).map(|w| w[0][0])
+    }
+
+    /// Refuses a run that would leave the described road.
+    ///
+    /// # Errors
+    /// [`RoadError::TooShort`] where the road ends before `needed` (m).
+    pub fn check_reaches(&self, needed: f64) -> Result<(), RoadError> {
+        let end = self.extent()[1];
+        if needed <= end {
+            Ok(())
+        } else {
+            Err(RoadError::TooShort { end, needed })
+        }
+    }
+
+    /// The piece over which `x` lies; piece `k` lies between vertices `k - 1` and `k`.
+    pub(crate) fn segment_at(&self, x: f64) -> usize {
+        self.index.vertices_up_to(&self.vertices, x)
+    }
+
+    pub(crate) fn segment(&self, k: usize) -> &Segment {
+        &self.segments[k]
+    }
+
+    pub(crate) fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Integrals over the ground between two vertices.
+    pub(crate) fn between(&self, from: usize, to: usize, centre: [f64; 2]) -> Moments {
+        self.integrals.between(&self.vertices, from, to, centre)
+    }
+
+    fn through(vertices: Vec<[f64; 2]>) -> Self {
+        let segments = segments(&vertices);
+        let integrals = Integrals::new(&vertices);
+        let bounds = Bounds::new(&segments);
+        let index = Index::new(&vertices);
+        Self {
+            vertices,
+            segments,
+            integrals,
+            bounds,
+            index,
+        }
+    }
+}
+
+impl Segment {
+    /// The point at `s`.
+    pub fn at(&self, s: f64) -> [f64; 2] {
+        [self.origin[0] + s * self.along[0], self.origin[1] + s * self.along[1]]
+    }
+
+    fn between(from: [f64; 2], to: [f64; 2]) -> Self {
+        let [dx, dz] = [to[0] - from[0], to[1] - from[1]];
+        let length = dx.hypot(dz);
+        Self {
+            origin: from,
+            along: [dx / length, dz / length],
+            start: 0.0,
+            end: length,
+        }
+    }
+
+    fn flat(origin: [f64; 2], start: f64, end: f64) -> Self {
+        Self {
+            origin,
+            along: [1.0, 0.0],
+            start,
+            end,
+        }
+    }
+}
+
+fn segments(vertices: &[[f64; 2]]) -> Vec<Segment> {
+    let before = Segment::flat(vertices[0], f64::NEG_INFINITY, 0.0);
+    let after = Segment::flat(vertices[vertices.len() - 1], 0.0, f64::INFINITY);
+    let inner = vertices.windows(2).map(|w| Segment::between(w[0], w[1]));
+    std::iter::once(before)
+        .chain(inner)
+        .chain(std::iter::once(after))
+        .collect()
+}
+
+/// Cells of equal width that say how many vertices lie before them, so that a look-up walks over few.
+#[derive(Clone, Debug)]
+struct Index {
+    first: f64,
+    cells_per_metre: f64,
+    vertices_before: Vec<u32>,
+}
+
+impl Index {
+    const CELLS_PER_VERTEX: usize = 8;
+
+    fn new(vertices: &[[f64; 2]]) -> Self {
+        let cells = vertices.len() * Self::CELLS_PER_VERTEX;
+        let [first, last] = [vertices[0][0], vertices[vertices.len() - 1][0]];
+        let cells_per_metre = if last > first {
+            cells as f64 / (last - first)
+        } else {
+            0.0
+        };
+        let mut index = Self {
+            first,
+            cells_per_metre,
+            vertices_before: vec![0; cells],
+        };
+        for vertex in vertices {
+            let cell = index.cell(vertex[0]);
+            if cell + 1 < cells {
+                index.vertices_before[cell + 1] += 1;
+            }
+        }
+        for cell in 1..cells {
+            index.vertices_before[cell] += index.vertices_before[cell - 1];
+        }
+        index
+    }
+
+    fn cell(&self, x: f64) -> usize {
+        // The cast saturates: what lies before the road is in the first cell, what lies behind it in the last.
+        (((x - self.first) * self.cells_per_metre) as usize).min(self.vertices_before.len() - 1)
+    }
+
+    fn vertices_up_to(&self, vertices: &[[f64; 2]], x: f64) -> usize {
+        let before = self.vertices_before[self.cell(x)] as usize;
+        before + vertices[before..].iter().take_while(|vertex| vertex[0] <= x).count()
+    }
+}

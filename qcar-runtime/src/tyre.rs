@@ -1,1 +1,180 @@
-//! (to come)
+//! Contact geometry of a rolling tyre: what the road does to the circle of an unloaded tyre.
+//!
+//! The geometry answers with an equivalent deflection (that on a flat road with the same contact), with its rate split
+//! into growth and shrinkage, and with the directions in which each part pushes. How strongly it pushes is the law of
+//! a link in the model file, `f(s, v)` with the stretch `s` = -deflection; see [`Touch::force`].
+//!
+//! The ground under the circle is taken to stay below the wheel's centre; several separate patches are legal.
+//!
+//! # A law for the link (figures 3.8 and 3.9 of the thesis)
+//!
+//! With the static load `F0` at the static deflection `d0` and the stiffness `k` there, the parabola
+//! `F(d) = a d + b d²` with `a = 2 F0/d0 - k` and `b = (k - F0/d0)/d0` is smooth, passes through zero and the static
+//! point and has slope `k` there. It is progressive for `k >= F0/d0`, and falls nowhere for `k <= 2 F0/d0`.
+//! As a resisting force of the stretch: `a s - b s² + c v` for `s < 0`.
+
+mod circle;
+// Where the road is inside the circle.
+mod patches;
+// What the circle sweeps as it moves.
+mod sweep;
+// The three geometries.
+mod area;
+mod point;
+mod radial;
+// From geometry to force.
+mod force;
+
+pub use area::Overlap;
+pub use circle::{segment_area, segment_deflection};
+
+use crate::road::Road;
+
+/// A tyre's geometry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tyre {
+    radius: f64,
+    geometry: Geometry,
+    rates: Rates,
+    static_deflection: f64,
+}
+
+/// How the road is felt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Geometry {
+    /// By the height under the wheel's centre alone, vertically (thesis 3.3.2.1).
+    Point,
+    /// By the area that the circle has in common with the ground (thesis 3.3.2.2).
+    Area,
+    /// By springs along the radii (thesis 2.4.3.2).
+    Radial,
+}
+
+/// At which deflection the change of the contact is turned into the rate of the equivalent deflection.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rates {
+    /// At the static deflection, whatever the contact: the ratio is a constant (thesis 3.3.2.2).
+    AtStaticDeflection,
+    /// At the equivalent deflection of the moment: the rate is the derivative of that deflection.
+    AtDeflection,
+}
+
+/// The motion of a wheel's centre over the road, `[x, z]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wheel {
+    /// m.
+    pub position: [f64; 2],
+    /// m/s.
+    pub velocity: [f64; 2],
+}
+
+/// A contact between tyre and road; directions are unit vectors `[x, z]` from the contact to the wheel's centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// Deflection on a flat road that would give the same contact, m, positive.
+    pub deflection: f64,
+    /// From the centroid of the contact.
+    pub direction: [f64; 2],
+    /// The part in which the circle enters the ground.
+    pub growth: Change,
+    /// The part in which it leaves the ground.
+    pub shrinkage: Change,
+}
+
+/// A part of the change of a contact.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Change {
+    /// Rate of the equivalent deflection, m/s, never negative.
+    pub rate: f64,
+    /// From the centroid of this part; zero where there is no such part.
+    pub direction: [f64; 2],
+}
+
+/// Why numbers do not make a tyre.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum TyreError {
+    #[error("the tyre's radius is {radius} m; expected a positive number")]
+    Radius { radius: f64 },
+    #[error("the static deflection is {deflection} m; expected more than 0 and less than the radius, {radius} m")]
+    StaticDeflection { deflection: f64, radius: f64 },
+}
+
+impl Tyre {
+    /// A tyre of unloaded `radius` (m) that its static load deflects by `static_deflection` (m) on a flat road.
+    ///
+    /// # Errors
+    /// A radius that is not positive, a static deflection that is not between zero and the radius.
+    pub fn new(radius: f64, static_deflection: f64, geometry: Geometry, rates: Rates) -> Result<Self, TyreError> {
+        if !(radius.is_finite() && radius > 0.0) {
+            return Err(TyreError::Radius { radius });
+        }
+        if !(static_deflection > 0.0 && static_deflection < radius) {
+            return Err(TyreError::StaticDeflection {
+                deflection: static_deflection,
+                radius,
+            });
+        }
+        Ok(Self {
+            radius,
+            geometry,
+            rates,
+            static_deflection,
+        })
+    }
+
+    /// Unloaded radius, m.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The contact of a wheel with a road; none where the circle is clear of the ground.
+    ///
+    /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled
+    /// (except [`Geometry::Radial`], which looks at each piece of the road in the circle).
+    #[inline]
+    pub fn touch(&self, road: &Road, wheel: &Wheel) -> Option<Touch> {
+        match self.geometry {
+            Geometry::Area => area::touch(self, road, wheel),
+            Geometry::Point => point::touch(self, road, wheel),
+            Geometry::Radial => radial::touch(self, road, wheel),
+        }
+    }
+
+    /// The circle's overlap with the ground, in full.
+    pub fn overlap(&self, road: &Road, wheel: &Wheel) -> Overlap {
+        area::overlap(self.radius, road, wheel)
+    }
+
+    /// Area in m² that the circle has in common with a flat road at `deflection` (m), equation 3.4 of the thesis.
+    pub fn area(&self, deflection: f64) -> f64 {
+        self.radius * self.radius * segment_area(deflection / self.radius)
+    }
+
+    /// Deflection in m on a flat road at which the circle has `area` (m²) in common with it.
+    pub fn deflection(&self, area: f64) -> f64 {
+        self.radius * segment_deflection(area / (self.radius * self.radius))
+    }
+
+    /// The deflection at which rates are calibrated, given that of the moment.
+    fn rate_deflection(&self, deflection: f64) -> f64 {
+        match self.rates {
+            Rates::AtStaticDeflection => self.static_deflection,
+            Rates::AtDeflection => deflection,
+        }
+    }
+}
+
+fn norm(v: [f64; 2]) -> f64 {
+    (v[0] * v[0] + v[1] * v[1]).sqrt()
+}
+
+/// The unit vector against `v`; zero for zero.
+fn against(v: [f64; 2]) -> [f64; 2] {
+    let length = norm(v);
+    if length > 0.0 {
+        [-v[0] / length, -v[1] / length]
+    } else {
+        [0.0; 2]
+    }
+}

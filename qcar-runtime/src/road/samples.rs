@@ -1,0 +1,163 @@
+//! From samples to the vertices of a road: checks, steps, and one segment for many samples on a line.
+
+use super::RoadError;
+
+/// Points off a line by less than this (m) lie on it: rounding of the arithmetic.
+pub(super) const EXACT: f64 = 1e-12;
+/// The same for samples: the last digit that road files carry.
+pub(super) const RESOLUTION: f64 = 1e-6;
+/// By how much the slope of a sample may miss that of the chord to the next one.
+const SLOPE_TOLERANCE: f64 = 0.1;
+/// How far a road may change, as a share of its standard deviation, when a sample is left out.
+const ROUGHNESS_LIMIT: f64 = 0.25;
+
+/// The points of a road in samples, with a second point at the x of every vertical step.
+pub(super) fn points(x: &[f64], z: &[f64], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadError> {
+    if x.len() != z.len() || x.len() != slope.len() {
+        return Err(RoadError::Lengths {
+            x: x.len(),
+            z: z.len(),
+            slope: slope.len(),
+        });
+    }
+    let points: Vec<[f64; 2]> = x.iter().zip(z).map(|(&x, &z)| [x, z]).collect();
+    check_points(&points)?;
+    check_finite("slope", slope)?;
+    with_steps(&points, slope)
+}
+
+pub(super) fn check_points(points: &[[f64; 2]]) -> Result<(), RoadError> {
+    if points.len() < 2 {
+        return Err(RoadError::TooFew { found: points.len() });
+    }
+    for (axis, column) in ["x", "z"].into_iter().enumerate() {
+        check_finite(column, &points.iter().map(|p| p[axis]).collect::<Vec<_>>())?;
+    }
+    if let Some(i) = points.windows(2).position(|w| w[1][0] < w[0][0]) {
+        return Err(RoadError::NotMonotonic {
+            sample: i + 1,
+            before: points[i][0],
+            x: points[i + 1][0],
+        });
+    }
+    let [first, last] = [points[0][0], points[points.len() - 1][0]];
+    if first < last {
+        Ok(())
+    } else {
+        Err(RoadError::NoLength { x: first })
+    }
+}
+
+fn check_finite(column: &'static str, values: &[f64]) -> Result<(), RoadError> {
+    match values.iter().position(|v| !v.is_finite()) {
+        Some(sample) => Err(RoadError::NotFinite {
+            column,
+            sample,
+            value: values[sample],
+        }),
+        None => Ok(()),
+    }
+}
+
+/// Adds the foot of each step: where the slope leads past the next sample, the road follows it, then steps.
+fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadError> {
+    let mut out = vec![points[0]];
+    let mut after_step = false;
+    for (pair, &slope) in points.windows(2).zip(slope) {
+        let [dx, dz] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+        let step = (dz - slope * dx).abs() > SLOPE_TOLERANCE * dx && dx > 0.0;
+        if step && after_step {
+            return Err(RoadError::SlopeContradictsHeight {
+                x: pair[0][0],
+                slope,
+                rise: dz / dx,
+            });
+        }
+        if step {
+            out.push([pair[1][0], pair[0][1] + slope * dx]);
+        }
+        out.push(pair[1]);
+        after_step = step;
+    }
+    Ok(out)
+}
+
+/// Refuses samples that are too far apart for what lies between them.
+pub(super) fn check_roughness(points: &[[f64; 2]]) -> Result<(), RoadError> {
+    let count = points.len() as f64;
+    let mean = points.iter().map(|p| p[1]).sum::<f64>() / count;
+    let variance = points.iter().map(|p| (p[1] - mean).powi(2)).sum::<f64>() / count;
+    let change = points
+        .windows(3)
+        .map(change_without_the_middle)
+        .map(|c| c * c)
+        .sum::<f64>()
+        / count;
+    let share = (change / variance).sqrt();
+    if variance > RESOLUTION * RESOLUTION && share > ROUGHNESS_LIMIT {
+        return Err(RoadError::Rough {
+            share,
+            limit: ROUGHNESS_LIMIT,
+        });
+    }
+    Ok(())
+}
+
+/// How far a point lies above the line through its neighbours; nothing beside a step, which is meant.
+fn change_without_the_middle(w: &[[f64; 2]]) -> f64 {
+    if w[0][0] == w[1][0] || w[1][0] == w[2][0] {
+        return 0.0;
+    }
+    let share = (w[1][0] - w[0][0]) / (w[2][0] - w[0][0]);
+    w[1][1] - (w[0][1] + share * (w[2][1] - w[0][1]))
+}
+
+/// Leaves out points that lie on the line between those kept, within `tolerance` (m) in z.
+pub(super) fn simplify(points: &[[f64; 2]], tolerance: f64) -> Vec<[f64; 2]> {
+    let mut points = points.to_vec();
+    points.dedup();
+    let mut kept = vec![points[0]];
+    let mut funnel = Funnel::open(points[0]);
+    for pair in points.windows(2) {
+        if !funnel.holds(pair[1]) {
+            kept.push(pair[0]);
+            funnel = Funnel::open(pair[0]);
+        }
+        funnel.narrow(pair[1], tolerance);
+    }
+    kept.push(points[points.len() - 1]);
+    kept
+}
+
+/// The slopes of the lines from a kept point that pass within the tolerance of all points since.
+struct Funnel {
+    from: [f64; 2],
+    lowest: f64,
+    highest: f64,
+}
+
+impl Funnel {
+    fn open(from: [f64; 2]) -> Self {
+        Self {
+            from,
+            lowest: f64::NEG_INFINITY,
+            highest: f64::INFINITY,
+        }
+    }
+
+    fn holds(&self, to: [f64; 2]) -> bool {
+        let slope = (to[1] - self.from[1]) / (to[0] - self.from[0]);
+        self.lowest <= slope && slope <= self.highest
+    }
+
+    fn narrow(&mut self, to: [f64; 2], tolerance: f64) {
+        let (width, rise) = (to[0] - self.from[0], to[1] - self.from[1]);
+        // Nothing continues a step.
+        if width == 0.0 {
+            (self.lowest, self.highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        } else {
+            self.lowest = self.lowest.max((rise - tolerance) / width);
+            self.highest = self.highest.min((rise + tolerance) / width);
+        }
+    }
+}

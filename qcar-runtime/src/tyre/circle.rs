@@ -1,0 +1,133 @@
+//! The circular segment: closed forms that stay accurate for the flattest of them.
+
+/// Terms of the power series below; the first one left out is below the last digit where they are used.
+const TERMS: usize = 14;
+/// Largest squared half chord, in radii, for the series of [`segment_ratio`].
+const SHORT_CHORD: f64 = 0.1;
+/// Largest parabolic deflection, in radii, for the series of [`segment_deflection`].
+const SMALL_DEFLECTION: f64 = 0.15;
+
+const SEGMENT_SERIES: [f64; TERMS] = segment_series();
+const DEFLECTION_SERIES: [f64; TERMS] = deflection_series();
+
+/// Area between an arc and its chord over the cube of the half chord `y`, on the unit circle, from `y²`:
+/// `(asin y - y sqrt(1 - y²))/y³`, which is 2/3 for the shortest chords.
+#[inline]
+pub(super) fn segment_ratio(y2: f64) -> f64 {
+    if y2 < SHORT_CHORD {
+        return polynomial(&SEGMENT_SERIES, y2);
+    }
+    let y = y2.min(1.0).sqrt();
+    (y.asin() - y * (1.0 - y2).max(0.0).sqrt()) / (y * y2)
+}
+
+/// Area that the unit circle has in common with a flat road at `deflection` (0 to 2): equation 3.4 of the thesis.
+pub fn segment_area(deflection: f64) -> f64 {
+    let deflection = deflection.clamp(0.0, 2.0);
+    let y2 = deflection * (2.0 - deflection);
+    if deflection < 1.0 && y2 < SHORT_CHORD {
+        return y2 * y2.sqrt() * polynomial(&SEGMENT_SERIES, y2);
+    }
+    (1.0 - deflection).acos() - (1.0 - deflection) * y2.sqrt()
+}
+
+/// The inverse of [`segment_area`]: a power series in `area^(2/3)`, polished by Newton's method where that is slow.
+#[inline]
+pub fn segment_deflection(area: f64) -> f64 {
+    // Deflection of the parabola that osculates the circle: area = 4/3 sqrt(2 d³).
+    let parabolic = (area * area * (9.0 / 32.0)).cbrt();
+    let start = parabolic * polynomial(&DEFLECTION_SERIES, parabolic);
+    if parabolic < SMALL_DEFLECTION {
+        start
+    } else {
+        polish(area, start.min(2.0))
+    }
+}
+
+/// Newton's method keeps to (0, 2), where the area grows with the deflection by the length of the chord.
+fn polish(area: f64, start: f64) -> f64 {
+    const STEPS: usize = 60;
+    let area = area.min(std::f64::consts::PI);
+    let (mut low, mut high, mut deflection) = (0.0_f64, 2.0_f64, start);
+    for _ in 0..STEPS {
+        let excess = segment_area(deflection) - area;
+        if excess > 0.0 {
+            high = deflection
+        } else {
+            low = deflection
+        }
+        let newton = deflection - excess / flat_chord(deflection);
+        let next = if newton > low && newton < high {
+            newton
+        } else {
+            (low + high) / 2.0
+        };
+        if (next - deflection).abs() <= f64::EPSILON * deflection {
+            return next;
+        }
+        deflection = next;
+    }
+    deflection
+}
+
+/// Length of the unit circle's chord in a flat road at `deflection`: the derivative of [`segment_area`].
+pub(super) fn flat_chord(deflection: f64) -> f64 {
+    2.0 * (deflection * (2.0 - deflection)).max(0.0).sqrt()
+}
+
+#[inline]
+fn polynomial(coefficients: &[f64; TERMS], x: f64) -> f64 {
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+}
+
+/// The derivative of `asin y - y sqrt(1 - y²)` is `2 y²/sqrt(1 - y²)`; its binomial series, integrated.
+const fn segment_series() -> [f64; TERMS] {
+    let mut series = [0.0; TERMS];
+    let mut binomial = 1.0;
+    let mut k = 0;
+    while k < TERMS {
+        let twice = 2.0 * k as f64;
+        series[k] = 2.0 * binomial / (twice + 3.0);
+        binomial *= (twice + 1.0) / (twice + 2.0);
+        k += 1;
+    }
+    series
+}
+
+/// With the parabolic deflection `q` and `d = q u(q)`, the chord's length as derivative of the area reads
+/// `(2 u - q u²) (u + q u')² = 2`; comparing powers of `q` gives one coefficient of `u` after the other.
+const fn deflection_series() -> [f64; TERMS] {
+    let mut u = [0.0; TERMS];
+    u[0] = 1.0;
+    let mut n = 1;
+    while n < TERMS {
+        // The coefficient sought enters that of qⁿ with the factor 2 + 4 (n + 1).
+        u[n] = -power_of_chord_equation(&u, n) / (2.0 + 4.0 * (n as f64 + 1.0));
+        n += 1;
+    }
+    u
+}
+
+/// The coefficient of `qⁿ` in `(2 u - q u²) (u + q u')²`.
+const fn power_of_chord_equation(u: &[f64; TERMS], n: usize) -> f64 {
+    let mut sum = 0.0;
+    let mut i = 0;
+    while i <= n {
+        let square = if i > 0 { square(u, i - 1, false) } else { 0.0 };
+        sum += (2.0 * u[i] - square) * self::square(u, n - i, true);
+        i += 1;
+    }
+    sum
+}
+
+/// The coefficient of `qⁿ` in `u²`, or in the square of the derivative of `q u`.
+const fn square(u: &[f64; TERMS], n: usize, of_derivative: bool) -> f64 {
+    let mut sum = 0.0;
+    let mut i = 0;
+    while i <= n {
+        let weight = if of_derivative { (i + 1) * (n - i + 1) } else { 1 };
+        sum += u[i] * u[n - i] * weight as f64;
+        i += 1;
+    }
+    sum
+}
