@@ -1,1 +1,156 @@
-//! (to come)
+//! Spectra of uniformly sampled signals: of a whole record, and averaged over its segments (Welch).
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Complex, DMatrix};
+use realfft::RealFftPlanner;
+
+/// Weights of the samples of a segment.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Window {
+    /// All one: for whole periods of a periodic signal.
+    Rectangular,
+    /// The raised cosine, which keeps strong lines from leaking into weak ones.
+    Hann,
+}
+
+impl Window {
+    /// The weights of `n` samples.
+    pub fn weights(self, n: usize) -> Vec<f64> {
+        let hann = |k: usize| 0.5 - 0.5 * (TAU * k as f64 / n as f64).cos();
+        match self {
+            Window::Rectangular => vec![1.0; n],
+            Window::Hann => (0..n).map(hann).collect(),
+        }
+    }
+}
+
+/// What is taken off each segment before it is weighted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Trend {
+    /// Nothing.
+    Kept,
+    /// The mean: a sensor's offset.
+    Constant,
+    /// The straight line of least squares: a sensor's drift.
+    Linear,
+}
+
+impl Trend {
+    /// Takes the trend off `samples`.
+    pub fn remove(self, samples: &mut [f64]) {
+        let n = samples.len() as f64;
+        let mean = samples.iter().sum::<f64>() / n;
+        let middle = (n - 1.0) / 2.0;
+        let slope = match self {
+            Trend::Linear if samples.len() > 1 => {
+                let moment: f64 = samples.iter().enumerate().map(|(k, y)| (k as f64 - middle) * y).sum();
+                moment / (n * (n * n - 1.0) / 12.0)
+            }
+            _ => 0.0,
+        };
+        if self != Trend::Kept {
+            samples
+                .iter_mut()
+                .enumerate()
+                .for_each(|(k, y)| *y -= mean + slope * (k as f64 - middle));
+        }
+    }
+}
+
+/// The discrete Fourier transform of a whole record: lines 0 to n/2, `rate / n` apart, each `Σ x_k exp(-iωt_k)`.
+pub fn transform(samples: &[f64]) -> Vec<Complex<f64>> {
+    let plan = RealFftPlanner::new().plan_fft_forward(samples.len());
+    let (mut input, mut lines) = (samples.to_vec(), plan.make_output_vec());
+    plan.process(&mut input, &mut lines)
+        .expect("the plan was made for these lengths");
+    lines
+}
+
+/// How a record is cut into segments.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Segments {
+    /// Samples of each.
+    pub length: usize,
+    /// Samples that one shares with the next, fewer than its length.
+    pub overlap: usize,
+    /// Weights.
+    pub window: Window,
+    /// What is taken off each.
+    pub trend: Trend,
+}
+
+/// Two-sided auto- and cross-spectral densities of several signals, averaged over segments.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CrossSpectra {
+    /// Hz.
+    pub frequency: Vec<f64>,
+    /// For each frequency the Hermitian matrix `E[X_i conj(X_j)]`, squared unit per Hz.
+    pub density: Vec<DMatrix<Complex<f64>>>,
+    /// Number of independent segments with the same variance as the overlapping ones that were averaged.
+    pub averages: f64,
+}
+
+/// Averages the spectra of segments (P. D. Welch, IEEE Trans. Audio Electroacoust. 15, 1967).
+///
+/// `signals` are of one length, which must hold at least one segment; `rate` in Hz.
+pub fn welch(signals: &[&[f64]], rate: f64, segments: &Segments) -> CrossSpectra {
+    let Segments {
+        length,
+        overlap,
+        window,
+        trend,
+    } = *segments;
+    let (step, weights) = (length - overlap, window.weights(length));
+    let starts: Vec<usize> = (0..)
+        .map(|k| k * step)
+        .take_while(|start| start + length <= signals[0].len())
+        .collect();
+    let scale = 1.0 / (rate * weights.iter().map(|w| w * w).sum::<f64>() * starts.len() as f64);
+    let zero = DMatrix::zeros(signals.len(), signals.len());
+    let mut density = vec![zero; length / 2 + 1];
+    for start in &starts {
+        let spectra: Vec<_> = signals
+            .iter()
+            .map(|signal| weighted(&signal[*start..start + length], &weights, trend))
+            .collect();
+        for (line, density) in density.iter_mut().enumerate() {
+            let add = |i: usize, j: usize| spectra[i][line] * spectra[j][line].conj() * scale;
+            *density += DMatrix::from_fn(signals.len(), signals.len(), add);
+        }
+    }
+    let frequency = (0..density.len())
+        .map(|line| line as f64 * rate / length as f64)
+        .collect();
+    CrossSpectra {
+        frequency,
+        density,
+        averages: independent(starts.len(), step, &weights),
+    }
+}
+
+fn weighted(segment: &[f64], weights: &[f64], trend: Trend) -> Vec<Complex<f64>> {
+    let mut segment = segment.to_vec();
+    trend.remove(&mut segment);
+    segment
+        .iter_mut()
+        .zip(weights)
+        .for_each(|(sample, weight)| *sample *= weight);
+    transform(&segment)
+}
+
+/// How many independent segments the overlapping ones are worth: Welch's equation for white noise.
+fn independent(count: usize, step: usize, weights: &[f64]) -> f64 {
+    let correlation = |shift: usize| weights.iter().zip(&weights[shift..]).map(|(a, b)| a * b).sum::<f64>();
+    let overlapping = |k: usize| {
+        if k * step < weights.len() {
+            (correlation(k * step) / correlation(0)).powi(2)
+        } else {
+            0.0
+        }
+    };
+    let excess: f64 = (1..count)
+        .map(|k| (1.0 - k as f64 / count as f64) * overlapping(k))
+        .sum();
+    count as f64 / (1.0 + 2.0 * excess)
+}

@@ -225,10 +225,10 @@ impl Side {
 }
 
 impl Axis {
-    pub(super) const NAMES: &[(&str, Axis)] = &[("z", Axis::Z), ("x", Axis::X)];
+    pub(super) const NAMES: &[(&str, Axis)] = &[(Axis::Z.name(), Axis::Z), (Axis::X.name(), Axis::X)];
 
     /// As models and campaigns write it.
-    pub fn name(self) -> &'static str {
+    pub const fn name(self) -> &'static str {
         match self {
             Axis::Z => "z",
             Axis::X => "x",
@@ -238,11 +238,21 @@ impl Axis {
 
 impl Quantity {
     pub(super) const NAMES: &[(&str, Quantity)] = &[
-        ("acceleration", Quantity::Acceleration),
-        ("velocity", Quantity::Velocity),
-        ("displacement", Quantity::Displacement),
-        ("force", Quantity::Force),
+        (Quantity::Acceleration.name(), Quantity::Acceleration),
+        (Quantity::Velocity.name(), Quantity::Velocity),
+        (Quantity::Displacement.name(), Quantity::Displacement),
+        (Quantity::Force.name(), Quantity::Force),
     ];
+
+    /// As campaigns write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Quantity::Acceleration => "acceleration",
+            Quantity::Velocity => "velocity",
+            Quantity::Displacement => "displacement",
+            Quantity::Force => "force",
+        }
+    }
 
     /// Its SI unit.
     pub fn unit(self) -> &'static str {

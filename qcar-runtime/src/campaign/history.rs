@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::contents::{Campaign, Channel, Run};
+use super::contents::{Campaign, Channel, Run, Test};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 
@@ -11,6 +11,8 @@ use crate::error::{InputError, Place, Problem};
 pub struct History {
     /// Where it was read, to be named in errors.
     pub file: PathBuf,
+    /// The test that it recorded.
+    pub test: Test,
     /// Time of the first sample, s.
     pub start: f64,
     /// Hz.
@@ -75,6 +77,7 @@ impl Campaign {
         }
         Ok(History {
             file,
+            test: run.test.clone(),
             start: time[0],
             sample_rate,
             signals,

@@ -1,0 +1,167 @@
+//! At which frequencies a run can be asked, and whether it can answer.
+
+use std::f64::consts::TAU;
+
+use super::{Estimator, Options, Point};
+use crate::campaign::{History, Quantity, Spacing, Sweep, Test};
+use crate::error::{InputError, Place, Problem};
+use crate::spectrum::transform;
+
+/// Frequencies unless others are asked for.
+const COUNT: usize = 300;
+/// A time history is asked where it holds at least this share of its strongest power.
+const EXCITED: f64 = 1e-3;
+/// A sweep is there where it holds at least this share of its typical power; the edge of a cut leaks less.
+const SWEPT: f64 = 0.05;
+/// Cycles of the lowest frequency in the record, at least.
+const CYCLES: f64 = 5.0;
+
+/// `count` frequencies from `first` to `last`, Hz, evenly spaced on a logarithmic scale.
+pub fn logarithmic(first: f64, last: f64, count: usize) -> Vec<f64> {
+    let growth = (last / first).ln() / (count.max(2) - 1) as f64;
+    let mut frequencies: Vec<f64> = (0..count).map(|k| first * (growth * k as f64).exp()).collect();
+    if let Some(end) = frequencies.last_mut().filter(|_| count > 1) {
+        *end = last;
+    }
+    frequencies
+}
+
+/// The frequencies to estimate at, once the record is known to hold them.
+pub(super) fn frequencies(
+    history: &History,
+    reference: &Point,
+    signal: &[f64],
+    options: &Options,
+) -> Result<Vec<f64>, InputError> {
+    let bands = bands(signal, history, reference.quantity);
+    if bands.iter().all(|band| band.1 <= 0.0) {
+        let remedy = "choose another reference, or export the record again";
+        let place = Place::Name(reference.to_string());
+        return Err(Problem::new(&history.file, place, "a signal that is zero", "an excitation", remedy).into());
+    }
+    if let Test::Sweep(sweep) = &history.test {
+        reaches_its_ends(history, reference, sweep, &bands)?;
+    }
+    let frequencies = options.frequencies.clone().unwrap_or_else(|| match &history.test {
+        Test::Sweep(sweep) => logarithmic(sweep.start_frequency, sweep.end_frequency, COUNT),
+        _ => {
+            let strongest = bands.iter().map(|band| band.1).fold(0.0, f64::max);
+            let excited = excited(&bands, EXCITED * strongest);
+            logarithmic(excited.0, excited.1, COUNT)
+        }
+    });
+    long_enough(history, &frequencies, &options.estimator)?;
+    Ok(frequencies)
+}
+
+/// Centre (Hz) and mean power of logarithmic bands, in units in which a sweep holds the same power in all of them:
+/// the power of a velocity, over the time that the sweep spends there.
+fn bands(signal: &[f64], history: &History, quantity: Quantity) -> Vec<(f64, f64)> {
+    const WIDTH: f64 = 1.05;
+    let power: Vec<f64> = transform(signal).iter().map(|line| line.norm_sqr()).collect();
+    let (rate, spacing) = (history.sample_rate, history.sample_rate / signal.len() as f64);
+    let lowest = CYCLES * spacing;
+    let edges = std::iter::successors(Some(lowest), |f| Some(f * WIDTH)).take_while(|f| f * WIDTH < rate / 2.0);
+    let band = |first: f64| {
+        let lines = (first / spacing) as usize..((first * WIDTH / spacing) as usize + 1).min(power.len());
+        let mean = power[lines.clone()].iter().sum::<f64>() / lines.len().max(1) as f64;
+        let centre = first * WIDTH.sqrt();
+        (centre, mean * evened(centre, &history.test, quantity))
+    };
+    edges.map(band).collect()
+}
+
+fn evened(f: f64, test: &Test, quantity: Quantity) -> f64 {
+    let as_velocity = match quantity {
+        Quantity::Acceleration => (TAU * f).powi(-2),
+        Quantity::Displacement => (TAU * f).powi(2),
+        Quantity::Velocity | Quantity::Force => 1.0,
+    };
+    match test {
+        Test::Sweep(Sweep {
+            spacing: Spacing::Logarithmic,
+            ..
+        }) => as_velocity * f,
+        Test::Sweep(_) => as_velocity,
+        _ => 1.0,
+    }
+}
+
+/// Lowest and highest frequency that holds at least `floor`.
+fn excited(bands: &[(f64, f64)], floor: f64) -> (f64, f64) {
+    let mut held = bands.iter().filter(|band| band.1 >= floor).map(|band| band.0);
+    let first = held.next().unwrap_or(f64::INFINITY);
+    (first, held.last().unwrap_or(first))
+}
+
+/// The median over the bands that a sweep should hold.
+fn typical(sweep: &Sweep, bands: &[(f64, f64)]) -> f64 {
+    let swept = |f: f64| (sweep.start_frequency..=sweep.end_frequency).contains(&f);
+    let mut powers: Vec<f64> = bands.iter().filter(|band| swept(band.0)).map(|band| band.1).collect();
+    powers.sort_by(f64::total_cmp);
+    powers.get(powers.len() / 2).copied().unwrap_or(0.0)
+}
+
+/// A sweep that was cut holds no power beyond its cut.
+fn reaches_its_ends(
+    history: &History,
+    reference: &Point,
+    sweep: &Sweep,
+    bands: &[(f64, f64)],
+) -> Result<(), InputError> {
+    /// The ends are faded in and out: how far inside them power is asked for.
+    const INSIDE: f64 = 1.15;
+    let (first, last) = excited(bands, SWEPT * typical(sweep, bands));
+    let place = || Place::Name(reference.to_string());
+    let wrong = |found: String, expected: String| {
+        let remedy = "export the whole sweep, or correct its frequencies in campaign.toml";
+        Err(Problem::new(&history.file, place(), found, expected, remedy).into())
+    };
+    if last * INSIDE < sweep.end_frequency {
+        let expected = format!("a sweep to `end_frequency = {}`", sweep.end_frequency);
+        return wrong(format!("an excitation that ends at {last:.1} Hz"), expected);
+    }
+    if first > sweep.start_frequency * INSIDE {
+        let expected = format!("a sweep from `start_frequency = {}`", sweep.start_frequency);
+        return wrong(format!("an excitation that starts at {first:.2} Hz"), expected);
+    }
+    Ok(())
+}
+
+fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) -> Result<(), InputError> {
+    let wrong = |found: String, expected: String, remedy: &str| {
+        Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
+    };
+    let (Some(&first), Some(&last)) = (frequencies.first(), frequencies.last()) else {
+        return wrong(
+            "no frequency".into(),
+            "at least one".into(),
+            "name the frequencies to estimate at",
+        );
+    };
+    let (samples, rate) = (history.len() as f64, history.sample_rate);
+    let seconds = match estimator {
+        Estimator::Local { .. } => CYCLES / first,
+        Estimator::Welch(segments) => segments.length as f64 / rate,
+    };
+    if samples / rate < seconds {
+        let expected = format!("at least {seconds:.1} s for {first} Hz");
+        return wrong(
+            format!("a record of {:.1} s", samples / rate),
+            expected,
+            "record longer, or ask from a higher frequency",
+        );
+    }
+    if first <= 0.0 || last >= rate / 2.0 || frequencies.windows(2).any(|pair| pair[1] <= pair[0]) {
+        let expected = format!(
+            "increasing ones above 0 and below {} Hz, half the sample rate",
+            rate / 2.0
+        );
+        return wrong(
+            format!("frequencies from {first} to {last} Hz"),
+            expected,
+            "ask for others",
+        );
+    }
+    Ok(())
+}
