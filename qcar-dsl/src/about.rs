@@ -70,6 +70,23 @@ pub struct State {
     pub name: String,
     /// Unit.
     pub unit: Unit,
+    /// The mass or node that moves, or the link of an inner state.
+    pub location: String,
+    /// `z`, `x`.
+    pub axis: String,
+    /// What it is.
+    pub kind: StateKind,
+}
+
+/// What a state is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum StateKind {
+    /// The position of a mass or node.
+    Position,
+    /// The velocity of a mass.
+    Velocity,
+    /// An inner state of a link's law.
+    Inner,
 }
 
 /// An entry of `u`.
@@ -81,6 +98,8 @@ pub struct Input {
     pub name: String,
     /// Unit.
     pub unit: Unit,
+    /// `z`, `x`.
+    pub axis: String,
     /// What it is.
     pub kind: InputKind,
 }

@@ -1,1 +1,37 @@
-//! (to come)
+//! The whole compiler in one function.
+
+use crate::check::Checked;
+use crate::describe::describe;
+use crate::schedule::{Compiled, schedule};
+use crate::{linear, motion, response};
+
+/// Derives a model's equations, its matrices and its responses, and schedules them.
+pub fn derive(model: Checked) -> Compiled {
+    let mut graph = model.graph.clone();
+    let motion = motion::derive(&model, &mut graph);
+    let rolling = motion::rolling_tyre(&model).map(|tyre| (motion::derive_rolling(&model, &mut graph, &tyre), tyre));
+    let linear = linear::linearise(&model, &motion, &mut graph);
+    let responses = if linear.linear {
+        response::responses(&model, &mut graph)
+    } else {
+        Vec::new()
+    };
+    let programs = schedule(&mut graph, &motion, rolling.as_ref(), &linear, &responses);
+    let tyre = rolling.as_ref().map(|(_, tyre)| tyre);
+    let about = describe(
+        &model,
+        &motion,
+        tyre,
+        &linear,
+        &responses,
+        programs.prepare.outputs.len(),
+    );
+    Compiled {
+        model,
+        graph,
+        motion,
+        linear,
+        about,
+        programs,
+    }
+}

@@ -3,7 +3,13 @@
 //! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
 //! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.
 
+mod calculus;
+mod rewrite;
+
 use std::collections::HashMap;
+
+pub use calculus::Differential;
+pub use rewrite::{Leaves, Substitution};
 
 /// A mass, node, road or prescribed motion of the model: an index into `Model::coordinates`.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -47,6 +53,7 @@ pub enum Symbol {
 #[expect(missing_docs, reason = "each is the mathematical function of its name")]
 pub enum Function {
     Abs,
+    /// -1, 0 or 1: at rest there is no direction.
     Sign,
     Sqrt,
     Exp,
@@ -168,6 +175,10 @@ impl Graph {
             _ if self.is(b, 0.0) => a,
             _ if self.is(a, 0.0) => self.neg(b),
             (_, Node::Neg(c)) => self.add(a, c),
+            (Node::Neg(c), _) => {
+                let sum = self.add(c, b);
+                self.neg(sum)
+            }
             _ => self.intern(Node::Sub(a, b)),
         }
     }
@@ -190,6 +201,12 @@ impl Graph {
                 let product = self.mul(a, y);
                 self.neg(product)
             }
+            (Node::Constant(x), Node::Mul(y, z)) if self.as_constant(y).is_some() => {
+                let factor = self.constant(f64::from_bits(x) * self.as_constant(y).unwrap_or(1.0));
+                self.mul(factor, z)
+            }
+            (Node::Div(one, x), _) if self.is(one, 1.0) => self.div(b, x),
+            (_, Node::Div(one, y)) if self.is(one, 1.0) => self.div(a, y),
             _ if a == b => self.powi(a, 2),
             _ => self.intern(Node::Mul(a.min(b), a.max(b))),
         }
@@ -212,6 +229,12 @@ impl Graph {
             (_, Node::Neg(y)) => {
                 let quotient = self.div(a, y);
                 self.neg(quotient)
+            }
+            (Node::Mul(x, y), _) if y == b => x,
+            (Node::Mul(x, y), _) if x == b => y,
+            (_, Node::Div(x, y)) => {
+                let product = self.mul(a, y);
+                self.div(product, x)
             }
             _ => self.intern(Node::Div(a, b)),
         }
@@ -239,24 +262,37 @@ impl Graph {
 
     /// The smaller of two.
     pub fn min(&mut self, a: Expr, b: Expr) -> Expr {
-        if a == b { a } else { self.intern(Node::Min(a, b)) }
+        match (self.as_constant(a), self.as_constant(b)) {
+            (Some(x), Some(y)) => self.constant(x.min(y)),
+            _ if a == b => a,
+            _ => self.intern(Node::Min(a, b)),
+        }
     }
 
     /// The larger of two.
     pub fn max(&mut self, a: Expr, b: Expr) -> Expr {
-        if a == b { a } else { self.intern(Node::Max(a, b)) }
+        match (self.as_constant(a), self.as_constant(b)) {
+            (Some(x), Some(y)) => self.constant(x.max(y)),
+            _ if a == b => a,
+            _ => self.intern(Node::Max(a, b)),
+        }
     }
 
     /// `f(a)`
     pub fn call(&mut self, f: Function, a: Expr) -> Expr {
-        self.intern(Node::Call(f, a))
+        match self.as_constant(a) {
+            Some(x) => self.constant(f.value(x)),
+            None => self.intern(Node::Call(f, a)),
+        }
     }
 
     /// `positive` where `test` is above zero, else `otherwise`.
     pub fn select(&mut self, test: Expr, positive: Expr, otherwise: Expr) -> Expr {
-        if positive == otherwise {
-            return positive;
+        match self.as_constant(test) {
+            Some(x) if x > 0.0 => positive,
+            Some(_) => otherwise,
+            None if positive == otherwise => positive,
+            None => self.intern(Node::Select(test, positive, otherwise)),
         }
-        self.intern(Node::Select(test, positive, otherwise))
     }
 }

@@ -22,12 +22,20 @@ pub mod resolve;
 pub mod check;
 // All that follows is total. What is at which place of the vectors.
 pub mod about;
+// Sparse symmetric systems solved symbolically.
+pub mod elimination;
+// The force of a link in its own terms.
+pub mod law;
 // Graph to equations.
 pub mod motion;
 // Equations to matrices and their parameter Jacobians.
 pub mod linear;
 // Frequency response by sparse elimination.
+pub mod complex;
 pub mod response;
+pub mod stiffness;
+// Names for what stands at each place.
+pub mod describe;
 // Expressions to straight-line programs.
 pub mod program;
 pub mod schedule;

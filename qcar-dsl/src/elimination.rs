@@ -1,0 +1,221 @@
+//! Sparse symmetric systems solved symbolically: L D Lᵀ at compile time, over real or complex expressions.
+//!
+//! The unknown with the fewest neighbours goes first, so that chains and trees of masses eliminate without fill.
+//! Zeros are structural: what is not there costs nothing.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::expr::{Expr, Graph};
+
+/// A number that is an expression.
+pub trait Scalar: Copy {
+    /// 0
+    fn zero(g: &mut Graph) -> Self;
+    /// 1
+    fn one(g: &mut Graph) -> Self;
+    /// True for a structural zero.
+    fn is_zero(self, g: &Graph) -> bool;
+    /// `self + other`
+    fn add(self, g: &mut Graph, other: Self) -> Self;
+    /// `self - other`
+    fn sub(self, g: &mut Graph, other: Self) -> Self;
+    /// `self other`
+    fn mul(self, g: &mut Graph, other: Self) -> Self;
+    /// `self / other`
+    fn div(self, g: &mut Graph, other: Self) -> Self;
+}
+
+impl Scalar for Expr {
+    fn zero(g: &mut Graph) -> Self {
+        g.constant(0.0)
+    }
+
+    fn one(g: &mut Graph) -> Self {
+        g.constant(1.0)
+    }
+
+    fn is_zero(self, g: &Graph) -> bool {
+        g.as_constant(self) == Some(0.0)
+    }
+
+    fn add(self, g: &mut Graph, other: Self) -> Self {
+        g.add(self, other)
+    }
+
+    fn sub(self, g: &mut Graph, other: Self) -> Self {
+        g.sub(self, other)
+    }
+
+    fn mul(self, g: &mut Graph, other: Self) -> Self {
+        g.mul(self, other)
+    }
+
+    fn div(self, g: &mut Graph, other: Self) -> Self {
+        g.div(self, other)
+    }
+}
+
+/// A symmetric matrix by its structural nonzeros.
+#[derive(Clone, Debug)]
+pub struct Symmetric<S> {
+    size: usize,
+    entries: BTreeMap<(usize, usize), S>,
+}
+
+impl<S: Scalar> Symmetric<S> {
+    /// All zero.
+    pub fn new(size: usize) -> Self {
+        Symmetric {
+            size,
+            entries: BTreeMap::new(),
+        }
+    }
+
+    /// Adds to an entry and to its mirror image.
+    pub fn add(&mut self, g: &mut Graph, i: usize, j: usize, value: S) {
+        let place = (i.min(j), i.max(j));
+        let sum = match self.entries.remove(&place) {
+            Some(before) => before.add(g, value),
+            None => value,
+        };
+        if !sum.is_zero(g) {
+            self.entries.insert(place, sum);
+        }
+    }
+
+    /// An entry, unless it is zero.
+    pub fn get(&self, i: usize, j: usize) -> Option<S> {
+        self.entries.get(&(i.min(j), i.max(j))).copied()
+    }
+
+    /// The nonzeros on and above the diagonal: row, column, value.
+    pub fn iter(&self) -> impl Iterator<Item = (usize, usize, S)> {
+        self.entries.iter().map(|(&(i, j), &value)| (i, j, value))
+    }
+
+    /// The rows and columns of some unknowns, in their order.
+    pub fn restricted(&self, unknowns: &[usize]) -> Self {
+        let place = |i| unknowns.iter().position(|&unknown| unknown == i);
+        let kept = self
+            .iter()
+            .filter_map(|(i, j, value)| Some((place(i)?, place(j)?, value)));
+        let entries = kept.map(|(i, j, value)| ((i.min(j), i.max(j)), value)).collect();
+        Symmetric {
+            size: unknowns.len(),
+            entries,
+        }
+    }
+}
+
+impl Symmetric<Expr> {
+    /// Adds `factor h hᵀ` for a vector with few nonzeros.
+    pub fn add_outer(&mut self, g: &mut Graph, h: &[(usize, Expr)], factor: Expr) {
+        for (i, j, product) in outer(g, h) {
+            let entry = g.mul(product, factor);
+            self.add(g, i, j, entry);
+        }
+    }
+}
+
+/// `h hᵀ` on and above the diagonal, of a vector with few nonzeros: row, column, product.
+pub fn outer(g: &mut Graph, h: &[(usize, Expr)]) -> Vec<(usize, usize, Expr)> {
+    let pairs = h
+        .iter()
+        .enumerate()
+        .flat_map(|(n, &left)| h[n..].iter().map(move |&right| (left, right)));
+    pairs
+        .map(|((i, left), (j, right))| (i, j, g.mul(left, right)))
+        .collect()
+}
+
+/// The factors of a symmetric matrix.
+#[derive(Clone, Debug)]
+pub struct Factors<S> {
+    /// In the order of elimination.
+    steps: Vec<Step<S>>,
+}
+
+/// One unknown eliminated: its pivot, and its column of L.
+#[derive(Clone, Debug)]
+struct Step<S> {
+    unknown: usize,
+    pivot: S,
+    column: Vec<(usize, S)>,
+}
+
+impl<S: Scalar> Factors<S> {
+    /// Factors a matrix.
+    pub fn of(g: &mut Graph, mut matrix: Symmetric<S>) -> Self {
+        let mut left: BTreeSet<usize> = (0..matrix.size).collect();
+        let mut steps = Vec::with_capacity(matrix.size);
+        while let Some(&unknown) = left.iter().min_by_key(|&&k| neighbours(&matrix, &left, k).len()) {
+            left.remove(&unknown);
+            let row = neighbours(&matrix, &left, unknown);
+            let pivot = matrix.get(unknown, unknown).unwrap_or_else(|| S::zero(g));
+            let column: Vec<(usize, S)> = row.iter().map(|&(i, a)| (i, a.div(g, pivot))).collect();
+            for (n, &(i, l)) in column.iter().enumerate() {
+                for &(j, a) in &row[n..] {
+                    let product = l.mul(g, a);
+                    let less = S::zero(g).sub(g, product);
+                    matrix.add(g, i, j, less);
+                }
+            }
+            steps.push(Step { unknown, pivot, column });
+        }
+        Factors { steps }
+    }
+
+    /// The solution for a right-hand side.
+    pub fn solve(&self, g: &mut Graph, mut b: Vec<S>) -> Vec<S> {
+        for step in &self.steps {
+            for &(i, l) in &step.column {
+                let product = l.mul(g, b[step.unknown]);
+                b[i] = b[i].sub(g, product);
+            }
+        }
+        for step in self.steps.iter().rev() {
+            let start = b[step.unknown].div(g, step.pivot);
+            b[step.unknown] = step.eliminated(g, start, |i| b[i]);
+        }
+        b
+    }
+
+    /// The inverse, row by row from the last pivot up (Takahashi, Fagan and Chen, 1973): symmetric entries are one
+    /// expression.
+    pub fn inverse(&self, g: &mut Graph) -> Vec<Vec<S>> {
+        let zero = S::zero(g);
+        let mut inverse: Vec<Vec<S>> = vec![vec![zero; self.steps.len()]; self.steps.len()];
+        let mut done: Vec<usize> = Vec::with_capacity(self.steps.len());
+        for step in self.steps.iter().rev() {
+            let k = step.unknown;
+            for &j in &done {
+                let entry = step.eliminated(g, zero, |i| inverse[i][j]);
+                inverse[k][j] = entry;
+                inverse[j][k] = entry;
+            }
+            let one = S::one(g);
+            let start = one.div(g, step.pivot);
+            inverse[k][k] = step.eliminated(g, start, |i| inverse[i][k]);
+            done.push(k);
+        }
+        inverse
+    }
+}
+
+impl<S: Scalar> Step<S> {
+    /// `start - Σ l_i x_i` over the column.
+    fn eliminated(&self, g: &mut Graph, start: S, x: impl Fn(usize) -> S) -> S {
+        self.column.iter().fold(start, |sum, &(i, l)| {
+            let product = l.mul(g, x(i));
+            sum.sub(g, product)
+        })
+    }
+}
+
+/// The other unknowns of a row that are still there, with their entries.
+fn neighbours<S: Scalar>(matrix: &Symmetric<S>, left: &BTreeSet<usize>, k: usize) -> Vec<(usize, S)> {
+    left.iter()
+        .filter(|&&i| i != k)
+        .filter_map(|&i| Some((i, matrix.get(i, k)?)))
+        .collect()
+}

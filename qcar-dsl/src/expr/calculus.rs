@@ -1,0 +1,159 @@
+//! What an expression is worth, and how it changes: value and derivative of every operation.
+
+use std::collections::HashMap;
+
+use super::{Expr, Function, Graph, Leaves, Node, Symbol};
+
+/// The derivative of `y = f(x)` by `x`, as an expression in both.
+type Slope = fn(&mut Graph, Expr, Expr) -> Expr;
+
+/// The law of a function: its value and its slope.
+#[rustfmt::skip]
+fn law(f: Function) -> (fn(f64) -> f64, Slope) {
+    match f {
+        Function::Abs  => (f64::abs,  |g, x, _| g.call(Function::Sign, x)),
+        Function::Sign => (sign,      |g, _, _| g.constant(0.0)),
+        Function::Sqrt => (f64::sqrt, |g, _, y| { let half = g.constant(0.5); g.div(half, y) }),
+        Function::Exp  => (f64::exp,  |_, _, y| y),
+        Function::Ln   => (f64::ln,   |g, x, _| { let one = g.constant(1.0); g.div(one, x) }),
+        Function::Sin  => (f64::sin,  |g, x, _| g.call(Function::Cos, x)),
+        Function::Cos  => (f64::cos,  |g, x, _| { let sine = g.call(Function::Sin, x); g.neg(sine) }),
+        Function::Tan  => (f64::tan,  |g, _, y| { let one = g.constant(1.0); let square = g.powi(y, 2); g.add(one, square) }),
+        Function::Atan => (f64::atan, |g, x, _| { let one = g.constant(1.0); let square = g.powi(x, 2); let d = g.add(one, square); g.div(one, d) }),
+        Function::Tanh => (f64::tanh, |g, _, y| { let one = g.constant(1.0); let square = g.powi(y, 2); g.sub(one, square) }),
+    }
+}
+
+/// The direction of a number: unlike `f64::signum`, zero has none.
+fn sign(x: f64) -> f64 {
+    if x > 0.0 {
+        1.0
+    } else if x < 0.0 {
+        -1.0
+    } else {
+        x
+    }
+}
+
+impl Function {
+    /// The value at `x`.
+    pub fn value(self, x: f64) -> f64 {
+        law(self).0(x)
+    }
+}
+
+/// The derivative of expressions whose leaves have given derivatives: by a variable, by time, along a direction.
+#[derive(Clone, Debug)]
+pub struct Differential {
+    leaves: Leaves,
+    known: HashMap<Expr, Expr>,
+}
+
+impl Differential {
+    /// Of leaves with these derivatives; those of all others are zero.
+    pub fn new(leaves: Leaves) -> Self {
+        Differential {
+            leaves,
+            known: HashMap::new(),
+        }
+    }
+
+    /// By one leaf.
+    pub fn by(graph: &mut Graph, leaf: Symbol) -> Self {
+        Self::new(Leaves::from([(leaf, graph.constant(1.0))]))
+    }
+
+    /// Gives a leaf its derivative. No expression that holds the leaf may have been differentiated before.
+    pub fn set(&mut self, leaf: Symbol, derivative: Expr) {
+        self.leaves.insert(leaf, derivative);
+    }
+
+    /// The derivative of a leaf, if it has one.
+    pub fn leaf(&self, leaf: Symbol) -> Option<Expr> {
+        self.leaves.get(&leaf).copied()
+    }
+
+    /// The derivative of an expression.
+    pub fn of(&mut self, g: &mut Graph, e: Expr) -> Expr {
+        if let Some(&known) = self.known.get(&e) {
+            return known;
+        }
+        let derivative = self.rule(g, e);
+        self.known.insert(e, derivative);
+        derivative
+    }
+
+    /// The rule of each operation; `e` is its value, so that quotients and functions share it.
+    fn rule(&mut self, g: &mut Graph, e: Expr) -> Expr {
+        match g.node(e) {
+            Node::Constant(_) => g.constant(0.0),
+            Node::Symbol(leaf) => self.leaf(leaf).unwrap_or_else(|| g.constant(0.0)),
+            Node::Neg(a) => {
+                let da = self.of(g, a);
+                g.neg(da)
+            }
+            Node::Add(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                g.add(da, db)
+            }
+            Node::Sub(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                g.sub(da, db)
+            }
+            Node::Mul(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                let (left, right) = (g.mul(da, b), g.mul(a, db));
+                g.add(left, right)
+            }
+            Node::Div(a, b) => self.quotient(g, e, a, b),
+            Node::Powi(a, n) => {
+                let da = self.of(g, a);
+                let (factor, power) = (g.constant(f64::from(n)), g.powi(a, n - 1));
+                let slope = g.mul(factor, power);
+                g.mul(slope, da)
+            }
+            Node::Pow(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                let logarithm = g.call(Function::Ln, a);
+                let (growth, relative) = (g.mul(db, logarithm), g.div(da, a));
+                let scaled = g.mul(b, relative);
+                let sum = g.add(growth, scaled);
+                g.mul(e, sum)
+            }
+            Node::Min(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                let test = g.sub(b, a);
+                g.select(test, da, db)
+            }
+            Node::Max(a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                let test = g.sub(a, b);
+                g.select(test, da, db)
+            }
+            Node::Call(f, a) => {
+                let da = self.of(g, a);
+                let slope = law(f).1(g, a, e);
+                g.mul(slope, da)
+            }
+            Node::Select(test, a, b) => {
+                let (da, db) = (self.of(g, a), self.of(g, b));
+                g.select(test, da, db)
+            }
+        }
+    }
+
+    /// `(da - (a/b) db) / b`: the quotient itself is shared, and so is its divisor.
+    fn quotient(&mut self, g: &mut Graph, e: Expr, a: Expr, b: Expr) -> Expr {
+        let da = self.of(g, a);
+        if let (Node::Powi(base, n), Some(0.0)) = (g.node(b), g.as_constant(da)) {
+            let (rate, order) = (self.of(g, base), g.constant(-f64::from(n)));
+            let relative = g.div(e, base);
+            let change = g.mul(relative, rate);
+            return g.mul(order, change);
+        }
+        let db = self.of(g, b);
+        let carried = g.mul(e, db);
+        let change = g.sub(da, carried);
+        g.div(change, b)
+    }
+}

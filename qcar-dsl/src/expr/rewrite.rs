@@ -1,0 +1,144 @@
+//! Expressions walked: what they depend on, what they become with other leaves, what they are worth.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use super::{Expr, Graph, Node, Symbol};
+
+/// Something for each of several leaves.
+pub type Leaves = BTreeMap<Symbol, Expr>;
+
+impl Node {
+    /// The arguments, in order.
+    pub fn arguments(self) -> impl Iterator<Item = Expr> {
+        let three = match self {
+            Node::Constant(_) | Node::Symbol(_) => [None; 3],
+            Node::Neg(a) | Node::Powi(a, _) | Node::Call(_, a) => [Some(a), None, None],
+            Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) | Node::Div(a, b) => [Some(a), Some(b), None],
+            Node::Pow(a, b) | Node::Min(a, b) | Node::Max(a, b) => [Some(a), Some(b), None],
+            Node::Select(test, a, b) => [Some(test), Some(a), Some(b)],
+        };
+        three.into_iter().flatten()
+    }
+}
+
+impl Graph {
+    /// The expression of a node whose arguments exist, with the identities applied.
+    pub fn rebuild(&mut self, node: Node) -> Expr {
+        match node {
+            Node::Constant(bits) => self.constant(f64::from_bits(bits)),
+            Node::Symbol(leaf) => self.symbol(leaf),
+            Node::Neg(a) => self.neg(a),
+            Node::Add(a, b) => self.add(a, b),
+            Node::Sub(a, b) => self.sub(a, b),
+            Node::Mul(a, b) => self.mul(a, b),
+            Node::Div(a, b) => self.div(a, b),
+            Node::Powi(a, n) => self.powi(a, n),
+            Node::Pow(a, b) => self.pow(a, b),
+            Node::Min(a, b) => self.min(a, b),
+            Node::Max(a, b) => self.max(a, b),
+            Node::Call(f, a) => self.call(f, a),
+            Node::Select(test, a, b) => self.select(test, a, b),
+        }
+    }
+
+    /// The leaves that expressions depend on.
+    pub fn symbols(&self, roots: impl IntoIterator<Item = Expr>) -> BTreeSet<Symbol> {
+        let mut seen = HashSet::new();
+        let mut found = BTreeSet::new();
+        let mut waiting: Vec<Expr> = roots.into_iter().collect();
+        while let Some(e) = waiting.pop() {
+            if !seen.insert(e) {
+                continue;
+            }
+            if let Node::Symbol(leaf) = self.node(e) {
+                found.insert(leaf);
+            }
+            waiting.extend(self.node(e).arguments());
+        }
+        found
+    }
+
+    /// What an expression is worth when its leaves are.
+    pub fn evaluate(&self, e: Expr, leaf: &impl Fn(Symbol) -> f64) -> f64 {
+        let value = |a| self.evaluate(a, leaf);
+        match self.node(e) {
+            Node::Constant(bits) => f64::from_bits(bits),
+            Node::Symbol(symbol) => leaf(symbol),
+            Node::Neg(a) => -value(a),
+            Node::Add(a, b) => value(a) + value(b),
+            Node::Sub(a, b) => value(a) - value(b),
+            Node::Mul(a, b) => value(a) * value(b),
+            Node::Div(a, b) => value(a) / value(b),
+            Node::Powi(a, n) => value(a).powi(n),
+            Node::Pow(a, b) => value(a).powf(value(b)),
+            Node::Min(a, b) => value(a).min(value(b)),
+            Node::Max(a, b) => value(a).max(value(b)),
+            Node::Call(f, a) => f.value(value(a)),
+            Node::Select(test, a, b) => value(if value(test) > 0.0 { a } else { b }),
+        }
+    }
+}
+
+/// Leaves replaced by expressions, once: what comes in for a leaf is left as it is.
+#[derive(Clone, Debug)]
+pub struct Substitution {
+    leaves: Leaves,
+    known: HashMap<Expr, Expr>,
+}
+
+impl Substitution {
+    /// Of these leaves.
+    pub fn new(leaves: Leaves) -> Self {
+        Substitution {
+            leaves,
+            known: HashMap::new(),
+        }
+    }
+
+    /// Definitions, each in terms of earlier ones, so that what comes in for a leaf is free of all of them.
+    pub fn of_definitions(graph: &mut Graph, definitions: &[(Symbol, Expr)]) -> Self {
+        let mut substitution = Self::new(Leaves::new());
+        for &(leaf, definition) in definitions {
+            let value = substitution.apply(graph, definition);
+            substitution.leaves.insert(leaf, value);
+        }
+        substitution
+    }
+
+    /// The expression with its leaves replaced.
+    pub fn apply(&mut self, graph: &mut Graph, e: Expr) -> Expr {
+        if let Some(&known) = self.known.get(&e) {
+            return known;
+        }
+        let node = graph.node(e);
+        let result = match node {
+            Node::Symbol(leaf) => self.leaves.get(&leaf).copied().unwrap_or(e),
+            _ => {
+                let node = node.map(|a| self.apply(graph, a));
+                graph.rebuild(node)
+            }
+        };
+        self.known.insert(e, result);
+        result
+    }
+}
+
+impl Node {
+    /// The same operation with other arguments.
+    pub fn map(self, mut f: impl FnMut(Expr) -> Expr) -> Node {
+        match self {
+            Node::Constant(_) | Node::Symbol(_) => self,
+            Node::Neg(a) => Node::Neg(f(a)),
+            Node::Add(a, b) => Node::Add(f(a), f(b)),
+            Node::Sub(a, b) => Node::Sub(f(a), f(b)),
+            Node::Mul(a, b) => Node::Mul(f(a), f(b)),
+            Node::Div(a, b) => Node::Div(f(a), f(b)),
+            Node::Powi(a, n) => Node::Powi(f(a), n),
+            Node::Pow(a, b) => Node::Pow(f(a), f(b)),
+            Node::Min(a, b) => Node::Min(f(a), f(b)),
+            Node::Max(a, b) => Node::Max(f(a), f(b)),
+            Node::Call(function, a) => Node::Call(function, f(a)),
+            Node::Select(test, a, b) => Node::Select(f(test), f(a), f(b)),
+        }
+    }
+}
