@@ -91,7 +91,7 @@ fn evened(f: f64, test: &Test, quantity: Quantity) -> f64 {
 fn excited(bands: &[(f64, f64)], floor: f64) -> (f64, f64) {
     let mut held = bands.iter().filter(|band| band.1 >= floor).map(|band| band.0);
     let first = held.next().unwrap_or(f64::INFINITY);
-    (first, held.last().unwrap_or(first))
+    (first, held.next_back().unwrap_or(first))
 }
 
 /// The median over the bands that a sweep should hold.
