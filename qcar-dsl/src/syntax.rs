@@ -1,1 +1,435 @@
-//! (to come)
+//! The syntax tree: what a model file says, statement by statement.
+//!
+//! Every part is public and may be built or changed by a program: a patch adds statements to a body or terms to a link.
+//! A made-up part has the default [`Span`]. Two trees are equal when they say the same, wherever it stands.
+
+use crate::source::Span;
+
+/// A name, or a word that chooses something.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Name {
+    /// As written.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+}
+
+impl Name {
+    /// A name that stands in no file.
+    pub fn new(text: impl Into<String>) -> Name {
+        Name {
+            text: text.into(),
+            span: Span::default(),
+        }
+    }
+}
+
+/// A model file.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct File {
+    /// In the order of the text.
+    pub items: Vec<Item>,
+}
+
+/// What stands at the outermost level of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Item {
+    /// A model, or a family of models.
+    Axle(Axle),
+    /// A reusable law.
+    Element(Element),
+}
+
+/// A model, or a family of models.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axle {
+    /// `axle`, `family`, or an axle chosen from a family.
+    pub kind: AxleKind,
+    /// The name.
+    pub name: Name,
+    /// The sentence; may be empty.
+    pub doc: String,
+    /// In the order of the text.
+    pub body: Vec<Statement>,
+}
+
+/// How a model comes about.
+#[derive(Clone, Debug, PartialEq)]
+pub enum AxleKind {
+    /// `axle NAME { … }`
+    Plain,
+    /// `family NAME { … }`
+    Family,
+    /// `axle NAME from "path" { … }`: the family's statements with options chosen, then its own.
+    From(Path),
+}
+
+/// The path of a file, as written.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    /// Relative to the file that says it.
+    pub text: String,
+    /// Where.
+    pub span: Span,
+}
+
+/// `element NAME(argument: unit, …) { … }`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// The name.
+    pub name: Name,
+    /// The arguments with their units.
+    pub arguments: Vec<(Name, UnitText)>,
+    /// The sentence; may be empty.
+    pub doc: String,
+    /// The law.
+    pub body: Vec<LawStatement>,
+}
+
+/// A statement of a family, an axle or a direction.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Statement {
+    /// `option NAME: value | value = default "sentence";`
+    Option(Choice),
+    /// `require condition "sentence";`
+    Require(Requirement),
+    /// `option = value;` of an axle that is chosen from a family.
+    Choose(Name, Name),
+    /// `param NAME: unit = default in low..high "sentence";`
+    Parameter(Parameter),
+    /// `let NAME = expression "sentence";`
+    Let(Let),
+    /// `if condition { … } else { … }`
+    If(If<Statement>),
+    /// `direction NAME { … }`
+    Direction(Direction),
+    /// A mass, inertia, node, road or motion.
+    Coordinate(Coordinate),
+    /// `gravity NAME;`
+    Gravity(Name),
+    /// `force NAME on point;`
+    Force(Name, Dotted),
+    /// `point NAME = point;`
+    Point(Name, Dotted),
+    /// `link NAME: stretch { … }`
+    Link(Link),
+    /// `output point.acceleration;` or `output NAME = point.acceleration;`
+    Output(Option<Name>, Dotted),
+    /// `channel NAME = signal / signal;`
+    Channel(Name, Dotted, Dotted),
+}
+
+/// An option of a family.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Choice {
+    /// The name.
+    pub name: Name,
+    /// What it may be.
+    pub values: Vec<Name>,
+    /// What it is unless chosen; without one, every axle chooses.
+    pub default: Option<Name>,
+    /// The sentence; may be empty.
+    pub doc: String,
+}
+
+/// What options must fulfil together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Requirement {
+    /// Where the word `require` stands.
+    pub span: Span,
+    /// Must hold.
+    pub condition: Logic<OptionTest>,
+    /// Says why.
+    pub message: String,
+}
+
+/// A condition over tests of one kind.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Logic<Test> {
+    /// One test.
+    Test(Test),
+    /// `!a`
+    Not(Box<Logic<Test>>),
+    /// `a && b`
+    And(Box<Logic<Test>>, Box<Logic<Test>>),
+    /// `a || b`
+    Or(Box<Logic<Test>>, Box<Logic<Test>>),
+}
+
+/// `option == value` or `option != value`
+#[derive(Clone, Debug, PartialEq)]
+pub struct OptionTest {
+    /// On the left.
+    pub option: Name,
+    /// `==`, not `!=`.
+    pub equal: bool,
+    /// On the right.
+    pub value: Name,
+}
+
+/// `if … { … } else if … { … } else { … }` around statements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct If<Part> {
+    /// Conditions with what holds under them; the first that is true is taken.
+    pub branches: Vec<(Logic<OptionTest>, Vec<Part>)>,
+    /// Taken where no condition is true.
+    pub otherwise: Vec<Part>,
+}
+
+/// A parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// `known param`
+    pub known: bool,
+    /// The name.
+    pub name: Name,
+    /// The declared unit.
+    pub unit: UnitText,
+    /// What it is unless given.
+    pub default: Option<ParameterDefault>,
+    /// Lower and upper bound.
+    pub range: Option<(Number, Number)>,
+    /// The sentence; may be empty.
+    pub doc: String,
+}
+
+/// What a parameter is unless given.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ParameterDefault {
+    /// A value.
+    Number(Number),
+    /// The value of another parameter.
+    Same(Name),
+}
+
+/// A number as written, with its unit where it has one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Number {
+    /// The digits, with a leading `-` where the number stands for itself, as in a range.
+    pub digits: String,
+    /// Their value.
+    pub value: f64,
+    /// Empty for a plain number.
+    pub unit: UnitText,
+    /// Where.
+    pub span: Span,
+}
+
+impl Number {
+    /// A number that stands in no file.
+    pub fn new(value: f64) -> Number {
+        Number {
+            digits: format!("{value:?}"),
+            value,
+            unit: UnitText::default(),
+            span: Span::default(),
+        }
+    }
+}
+
+/// A unit as written: a product of symbols with exponents.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct UnitText {
+    /// Positive exponents first. Empty for the unit `1`, and for a number without a unit.
+    pub factors: Vec<UnitFactor>,
+    /// Where.
+    pub span: Span,
+}
+
+/// A symbol of a unit with its exponent.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitFactor {
+    /// For example `kN`.
+    pub symbol: Name,
+    /// Above the fraction bar of the exponent; negative for what stands in the denominator.
+    pub numerator: i32,
+    /// Below the fraction bar of the exponent, positive.
+    pub denominator: i32,
+}
+
+/// A derived quantity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Let {
+    /// The name.
+    pub name: Name,
+    /// Its value.
+    pub value: Expression,
+    /// The sentence; may be empty.
+    pub doc: String,
+}
+
+/// What moves along one direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Direction {
+    /// For example `z`.
+    pub name: Name,
+    /// In the order of the text.
+    pub body: Vec<Statement>,
+}
+
+/// A mass, inertia, node, road or motion.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coordinate {
+    /// What moves it.
+    pub kind: CoordinateKind,
+    /// The name.
+    pub name: Name,
+    /// `NAME: angle`; an inertia is always an angle.
+    pub angle: bool,
+    /// The sentence; may be empty.
+    pub doc: String,
+}
+
+/// What moves a coordinate.
+#[derive(Clone, Debug, PartialEq)]
+pub enum CoordinateKind {
+    /// `mass NAME = m;`
+    Mass(Expression),
+    /// `inertia NAME = j;`
+    Inertia(Expression),
+    /// `node NAME;`
+    Node,
+    /// `road NAME;`
+    Road,
+    /// `motion NAME;`
+    Motion,
+}
+
+/// A link.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Link {
+    /// The name.
+    pub name: Name,
+    /// A linear combination of coordinates.
+    pub stretch: Expression,
+    /// The sentence; may be empty.
+    pub doc: String,
+    /// The law.
+    pub body: Vec<LawStatement>,
+}
+
+/// A statement of a law.
+#[derive(Clone, Debug, PartialEq)]
+pub enum LawStatement {
+    /// `spring k;`
+    Spring(Expression),
+    /// `damper c;`
+    Damper(Expression),
+    /// `inerter b;`
+    Inerter(Expression),
+    /// `force = expression;`
+    Force(Expression),
+    /// `state NAME: unit;`
+    State(Name, UnitText),
+    /// `rate NAME = expression;`
+    Rate(Name, Expression),
+    /// `let NAME = expression;`
+    Let(Let),
+    /// `element(argument, …);` or `label: element(argument, …);`
+    Use(ElementUse),
+    /// `rolling { … }`
+    Rolling(Span, Vec<LawStatement>),
+    /// `if option == value { … } else { … }`
+    If(If<LawStatement>),
+}
+
+/// An element put into a law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ElementUse {
+    /// The name of this use, which its states are prefixed with; the element's own unless given.
+    pub label: Option<Name>,
+    /// Which element.
+    pub element: Name,
+    /// One for each argument.
+    pub arguments: Vec<Expression>,
+}
+
+impl ElementUse {
+    /// What the states of this use are prefixed with.
+    pub fn label(&self) -> &Name {
+        self.label.as_ref().unwrap_or(&self.element)
+    }
+}
+
+/// Names joined by dots, such as `z.body.acceleration`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dotted {
+    /// At least one.
+    pub names: Vec<Name>,
+}
+
+impl Dotted {
+    /// From the first name to the last.
+    pub fn span(&self) -> Span {
+        self.names
+            .iter()
+            .map(|name| name.span)
+            .reduce(Span::join)
+            .unwrap_or_default()
+    }
+}
+
+impl std::fmt::Display for Dotted {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        let texts: Vec<&str> = self.names.iter().map(|name| name.text.as_str()).collect();
+        f.write_str(&texts.join("."))
+    }
+}
+
+/// An expression.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expression {
+    /// What it is.
+    pub kind: ExpressionKind,
+    /// Where.
+    pub span: Span,
+}
+
+/// What an expression is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExpressionKind {
+    /// `40 mm`
+    Number(Number),
+    /// `k_tire`, `z.body`
+    Name(Dotted),
+    /// `-a`
+    Negative(Box<Expression>),
+    /// `a + b` and its like
+    Binary(Operator, Box<Expression>, Box<Expression>),
+    /// `f(a, …)`
+    Call(Name, Vec<Expression>),
+    /// `if a < b { c } else { d }`
+    If(Box<Logic<Comparison>>, Box<Expression>, Box<Expression>),
+}
+
+/// An operator between two expressions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each is the operator of its name")]
+pub enum Operator {
+    Add,
+    Subtract,
+    Multiply,
+    Divide,
+    Power,
+}
+
+/// `a < b` and its like
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comparison {
+    /// On the left.
+    pub left: Expression,
+    /// How they compare.
+    pub order: Order,
+    /// On the right.
+    pub right: Expression,
+}
+
+/// How two values compare.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[expect(missing_docs, reason = "each is the comparison of its name")]
+pub enum Order {
+    Less,
+    LessEqual,
+    Greater,
+    GreaterEqual,
+}

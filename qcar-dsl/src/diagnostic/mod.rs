@@ -1,0 +1,160 @@
+//! Mistakes are a catalogue: every diagnostic has a code, a message, labels at its places and a hint that says what to
+//! write instead. The constructors stand in one file for each stage of the front end.
+
+use crate::source::{Source, Span};
+
+mod code;
+// Then the constructors, in the order of the stages.
+pub mod reading;
+// Options, names and elements.
+pub mod names;
+// Units, stretches and laws.
+pub mod units;
+// What is held, what can be solved, what takes energy.
+pub mod structure;
+// What an output can see.
+pub mod visibility;
+// How a report looks.
+mod render;
+
+pub use code::Code;
+
+/// Whether a model is refused.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Severity {
+    /// The model is refused.
+    Error,
+    /// The model compiles, but something in it is likely not what was meant.
+    Warning,
+}
+
+/// A place and what is to be said about it.
+#[derive(Clone, Debug)]
+pub struct Label {
+    /// The place.
+    pub span: Span,
+    /// A few words.
+    pub text: String,
+}
+
+/// One mistake.
+#[derive(Clone, Debug)]
+pub struct Diagnostic {
+    /// What kind.
+    pub code: Code,
+    /// Error or warning.
+    pub severity: Severity,
+    /// One sentence without a full stop.
+    pub message: String,
+    /// The first is the place of the mistake.
+    pub labels: Vec<Label>,
+    /// What to write instead.
+    pub hint: String,
+}
+
+impl Diagnostic {
+    fn error(code: Code, message: impl Into<String>) -> Diagnostic {
+        let (labels, hint) = (Vec::new(), String::new());
+        Diagnostic {
+            code,
+            severity: Severity::Error,
+            message: message.into(),
+            labels,
+            hint,
+        }
+    }
+
+    fn warning(code: Code, message: impl Into<String>) -> Diagnostic {
+        Diagnostic {
+            severity: Severity::Warning,
+            ..Diagnostic::error(code, message)
+        }
+    }
+
+    fn label(mut self, span: Span, text: impl Into<String>) -> Diagnostic {
+        self.labels.push(Label {
+            span,
+            text: text.into(),
+        });
+        self
+    }
+
+    fn hint(mut self, hint: impl Into<String>) -> Diagnostic {
+        self.hint = hint.into();
+        self
+    }
+}
+
+/// The mistakes of one compilation, with the texts they are in.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// The model file first, then what it loads.
+    pub sources: Vec<Source>,
+    /// In the order of the stages, then of the text.
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Report {
+    /// True where the model is refused.
+    pub fn refuses(&self) -> bool {
+        self.diagnostics
+            .iter()
+            .any(|diagnostic| diagnostic.severity == Severity::Error)
+    }
+}
+
+impl std::error::Error for Report {}
+
+/// Words in backticks, joined by commas and a last `or`.
+fn one_of<Word: AsRef<str>>(words: &[Word]) -> String {
+    listed(words, "or")
+}
+
+/// Words in backticks, joined by commas and a last `and`.
+fn all_of<Word: AsRef<str>>(words: &[Word]) -> String {
+    listed(words, "and")
+}
+
+fn listed<Word: AsRef<str>>(words: &[Word], last: &str) -> String {
+    let quoted: Vec<String> = words.iter().map(|word| format!("`{}`", word.as_ref())).collect();
+    match quoted.split_last() {
+        None => "nothing".to_string(),
+        Some((only, [])) => only.clone(),
+        Some((end, rest)) => format!("{} {last} {end}", rest.join(", ")),
+    }
+}
+
+/// The candidate that a misspelt name most likely means.
+fn nearest<'a, Word: AsRef<str>>(name: &str, candidates: &'a [Word]) -> Option<&'a str> {
+    let distance = |word: &&str| edits(name, word);
+    let best = candidates.iter().map(AsRef::as_ref).min_by_key(distance)?;
+    (edits(name, best) <= 1 + name.chars().count() / 4).then_some(best)
+}
+
+/// Levenshtein's distance.
+fn edits(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().enumerate() {
+        let mut diagonal = i;
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(x != y);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_misspelt_name_finds_its_neighbour() {
+        assert_eq!(edits("kitten", "sitting"), 3);
+        assert_eq!(nearest("k_tyre", &["c_tire", "k_tire"]), Some("k_tire"));
+        assert_eq!(nearest("mass", &["k_tire"]), None);
+    }
+}

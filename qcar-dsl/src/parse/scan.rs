@@ -1,0 +1,201 @@
+//! A first look at the text, before the Rust lexer sees it: that lexer refuses a whole file at one place for a foreign
+//! character or bracket, so these get diagnostics of their own.
+
+use crate::diagnostic::{Diagnostic, reading};
+use crate::source::{Source, Span};
+
+/// Brackets nested deeper than this are refused, since the lexer and all that follow recurse.
+const DEEPEST: usize = 64;
+
+/// Finds what the lexer would refuse.
+pub fn scan(source: &Source, index: u16) -> Vec<Diagnostic> {
+    let mut scan = Scan {
+        source,
+        index,
+        open: vec![],
+        foreign: vec![],
+        found: vec![],
+    };
+    scan.run();
+    scan.found
+}
+
+struct Scan<'a> {
+    source: &'a Source,
+    index: u16,
+    open: Vec<(u32, char)>,
+    /// Of the line under way.
+    foreign: Vec<(Span, char)>,
+    found: Vec<Diagnostic>,
+}
+
+impl Scan<'_> {
+    fn run(&mut self) {
+        let text = self.source.text.as_str();
+        let mut at = 0;
+        while let Some(character) = text[at..].chars().next() {
+            let rest = &text[at..];
+            at += match character {
+                '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
+                '/' if rest.starts_with("/*") => block_comment(rest),
+                '"' => self.sentence(at, rest),
+                _ => self.character(at, character),
+            };
+        }
+        self.end_line();
+        for (at, open) in std::mem::take(&mut self.open) {
+            self.found
+                .push(reading::unclosed_bracket(self.span(at, 1), open, closing(open)));
+        }
+    }
+
+    fn span(&self, start: u32, length: usize) -> Span {
+        Span {
+            source: self.index,
+            start,
+            end: start + length as u32,
+        }
+    }
+
+    /// Returns the length of a sentence with its quotes.
+    fn sentence(&mut self, at: usize, rest: &str) -> usize {
+        let mut escaped = false;
+        for (offset, character) in rest.char_indices().skip(1) {
+            match character {
+                '\n' => break,
+                '"' if !escaped => return offset + 1,
+                _ => escaped = character == '\\' && !escaped,
+            }
+        }
+        let line = rest.lines().next().unwrap_or(rest);
+        let span = self.span(at as u32, line.len());
+        self.found.push(reading::unterminated_text(span, line));
+        line.len().max(1)
+    }
+
+    fn character(&mut self, at: usize, character: char) -> usize {
+        let length = character.len_utf8();
+        match character {
+            '\n' => self.end_line(),
+            '(' | '[' | '{' => self.open(at as u32, character),
+            ')' | ']' | '}' => self.close(at as u32, character),
+            _ if is_foreign(character) => self.foreign.push((self.span(at as u32, length), character)),
+            _ => {}
+        }
+        length
+    }
+
+    fn open(&mut self, at: u32, character: char) {
+        if self.open.len() == DEEPEST {
+            self.found.push(reading::nested_too_deep(self.span(at, 1)));
+        }
+        self.open.push((at, character));
+    }
+
+    fn close(&mut self, at: u32, character: char) {
+        match self.open.last().copied() {
+            Some((_, open)) if closing(open) == character => {
+                self.open.pop();
+            }
+            Some((place, open)) => {
+                let expected = Some((self.span(place, 1), closing(open)));
+                self.found
+                    .push(reading::stray_bracket(self.span(at, 1), character, expected));
+                // Where the bracket closes an outer one, the inner ones are what is missing.
+                if let Some(outer) = self.open.iter().rposition(|(_, open)| closing(*open) == character) {
+                    self.open.truncate(outer);
+                }
+            }
+            None => self
+                .found
+                .push(reading::stray_bracket(self.span(at, 1), character, None)),
+        }
+    }
+
+    fn end_line(&mut self) {
+        let foreign = std::mem::take(&mut self.foreign);
+        if let Some((first, _)) = foreign.first() {
+            let line: String = self.source.line(first.start).chars().map(in_ascii).collect();
+            self.found.push(reading::foreign_characters(&foreign, &line));
+        }
+    }
+}
+
+/// The length of a comment that may hold others.
+fn block_comment(rest: &str) -> usize {
+    let mut depth = 0;
+    let mut at = 0;
+    while at < rest.len() {
+        let tail = &rest.as_bytes()[at..];
+        if tail.starts_with(b"/*") {
+            depth += 1;
+            at += 2;
+        } else if tail.starts_with(b"*/") {
+            depth -= 1;
+            at += 2;
+            if depth == 0 {
+                return at;
+            }
+        } else {
+            at += 1;
+        }
+    }
+    rest.len()
+}
+
+fn closing(open: char) -> char {
+    match open {
+        '(' => ')',
+        '[' => ']',
+        _ => '}',
+    }
+}
+
+fn is_foreign(character: char) -> bool {
+    !character.is_ascii()
+        || matches!(character, '\'' | '`' | '\\' | '#' | '$' | '@' | '~' | '?')
+        || (character.is_ascii_control() && !character.is_ascii_whitespace())
+}
+
+/// What to write in place of a character; a character that has no better spelling goes.
+fn in_ascii(character: char) -> String {
+    let spelled = match character {
+        '²' => "^2",
+        '³' => "^3",
+        '·' | '×' | '⋅' | '∙' => "*",
+        '÷' => "/",
+        '−' | '–' | '—' => "-",
+        '≤' => "<=",
+        '≥' => ">=",
+        '≠' => "!=",
+        '°' => "deg",
+        '“' | '”' | '„' => "\"",
+        'µ' | 'μ' => "u",
+        'α' => "alpha",
+        'β' => "beta",
+        'γ' => "gamma",
+        'δ' | 'Δ' => "delta",
+        'ζ' => "zeta",
+        'η' => "eta",
+        'θ' | 'Θ' => "theta",
+        'κ' => "kappa",
+        'λ' => "lambda",
+        'ν' => "nu",
+        'ρ' => "rho",
+        'σ' => "sigma",
+        'τ' => "tau",
+        'φ' | 'Φ' => "phi",
+        'ψ' => "psi",
+        'ω' | 'Ω' => "omega",
+        'π' => "3.141592653589793",
+        'ä' => "ae",
+        'ö' => "oe",
+        'ü' => "ue",
+        'ß' => "ss",
+        '…' => "..",
+        '\u{a0}' | '\u{2009}' | '\u{202f}' => " ",
+        _ if is_foreign(character) => "",
+        _ => return character.to_string(),
+    };
+    spelled.to_string()
+}
