@@ -119,6 +119,24 @@ pub enum Statement {
     Channel(Name, Dotted, Dotted),
 }
 
+impl Statement {
+    /// What a statement declares, if it does.
+    pub fn name(&self) -> Option<&Name> {
+        match self {
+            Statement::Option(choice) => Some(&choice.name),
+            Statement::Parameter(parameter) => Some(&parameter.name),
+            Statement::Let(definition) => Some(&definition.name),
+            Statement::Direction(direction) => Some(&direction.name),
+            Statement::Coordinate(coordinate) => Some(&coordinate.name),
+            Statement::Link(link) => Some(&link.name),
+            Statement::Gravity(name) | Statement::Force(name, _) | Statement::Point(name, _) => Some(name),
+            Statement::Output(name, _) => name.as_ref(),
+            Statement::Channel(name, ..) => Some(name),
+            Statement::Require(_) | Statement::Choose(..) | Statement::If(_) => None,
+        }
+    }
+}
+
 /// An option of a family.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Choice {
@@ -154,6 +172,16 @@ pub enum Logic<Test> {
     And(Box<Logic<Test>>, Box<Logic<Test>>),
     /// `a || b`
     Or(Box<Logic<Test>>, Box<Logic<Test>>),
+}
+
+impl<Test> Logic<Test> {
+    /// The leftmost test.
+    pub fn first_test(&self) -> &Test {
+        match self {
+            Logic::Test(test) => test,
+            Logic::Not(part) | Logic::And(part, _) | Logic::Or(part, _) => part.first_test(),
+        }
+    }
 }
 
 /// `option == value` or `option != value`

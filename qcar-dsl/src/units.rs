@@ -61,34 +61,46 @@ impl Unit {
     }
 }
 
-/// The unit behind a symbol, and its size in SI: `mm` is 0.001 m.
-pub fn symbol(name: &str) -> Option<(f64, Unit)> {
-    let (_, factor, unit) = SYMBOLS.iter().find(|(symbol, ..)| *symbol == name)?;
-    Some((*factor, *unit))
+/// A symbol: its size in SI is `multiply / divide`, which keeps decimal sizes exact, and its unit.
+#[derive(Clone, Copy, PartialEq, Debug)]
+pub struct Symbol {
+    /// 1000 for kN.
+    pub multiply: f64,
+    /// 1000 for mm.
+    pub divide: f64,
+    /// The coherent unit.
+    pub unit: Unit,
 }
 
-const SYMBOLS: &[(&str, f64, Unit)] = &[
-    ("kg", 1.0, Unit::KILOGRAM),
-    ("m", 1.0, Unit::METER),
-    ("mm", 1e-3, Unit::METER),
-    ("cm", 1e-2, Unit::METER),
-    ("km", 1e3, Unit::METER),
-    ("s", 1.0, Unit::SECOND),
-    ("ms", 1e-3, Unit::SECOND),
-    ("N", 1.0, Unit::NEWTON),
-    ("kN", 1e3, Unit::NEWTON),
-    ("Nm", 1.0, Unit::new(1, 2, -2)),
-    ("Ns", 1.0, Unit::new(1, 1, -1)),
-    ("J", 1.0, Unit::new(1, 2, -2)),
-    ("W", 1.0, Unit::new(1, 2, -3)),
-    ("Pa", 1.0, Unit::new(1, -1, -2)),
-    ("kPa", 1e3, Unit::new(1, -1, -2)),
-    ("MPa", 1e6, Unit::new(1, -1, -2)),
-    ("bar", 1e5, Unit::new(1, -1, -2)),
-    ("Hz", 1.0, Unit::new(0, 0, -1)),
-    ("rad", 1.0, Unit::ONE),
-    ("deg", std::f64::consts::PI / 180.0, Unit::ONE),
-    ("percent", 1e-2, Unit::ONE),
+/// The symbol of a name, if there is one.
+pub fn symbol(name: &str) -> Option<Symbol> {
+    let (_, multiply, divide, unit) = *SYMBOLS.iter().find(|(symbol, ..)| *symbol == name)?;
+    Some(Symbol { multiply, divide, unit })
+}
+
+const SYMBOLS: &[(&str, f64, f64, Unit)] = &[
+    ("kg", 1.0, 1.0, Unit::KILOGRAM),
+    ("m", 1.0, 1.0, Unit::METER),
+    ("mm", 1.0, 1e3, Unit::METER),
+    ("cm", 1.0, 1e2, Unit::METER),
+    ("km", 1e3, 1.0, Unit::METER),
+    ("s", 1.0, 1.0, Unit::SECOND),
+    ("ms", 1.0, 1e3, Unit::SECOND),
+    ("N", 1.0, 1.0, Unit::NEWTON),
+    ("kN", 1e3, 1.0, Unit::NEWTON),
+    ("MN", 1e6, 1.0, Unit::NEWTON),
+    ("Nm", 1.0, 1.0, Unit::new(1, 2, -2)),
+    ("Ns", 1.0, 1.0, Unit::new(1, 1, -1)),
+    ("J", 1.0, 1.0, Unit::new(1, 2, -2)),
+    ("W", 1.0, 1.0, Unit::new(1, 2, -3)),
+    ("Pa", 1.0, 1.0, Unit::new(1, -1, -2)),
+    ("kPa", 1e3, 1.0, Unit::new(1, -1, -2)),
+    ("MPa", 1e6, 1.0, Unit::new(1, -1, -2)),
+    ("bar", 1e5, 1.0, Unit::new(1, -1, -2)),
+    ("Hz", 1.0, 1.0, Unit::new(0, 0, -1)),
+    ("rad", 1.0, 1.0, Unit::ONE),
+    ("deg", std::f64::consts::PI, 180.0, Unit::ONE),
+    ("percent", 1.0, 1e2, Unit::ONE),
 ];
 
 impl fmt::Display for Unit {

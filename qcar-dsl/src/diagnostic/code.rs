@@ -58,4 +58,108 @@ codes! {
     NameNotLowerCase = "name_not_lower_case",
     /// No model in a file, or several.
     NotOneModel = "not_one_model",
+    /// A family's file that cannot be read.
+    FamilyNotLoaded = "family_not_loaded",
+    /// `from` a file that holds no family.
+    NotAFamily = "not_a_family",
+    /// A choice or condition of an option that the family does not have.
+    UnknownOption = "unknown_option",
+    /// A value that an option cannot have.
+    UnknownValue = "unknown_value",
+    /// An option without default that an axle does not choose.
+    OptionNotChosen = "option_not_chosen",
+    /// A `require` that the chosen options break.
+    RequirementFailed = "requirement_failed",
+    /// An option that no condition asks about.
+    UnusedOption = "unused_option",
+    /// Two things of one name.
+    DuplicateName = "duplicate_name",
+    /// A name that nothing has.
+    UnknownName = "unknown_name",
+    /// A name that an option has taken away.
+    SwitchedOff = "switched_off",
+    /// A derived quantity used above its declaration.
+    UsedBeforeDeclared = "used_before_declared",
+    /// A name of a global inside an element.
+    ElementIsClosed = "element_is_closed",
+    /// `s` or `v` outside of a law.
+    LawVariableOutside = "law_variable_outside",
+    /// A coordinate where only parameters are known.
+    CoordinateInExpression = "coordinate_in_expression",
+    /// A name that several directions have, without its direction.
+    AmbiguousDirection = "ambiguous_direction",
+    /// A direction that the model does not have.
+    UnknownDirection = "unknown_direction",
+    /// A function that the language does not have.
+    UnknownFunction = "unknown_function",
+    /// A function or element with the wrong number of arguments.
+    WrongArguments = "wrong_arguments",
+    /// An element that the file does not have.
+    UnknownElement = "unknown_element",
+    /// An element inside itself.
+    RecursiveElement = "recursive_element",
+    /// An element that no law uses.
+    UnusedElement = "unused_element",
+    /// A derived quantity that nothing uses.
+    UnusedLet = "unused_let",
+    /// A second gravity in a direction.
+    SecondGravity = "second_gravity",
+    /// A force or gravity that is used like a coordinate, a link that is used like a mass, and so on.
+    WrongKind = "wrong_kind",
+    /// A force input on a prescribed motion.
+    ForceOnPrescribed = "force_on_prescribed",
+    /// A signal of a quantity that the thing does not have.
+    UnknownQuantity = "unknown_quantity",
+    /// A parameter whose default is itself, by way of others or not.
+    CircularDefault = "circular_default",
+    /// A symbol that is no unit.
+    UnknownUnit = "unknown_unit",
+    /// A declaration in a unit that is not coherent with kg, m and s.
+    NotCoherent = "not_coherent",
+    /// An exponent of a unit that is no multiple of 1/6.
+    OddExponent = "odd_exponent",
+    /// Summands, branches or sides of different units.
+    UnitsDiffer = "units_differ",
+    /// A quantity in another unit than its place asks for.
+    WrongUnit = "wrong_unit",
+    /// A function of a quantity with a unit.
+    ArgumentHasUnit = "argument_has_unit",
+    /// A power of a quantity with a unit to something that is no number.
+    ExponentNotConstant = "exponent_not_constant",
+    /// A literal zero below a fraction bar.
+    DivisionByZero = "division_by_zero",
+    /// Parts of a stretch that move, multiplied or put into a function.
+    StretchNotLinear = "stretch_not_linear",
+    /// A constant in a stretch.
+    StretchHasConstant = "stretch_has_constant",
+    /// A stretch in which all coordinates cancel.
+    StretchVanishes = "stretch_vanishes",
+    /// A stretch that is neither a length nor an angle.
+    StretchUnit = "stretch_unit",
+    /// A link whose law is empty.
+    EmptyLaw = "empty_law",
+    /// A state whose rate is not given, or given twice.
+    StateWithoutRate = "state_without_rate",
+    /// A rate of something that is no state.
+    RateWithoutState = "rate_without_state",
+    /// A state whose rate is given twice.
+    SecondRate = "second_rate",
+    /// A `rolling` block in a link without a road.
+    RollingWithoutRoad = "rolling_without_road",
+    /// States, or a second block, inside `rolling`.
+    RollingChangesStates = "rolling_changes_states",
+    /// A statement in an element or a `rolling` block that belongs in a link.
+    SecondRolling = "second_rolling",
+    /// A range whose bounds are in the wrong order.
+    RangeReversed = "range_reversed",
+    /// A default outside of the declared range.
+    DefaultOutsideRange = "default_outside_range",
+    /// A ratio of unlike things in a channel.
+    ChannelUnitsDiffer = "channel_units_differ",
+    /// A parameter that nothing uses.
+    UnusedParameter = "unused_parameter",
+    /// A state of a name that the law has already.
+    SecondState = "second_state",
+    /// A coefficient of a linear term that depends on the motion.
+    CoefficientVaries = "coefficient_varies",
 }

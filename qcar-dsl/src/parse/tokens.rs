@@ -9,7 +9,6 @@ use syn::{Lit, ext::IdentExt};
 use crate::diagnostic::{Diagnostic, reading};
 use crate::source::Span;
 use crate::syntax::Name;
-use crate::units;
 
 /// What parsing gives: the thing, or why it is none. Boxed, since mistakes are large and rare.
 pub type Parsed<Thing> = Result<Thing, Box<Diagnostic>>;
@@ -316,9 +315,8 @@ impl<'a> Tokens<'a> {
 /// Who has taken a name, if anybody has.
 fn owner(name: &str) -> Option<&'static str> {
     match name {
-        "s" => Some("the stretch of a link, and the unit second"),
+        "s" => Some("the stretch of a link"),
         "v" => Some("the rate of a link's stretch"),
-        _ if units::symbol(name).is_some() => Some("a unit"),
         _ if FUNCTIONS.contains(&name) => Some("a function"),
         _ if syn::parse_str::<syn::Ident>(name).is_err() => Some("a word of Rust, into which models are compiled"),
         _ => None,

@@ -66,6 +66,7 @@ fn raised(tokens: &mut Tokens, mut factors: Vec<UnitFactor>) -> Parsed<Vec<UnitF
             factor.numerator = factor.numerator.saturating_mul(numerator);
             factor.denominator = factor.denominator.saturating_mul(denominator);
         }
+        factors.retain(|factor| factor.numerator != 0);
     }
     Ok(factors)
 }
@@ -106,7 +107,7 @@ fn exponent(tokens: &mut Tokens) -> Parsed<(i32, i32)> {
     let denominator = if inside.take("/") { whole(&mut inside)? } else { 1 };
     inside.finished("m^(3/2)")?;
     if denominator == 0 {
-        inside.expected("a number other than 0", "m^(3/2)")
+        inside.expected("a number above 0", "m^(3/2)")
     } else {
         Ok((numerator, denominator))
     }

@@ -5,6 +5,7 @@ use std::fmt::{self, Display, Formatter};
 use crate::syntax::{
     Comparison, Expression, ExpressionKind, Logic, Number, Operator, OptionTest, Order, UnitFactor, UnitText,
 };
+use crate::units;
 
 /// How tightly an expression holds together.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -63,18 +64,34 @@ fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
         Operator::Add => format!("{} + {}", at_least(Rank::Sum, left), at_least(Rank::Product, right)),
         Operator::Subtract => format!("{} - {}", at_least(Rank::Sum, left), at_least(Rank::Product, right)),
         Operator::Multiply => format!("{}*{}", at_least(Rank::Product, left), at_least(Rank::Sign, right)),
-        Operator::Divide => quotient(&at_least(Rank::Product, left), &at_least(Rank::Sign, right)),
+        Operator::Divide => quotient(left, right),
         Operator::Power => format!("{}^{}", at_least(Rank::Atom, left), at_least(Rank::Sign, right)),
     }
 }
 
-/// The stretch `s` behind `/` would be read as a second where a number with a unit stands before it.
-fn quotient(left: &str, right: &str) -> String {
-    let reads_as_second = right == "s" || right.starts_with("s^");
-    if reads_as_second {
-        format!("{left}/({right})")
+/// A name behind `/` would be read as a unit where a number with a unit stands before it.
+fn quotient(left: &Expression, right: &Expression) -> String {
+    let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
+    if ends_in_unit(left) && begins_like_unit(right) {
+        format!("{above}/({below})")
     } else {
-        format!("{left}/{right}")
+        format!("{above}/{below}")
+    }
+}
+
+fn ends_in_unit(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Number(number) => !number.unit.factors.is_empty(),
+        ExpressionKind::Negative(last) | ExpressionKind::Binary(_, _, last) => ends_in_unit(last),
+        _ => false,
+    }
+}
+
+fn begins_like_unit(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Name(name) => units::symbol(&name.names[0].text).is_some(),
+        ExpressionKind::Binary(Operator::Power, base, _) => begins_like_unit(base),
+        _ => false,
     }
 }
 

@@ -26,15 +26,7 @@ impl Display for File {
 
 /// A declaration on one line, as `model::Declared` keeps it.
 pub fn one_line(statement: &Statement) -> String {
-    joined(&statement_lines(statement))
-}
-
-/// A statement of a law on one line.
-pub fn law_one_line(statement: &LawStatement) -> String {
-    joined(&law_lines(statement))
-}
-
-fn joined(lines: &[String]) -> String {
+    let lines = statement_lines(statement);
     let words: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
     words.join(" ")
 }

@@ -1,0 +1,115 @@
+//! What acts between and on the coordinates: points, forces, links.
+
+use super::declare::declared;
+use super::names::Thing;
+use super::{Known, Placed, Resolver};
+use crate::diagnostic::{names, units as mistakes};
+use crate::expr::LinkId;
+use crate::model::{CoordinateKind, Direction, ForceInput, Link};
+use crate::syntax::{self, Dotted, LawStatement, Name, Statement};
+use crate::units::Unit;
+
+impl Resolver<'_> {
+    /// Other names of coordinates, each of what is named above it.
+    pub fn points(&mut self, placed: &[Placed]) {
+        for (direction, statement) in placed {
+            let Statement::Point(name, target) = statement else {
+                continue;
+            };
+            let thing = match self.coordinate(target, direction, &format!("point {} = body;", name.text)) {
+                Ok(coordinate) => Thing::Coordinate(coordinate),
+                Err(_) => Thing::Broken,
+            };
+            self.declare_thing(name, direction, thing);
+        }
+    }
+
+    /// Inputs that push coordinates.
+    pub fn forces(&mut self, placed: &[Placed]) {
+        for (direction, statement) in placed {
+            let Statement::Force(name, on) = statement else {
+                continue;
+            };
+            self.declare_thing(name, direction, Thing::Force);
+            if let Ok(force) = self.force(name, on, direction, statement) {
+                self.model.forces.push(force);
+            }
+        }
+    }
+
+    fn force(&mut self, name: &Name, on: &Dotted, direction: &str, statement: &Statement) -> Known<ForceInput> {
+        let coordinate = self.coordinate(on, direction, &format!("force {} on wheel;", name.text))?;
+        let kind = self.model.coordinates[usize::from(coordinate.0)].kind;
+        if matches!(kind, CoordinateKind::Road | CoordinateKind::Motion) {
+            return Err(self.report(names::force_on_prescribed(on.span(), &on.to_string())));
+        }
+        Ok(ForceInput {
+            name: name.text.clone(),
+            on: coordinate,
+            declared: declared(name, statement),
+        })
+    }
+
+    /// Links with their laws.
+    pub fn links(&mut self, placed: &[Placed]) {
+        for (direction, statement) in placed {
+            let Statement::Link(link) = statement else { continue };
+            let thing = match self.link(link, direction, statement) {
+                Ok(resolved) => {
+                    self.model.links.push(resolved);
+                    Thing::Link(LinkId(self.model.links.len() as u16 - 1))
+                }
+                Err(_) => Thing::Broken,
+            };
+            self.declare_thing(&link.name, direction, thing);
+        }
+    }
+
+    fn link(&mut self, link: &syntax::Link, direction: &str, statement: &Statement) -> Known<Link> {
+        let id = LinkId(self.model.links.len() as u16);
+        let stretch = self.stretch(link, direction);
+        // A law is read even where the stretch is mistaken, as that of a length.
+        let unit = stretch.as_ref().map_or(Unit::METER, |(_, unit)| *unit);
+        let law = self.law(&link.body, id, unit);
+        let ((stretch, unit), (law, rolling)) = (stretch?, law?);
+        if law.terms.is_empty() {
+            return Err(self.report(mistakes::empty_law(link.name.span, &link.name.text)));
+        }
+        let is_road = |coordinate: usize| self.model.coordinates[coordinate].kind == CoordinateKind::Road;
+        let on_road = stretch.iter().any(|(coordinate, _)| is_road(usize::from(coordinate.0)));
+        if let Some(span) = rolling_block(&link.body).filter(|_| !on_road) {
+            return Err(self.report(mistakes::rolling_without_road(span, &link.name.text)));
+        }
+        Ok(Link {
+            name: link.name.text.clone(),
+            direction: Direction(direction.to_string()),
+            stretch,
+            unit,
+            law,
+            rolling,
+            doc: link.doc.clone(),
+            declared: declared(&link.name, statement),
+        })
+    }
+
+    fn stretch(&mut self, link: &syntax::Link, direction: &str) -> Known<(Stretch, Unit)> {
+        let combination = self.combination(&link.stretch, direction)?;
+        let unit = combination.unit.unwrap_or(Unit::METER);
+        if combination.terms.is_empty() {
+            return Err(self.report(mistakes::stretch_vanishes(link.stretch.span, &link.name.text)));
+        }
+        if unit != Unit::METER && unit != Unit::ONE {
+            return Err(self.report(mistakes::stretch_unit(link.stretch.span, &unit.to_string())));
+        }
+        Ok((combination.terms, unit))
+    }
+}
+
+type Stretch = Vec<(crate::expr::CoordinateId, crate::expr::Expr)>;
+
+fn rolling_block(body: &[LawStatement]) -> Option<crate::source::Span> {
+    body.iter().find_map(|statement| match statement {
+        LawStatement::Rolling(span, _) => Some(*span),
+        _ => None,
+    })
+}

@@ -1,0 +1,258 @@
+//! The names of a model: parameters and derived quantities, and in each direction what moves, connects and pushes.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::value::{Locals, Value};
+use super::{Known, Reported, Resolver};
+use crate::diagnostic::names as mistakes;
+use crate::expr::{CoordinateId, LinkId, Symbol};
+use crate::source::Span;
+use crate::syntax::{Dotted, Name};
+
+/// What a name without direction means.
+#[derive(Clone, Copy, Debug)]
+pub enum Global {
+    /// By its place in `Model::parameters`.
+    Parameter(u16),
+    /// By its place in `Model::definitions`.
+    Definition(u16),
+    /// Its own declaration is mistaken, so its uses are not blamed.
+    Broken,
+}
+
+/// What a name of a direction means.
+#[derive(Clone, Copy, Debug)]
+pub enum Thing {
+    /// A mass, node, road or motion, or a point of it.
+    Coordinate(CoordinateId),
+    /// A link.
+    Link(LinkId),
+    /// A force input.
+    Force,
+    /// A gravity.
+    Gravity,
+    /// Its own declaration is mistaken, so its uses are not blamed.
+    Broken,
+}
+
+impl Thing {
+    fn kind(self) -> &'static str {
+        match self {
+            Thing::Coordinate(_) => "a point that moves",
+            Thing::Link(_) => "a link",
+            Thing::Force => "a force input",
+            Thing::Gravity => "a gravity",
+            Thing::Broken => "mistaken",
+        }
+    }
+}
+
+/// The names of a model.
+#[derive(Debug, Default)]
+pub struct Names {
+    /// Parameters and derived quantities, with where they are declared.
+    pub globals: BTreeMap<String, (Span, Global)>,
+    /// In the order of the text.
+    pub directions: Vec<(String, BTreeMap<String, (Span, Thing)>)>,
+    /// What options have switched off, with the options.
+    pub off: BTreeMap<String, String>,
+    /// Parameters, derived quantities and elements that something uses.
+    pub used: BTreeSet<String>,
+}
+
+impl Names {
+    /// The thing of a name, as seen from a direction; from outside of all, in whichever direction has it.
+    pub fn find(&self, name: &Dotted, direction: &str) -> Option<(Span, Thing)> {
+        match name.names.as_slice() {
+            [name] if direction.is_empty() => self.everywhere(&name.text).first().map(|(_, found)| *found),
+            [name] => self.direction(direction)?.get(&name.text).copied(),
+            [home, name] => self.direction(&home.text)?.get(&name.text).copied(),
+            _ => None,
+        }
+    }
+
+    fn direction(&self, name: &str) -> Option<&BTreeMap<String, (Span, Thing)>> {
+        self.directions
+            .iter()
+            .find(|(known, _)| known == name)
+            .map(|(_, names)| names)
+    }
+
+    /// The directions that have a name.
+    fn everywhere(&self, name: &str) -> Vec<(&str, (Span, Thing))> {
+        self.directions
+            .iter()
+            .filter_map(|(home, names)| Some((home.as_str(), *names.get(name)?)))
+            .collect()
+    }
+
+    fn known_things(&self, direction: &str) -> Vec<String> {
+        self.direction(direction)
+            .map(|names| names.keys().cloned().collect())
+            .unwrap_or_default()
+    }
+}
+
+impl Resolver<'_> {
+    /// Declares a parameter or derived quantity.
+    pub fn declare_global(&mut self, name: &Name, global: Global) {
+        if let Some((first, _)) = self.names.globals.get(&name.text) {
+            let mistake = mistakes::duplicate_name(name.span, *first, &name.text, "the model");
+            self.report(mistake);
+            return;
+        }
+        self.names.globals.insert(name.text.clone(), (name.span, global));
+    }
+
+    /// Declares something in a direction. A stretch knows parameters too, so they share their names with none.
+    pub fn declare_thing(&mut self, name: &Name, direction: &str, thing: Thing) {
+        if !self.names.directions.iter().any(|(known, _)| known == direction) {
+            self.names.directions.push((direction.to_string(), BTreeMap::new()));
+        }
+        let own = self
+            .names
+            .direction(direction)
+            .and_then(|names| names.get(&name.text))
+            .map(|(span, _)| *span);
+        let moves = matches!(thing, Thing::Coordinate(_));
+        let global = self
+            .names
+            .globals
+            .get(&name.text)
+            .map(|(span, _)| *span)
+            .filter(|_| moves);
+        if let Some(first) = own.or(global) {
+            let place = if own.is_some() {
+                format!("direction {direction}")
+            } else {
+                "the model".to_string()
+            };
+            self.report(mistakes::duplicate_name(name.span, first, &name.text, &place));
+            return;
+        }
+        let home = self.names.directions.iter_mut().find(|(known, _)| known == direction);
+        if let Some((_, names)) = home {
+            names.insert(name.text.clone(), (name.span, thing));
+        }
+    }
+
+    /// The value of a name in an expression.
+    pub fn named(&mut self, name: &Dotted, locals: &Locals) -> Known<Value> {
+        let [single] = name.names.as_slice() else {
+            return Err(self.no_value(name, locals));
+        };
+        if let Some(value) = locals.get(&single.text) {
+            return value;
+        }
+        if locals.closed {
+            return Err(self.no_value(name, locals));
+        }
+        self.names.used.insert(single.text.clone());
+        match self.names.globals.get(&single.text) {
+            Some((_, Global::Parameter(index))) => {
+                let unit = self.model.parameters[usize::from(*index)].unit;
+                Ok(Value {
+                    expr: self.model.graph.symbol(Symbol::Parameter(*index)),
+                    unit: Some(unit),
+                })
+            }
+            Some((_, Global::Definition(index))) => Ok(self.definitions[usize::from(*index)]),
+            Some((_, Global::Broken)) => Err(Reported),
+            None => Err(self.no_value(name, locals)),
+        }
+    }
+
+    /// Says why a name has no value here.
+    fn no_value(&mut self, name: &Dotted, locals: &Locals) -> Reported {
+        let (span, text) = (name.span(), name.to_string());
+        let global = self.names.globals.get(&text).copied();
+        let mistake = if let Some((_, global)) = global {
+            mistakes::element_is_closed(span, &text, &self.unit_of(global))
+        } else if text == "s" || text == "v" {
+            mistakes::law_variable_outside(span, &text)
+        } else if let Some((_, Thing::Coordinate(_))) = self.names.find(name, "") {
+            mistakes::coordinate_in_expression(span, &text)
+        } else if let Some(options) = self.names.off.get(&text) {
+            mistakes::switched_off(span, &text, options)
+        } else if let Some((declared, _)) = self.later.iter().find(|(_, later)| *later == text) {
+            mistakes::used_before_declared(span, *declared, &text)
+        } else {
+            let place = if locals.closed { "the element" } else { "the model" };
+            mistakes::unknown_name(span, &text, place, &self.values_in_sight(locals))
+        };
+        self.report(mistake)
+    }
+
+    fn unit_of(&self, global: Global) -> String {
+        match global {
+            Global::Parameter(index) => self.model.parameters[usize::from(index)].unit.to_string(),
+            Global::Definition(index) => self.model.definitions[usize::from(index)].unit.to_string(),
+            Global::Broken => "1".to_string(),
+        }
+    }
+
+    fn values_in_sight(&self, locals: &Locals) -> Vec<String> {
+        let local = locals.names.iter().map(|(name, _)| name.clone());
+        let global = self.names.globals.keys().filter(|_| !locals.closed).cloned();
+        local.chain(global).collect()
+    }
+
+    /// The coordinate of a name in a stretch; `None` for a parameter or derived quantity.
+    pub fn coordinate_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<CoordinateId>> {
+        match self.names.find(name, direction) {
+            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(coordinate)),
+            None if name.names.len() == 1 && self.names.globals.contains_key(&name.names[0].text) => Ok(None),
+            _ => Err(self.no_thing(name, direction, "a point that moves", "link spring: body - wheel { … }")),
+        }
+    }
+
+    /// The coordinate that something acts on or is another name of.
+    pub fn coordinate(&mut self, name: &Dotted, direction: &str, example: &str) -> Known<CoordinateId> {
+        match self.names.find(name, direction) {
+            Some((_, Thing::Coordinate(coordinate))) => Ok(coordinate),
+            _ => Err(self.no_thing(name, direction, "a point that moves", example)),
+        }
+    }
+
+    /// Says why a name is not the thing that is expected in a direction.
+    pub fn no_thing(&mut self, name: &Dotted, direction: &str, expected: &str, example: &str) -> Reported {
+        let (span, text) = (name.span(), name.to_string());
+        let last = name.names.last().map(|name| name.text.clone()).unwrap_or_default();
+        let mistake = match self.names.find(name, direction) {
+            Some((_, Thing::Broken)) => return Reported,
+            Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
+            None => match self.names.off.get(&last) {
+                Some(options) => mistakes::switched_off(span, &last, options),
+                None => {
+                    let home = if name.names.len() > 1 {
+                        &name.names[0].text
+                    } else {
+                        direction
+                    };
+                    let place = if home.is_empty() {
+                        "the model".to_string()
+                    } else {
+                        format!("direction {home}")
+                    };
+                    mistakes::unknown_name(span, &last, &place, &self.names.known_things(home))
+                }
+            },
+        };
+        self.report(mistake)
+    }
+
+    /// The one direction that has a name which is said outside of all directions.
+    pub fn unambiguous(&mut self, name: &Dotted) -> Known<()> {
+        let [name] = name.names.as_slice() else { return Ok(()) };
+        let homes: Vec<String> = self
+            .names
+            .everywhere(&name.text)
+            .iter()
+            .map(|(home, _)| home.to_string())
+            .collect();
+        if homes.len() < 2 {
+            return Ok(());
+        }
+        Err(self.report(mistakes::ambiguous_direction(name.span, &name.text, &homes)))
+    }
+}
