@@ -20,6 +20,8 @@ pub mod model;
 pub mod resolve;
 // The structure: what is held, what is solvable, what can be seen.
 pub mod check;
+// The front end in one function.
+pub mod front;
 // All that follows is total. What is at which place of the vectors.
 pub mod about;
 // Sparse symmetric systems solved symbolically.

@@ -218,7 +218,8 @@ pub fn conditional<'a, Part>(
     const EXAMPLE: &str = "if top_mount == on { … } else { … }";
     let mut branches = Vec::new();
     let mut otherwise = Vec::new();
-    while tokens.take_word("if") {
+    loop {
+        tokens.take_word("if");
         let condition = option_condition(tokens)?;
         branches.push((condition, body(tokens.block(EXAMPLE)?)));
         if !tokens.take_word("else") {
@@ -226,6 +227,7 @@ pub fn conditional<'a, Part>(
         }
         if tokens.peek().as_deref() != Some("if") {
             otherwise = body(tokens.block(EXAMPLE)?);
+            break;
         }
     }
     Ok(If { branches, otherwise })

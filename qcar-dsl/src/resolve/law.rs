@@ -175,11 +175,8 @@ impl Resolver<'_> {
     /// The factor of a linear term, which must not vary with the motion.
     fn coefficient(&mut self, expression: &Expression, place: &Place, unit: Unit, what: &str) -> Known<Expr> {
         let expr = self.value_in(expression, &place.locals, unit, what)?;
-        if self
-            .model
-            .graph
-            .depends_on(expr, &|symbol| !matches!(symbol, Symbol::Parameter(_)))
-        {
+        let leaves = self.model.graph.symbols([expr]);
+        if !leaves.iter().all(|leaf| matches!(leaf, Symbol::Parameter(_))) {
             return Err(self.report(mistakes::coefficient_varies(expression.span, what)));
         }
         Ok(expr)

@@ -56,15 +56,18 @@ pub fn resolve(axle: &Axle, taken: &Taken, elements: &[&Element]) -> (Model, Vec
 
 /// Every statement with its direction, in the order of the text.
 fn placed(body: &[Statement]) -> Vec<Placed<'_>> {
-    let of = |statement| match statement {
+    body.iter().flat_map(placed_of).collect()
+}
+
+fn placed_of(statement: &Statement) -> Vec<Placed<'_>> {
+    match statement {
         Statement::Direction(direction) => direction
             .body
             .iter()
             .map(|inner| (direction.name.text.as_str(), inner))
             .collect(),
         other => vec![("", other)],
-    };
-    body.iter().flat_map(of).collect()
+    }
 }
 
 /// A model under way.

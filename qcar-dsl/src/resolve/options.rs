@@ -143,15 +143,13 @@ impl<'a> Options<'a> {
                 ));
             }
         }
-        let value = |choice: &&Choice| {
-            chosen
-                .get(choice.name.text.as_str())
-                .copied()
-                .or(choice.default.as_ref())
-        };
         let mut choices = Vec::new();
         for choice in &self.options {
-            match value(choice) {
+            let value = chosen
+                .get(choice.name.text.as_str())
+                .copied()
+                .or(choice.default.as_ref());
+            match value {
                 Some(value) => choices.push((choice.name.text.clone(), value.text.clone())),
                 None => found.push(names::option_not_chosen(
                     axle.name.span,

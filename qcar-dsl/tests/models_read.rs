@@ -1,0 +1,69 @@
+//! Every model that the compiler ships for reads, prints and reads again as the same tree.
+
+use std::path::Path;
+
+use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::parse::parse_text;
+use qcar_dsl::source::Source;
+
+fn models() -> std::path::PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../models")
+}
+
+fn files(folder: &str) -> Vec<std::path::PathBuf> {
+    let mut files: Vec<_> = std::fs::read_dir(models().join(folder))
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    files.sort();
+    files
+}
+
+fn read(path: &Path) -> Source {
+    Source {
+        name: path.display().to_string(),
+        text: std::fs::read_to_string(path).unwrap(),
+    }
+}
+
+fn load(from: &str, path: &str) -> Result<Source, String> {
+    let path = Path::new(from).parent().unwrap().join(path);
+    let text = std::fs::read_to_string(&path).map_err(|error| error.to_string())?;
+    Ok(Source {
+        name: path.display().to_string(),
+        text,
+    })
+}
+
+#[test]
+fn every_axle_is_accepted() {
+    for file in files("axles") {
+        let checked = check_text(read(&file), &load).unwrap_or_else(|report| panic!("{report}"));
+        assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
+    }
+}
+
+#[test]
+fn every_member_of_the_family_is_accepted() {
+    let members = check_members(read(&models().join("families/corner.axle")), &load).unwrap();
+    assert!(members.len() > 100);
+    for (choices, checked) in members {
+        checked.unwrap_or_else(|report| panic!("{choices:?}\n{report}"));
+    }
+}
+
+#[test]
+fn every_file_prints_as_the_same_tree() {
+    for file in files("axles").into_iter().chain(files("families")) {
+        let first = parse_text(&read(&file), 0);
+        assert!(first.mistakes.is_empty());
+        let printed = Source {
+            name: "printed".into(),
+            text: first.file.to_string(),
+        };
+        let second = parse_text(&printed, 0);
+        assert!(second.mistakes.is_empty(), "{}", printed.text);
+        assert!(first.file == second.file, "{}", printed.text);
+        assert_eq!(second.file.to_string(), printed.text);
+    }
+}
