@@ -167,10 +167,12 @@ impl Road {
     }
 
     /// The piece over which `x` lies; piece `k` lies between vertices `k - 1` and `k`.
+    #[inline]
     pub(crate) fn segment_at(&self, x: f64) -> usize {
         self.index.vertices_up_to(&self.vertices, x)
     }
 
+    #[inline]
     pub(crate) fn segment(&self, k: usize) -> &Segment {
         &self.segments[k]
     }
@@ -272,11 +274,13 @@ impl Index {
         index
     }
 
+    #[inline]
     fn cell(&self, x: f64) -> usize {
         // The cast saturates: what lies before the road is in the first cell, what lies behind it in the last.
         (((x - self.first) * self.cells_per_metre) as usize).min(self.vertices_before.len() - 1)
     }
 
+    #[inline]
     fn vertices_up_to(&self, vertices: &[[f64; 2]], x: f64) -> usize {
         let before = self.vertices_before[self.cell(x)] as usize;
         before + vertices[before..].iter().take_while(|vertex| vertex[0] <= x).count()

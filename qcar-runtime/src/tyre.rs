@@ -36,7 +36,8 @@ pub struct Tyre {
     radius: f64,
     geometry: Geometry,
     rates: Rates,
-    static_deflection: f64,
+    /// What turns the change of a contact at the static deflection into a rate.
+    static_rate: f64,
 }
 
 /// How the road is felt.
@@ -115,11 +116,15 @@ impl Tyre {
                 radius,
             });
         }
-        Ok(Self {
+        let tyre = Self {
             radius,
             geometry,
             rates,
-            static_deflection,
+            static_rate: 0.0,
+        };
+        Ok(Self {
+            static_rate: tyre.rate_at(static_deflection),
+            ..tyre
         })
     }
 
@@ -156,25 +161,40 @@ impl Tyre {
         self.radius * segment_deflection(area / (self.radius * self.radius))
     }
 
-    /// The deflection at which rates are calibrated, given that of the moment.
-    fn rate_deflection(&self, deflection: f64) -> f64 {
+    /// What turns the change of a contact into the rate of the equivalent deflection, which is `deflection` now.
+    #[inline]
+    fn rate(&self, deflection: f64) -> f64 {
         match self.rates {
-            Rates::AtStaticDeflection => self.static_deflection,
-            Rates::AtDeflection => deflection,
+            Rates::AtStaticDeflection => self.static_rate,
+            Rates::AtDeflection => self.rate_at(deflection),
+        }
+    }
+
+    fn rate_at(&self, deflection: f64) -> f64 {
+        match self.geometry {
+            Geometry::Point => 1.0,
+            Geometry::Area => 1.0 / (self.radius * circle::flat_chord(deflection / self.radius)),
+            Geometry::Radial => 1.0 / (self.radius * radial::flat_damping(deflection / self.radius)),
         }
     }
 }
 
+fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
 fn norm(v: [f64; 2]) -> f64 {
-    (v[0] * v[0] + v[1] * v[1]).sqrt()
+    dot(v, v).sqrt()
+}
+
+/// The vector with coordinates `v` in the frame of two others.
+fn combined(v: [f64; 2], first: [f64; 2], second: [f64; 2]) -> [f64; 2] {
+    [v[0] * first[0] + v[1] * second[0], v[0] * first[1] + v[1] * second[1]]
 }
 
 /// The unit vector against `v`; zero for zero.
 fn against(v: [f64; 2]) -> [f64; 2] {
     let length = norm(v);
-    if length > 0.0 {
-        [-v[0] / length, -v[1] / length]
-    } else {
-        [0.0; 2]
-    }
+    let scale = if length > 0.0 { -1.0 / length } else { 0.0 };
+    [v[0] * scale, v[1] * scale]
 }

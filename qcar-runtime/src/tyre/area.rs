@@ -1,10 +1,9 @@
 //! The area that the unloaded circle has in common with the ground (thesis section 3.3.2.2).
 
-use super::circle::{flat_chord, segment_ratio};
 use super::patches::{Line, Patch, candidates, patches};
 use super::sweep::{Sweep, Sweeps};
 use super::{Change, Touch, Tyre, Wheel, against};
-use crate::road::{Circle, Road};
+use crate::road::{Circle, Moments, Road};
 
 /// The overlap of the circle with the ground and its change; moments are about the circle's centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,14 +52,11 @@ fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
     let clip = line.clip()?;
     let mut sweeps = Sweeps::new(tyre.radius, wheel.velocity);
     sweeps.add(line.at(clip.from), line.at(clip.to));
-    let (_, down) = line.frame();
-    let deflection = tyre.radius - line.distance;
     Some(with_rates(
         tyre,
-        deflection,
-        [-down[0], -down[1]],
-        &sweeps.growth,
-        &sweeps.shrinkage,
+        tyre.radius - line.distance,
+        line.frame().1,
+        &sweeps.finish(),
     ))
 }
 
@@ -73,23 +69,22 @@ fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
         tyre,
         deflection,
         against(overlap.moment),
-        &overlap.growth,
-        &overlap.shrinkage,
+        &[overlap.growth, overlap.shrinkage],
     ))
 }
 
 #[inline]
-fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], growth: &Sweep, shrinkage: &Sweep) -> Touch {
-    let chord = tyre.radius * flat_chord(tyre.rate_deflection(deflection) / tyre.radius);
+fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], sweeps: &[Sweep; 2]) -> Touch {
+    let rate = tyre.rate(deflection);
     let change = |sweep: &Sweep| Change {
-        rate: sweep.flux / chord,
+        rate: sweep.flux * rate,
         direction: against(sweep.moment),
     };
     Touch {
         deflection,
         direction,
-        growth: change(growth),
-        shrinkage: change(shrinkage),
+        growth: change(&sweeps[0]),
+        shrinkage: change(&sweeps[1]),
     }
 }
 
@@ -97,28 +92,33 @@ fn gather(road: &Road, circle: &Circle, velocity: [f64; 2], range: (usize, usize
     let mut sweeps = Sweeps::new(circle.radius, velocity);
     let (mut area, mut moment, mut count) = (0.0, [0.0; 2], 0);
     patches(road, circle, range, |patch| {
-        let (own_area, own_moment) = area_and_moment(circle.radius, &patch);
-        area += own_area;
-        moment = [moment[0] + own_moment[0], moment[1] + own_moment[1]];
+        let angle = sweeps.add(patch.from, patch.to);
+        let below = rim_integrals(circle.radius, &patch, angle);
+        area += patch.ground.area - below.area;
+        moment = [
+            moment[0] + patch.ground.x - below.x,
+            moment[1] + patch.ground.z - below.z,
+        ];
         count += 1;
-        sweeps.add(patch.from, patch.to);
     });
+    let [growth, shrinkage] = sweeps.finish();
     Overlap {
         area,
         moment,
-        growth: sweeps.growth,
-        shrinkage: sweeps.shrinkage,
+        growth,
+        shrinkage,
         patches: count,
     }
 }
 
-/// The circular segment below the chord, whose moment has length `2/3 r³ sin³ δ`, and the ground above the chord.
-fn area_and_moment(radius: f64, patch: &Patch) -> (f64, [f64; 2]) {
-    let [dx, dz] = [patch.to[0] - patch.from[0], patch.to[1] - patch.from[1]];
-    let r2 = radius * radius;
-    let sine2 = (dx * dx + dz * dz) / (4.0 * r2);
-    let segment = r2 * sine2 * sine2.sqrt() * segment_ratio(sine2);
-    let lever = r2 * sine2 / 3.0;
-    let above = &patch.above_chord;
-    (segment + above.area, [lever * dz + above.x, above.z - lever * dx])
+/// What [`Moments`] are of the ground, of the rim below it: `x = r sin φ`, `z = -r cos φ`, over an arc of `angle`.
+#[inline]
+fn rim_integrals(radius: f64, patch: &Patch, angle: f64) -> Moments {
+    let ([x0, z0], [x1, z1]) = (patch.from, patch.to);
+    let cubes = |from: f64, to: f64| (to * to * to - from * from * from) / 3.0;
+    Moments {
+        area: (x1 * z1 - x0 * z0 - radius * radius * angle) / 2.0,
+        x: -cubes(z0, z1),
+        z: (radius * radius * (x1 - x0) - cubes(x0, x1)) / 2.0,
+    }
 }

@@ -1,34 +1,33 @@
-//! The circular segment: closed forms that stay accurate for the flattest of them.
+//! The circle's closed forms, accurate for the shortest arcs.
 
-/// Terms of the power series below; the first one left out is below the last digit where they are used.
-const TERMS: usize = 14;
-/// Largest squared half chord, in radii, for the series of [`segment_ratio`].
-const SHORT_CHORD: f64 = 0.1;
+/// Terms of the power series below; the first one left out is below 1e-13 where they are used.
+const TERMS: usize = 12;
+/// Largest squared tangent of the half angle for the series of the arc tangent.
+const SHORT_ARC: f64 = 0.1;
 /// Largest parabolic deflection, in radii, for the series of [`segment_deflection`].
 const SMALL_DEFLECTION: f64 = 0.15;
 
-const SEGMENT_SERIES: [f64; TERMS] = segment_series();
+const ARC_TANGENT_SERIES: [f64; TERMS] = arc_tangent_series();
 const DEFLECTION_SERIES: [f64; TERMS] = deflection_series();
 
-/// Area between an arc and its chord over the cube of the half chord `y`, on the unit circle, from `y²`:
-/// `(asin y - y sqrt(1 - y²))/y³`, which is 2/3 for the shortest chords.
+/// The angle of a sine and cosine: twice the arc tangent of its half, by the power series for all but the longest arcs.
 #[inline]
-pub(super) fn segment_ratio(y2: f64) -> f64 {
-    if y2 < SHORT_CHORD {
-        return polynomial(&SEGMENT_SERIES, y2);
+pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
+    let tangent = sine / (1.0 + cosine);
+    let squared = tangent * tangent;
+    if squared < SHORT_ARC {
+        2.0 * tangent * polynomial(&ARC_TANGENT_SERIES, squared)
+    } else {
+        sine.atan2(cosine)
     }
-    let y = y2.min(1.0).sqrt();
-    (y.asin() - y * (1.0 - y2).max(0.0).sqrt()) / (y * y2)
 }
 
 /// Area that the unit circle has in common with a flat road at `deflection` (0 to 2): equation 3.4 of the thesis.
 pub fn segment_area(deflection: f64) -> f64 {
     let deflection = deflection.clamp(0.0, 2.0);
-    let y2 = deflection * (2.0 - deflection);
-    if deflection < 1.0 && y2 < SHORT_CHORD {
-        return y2 * y2.sqrt() * polynomial(&SEGMENT_SERIES, y2);
-    }
-    (1.0 - deflection).acos() - (1.0 - deflection) * y2.sqrt()
+    let cosine = 1.0 - deflection;
+    let sine = flat_chord(deflection) / 2.0;
+    sine.atan2(cosine) - cosine * sine
 }
 
 /// The inverse of [`segment_area`]: a power series in `area^(2/3)`, polished by Newton's method where that is slow.
@@ -75,20 +74,26 @@ pub(super) fn flat_chord(deflection: f64) -> f64 {
     2.0 * (deflection * (2.0 - deflection)).max(0.0).sqrt()
 }
 
+/// Four coefficients at a time, so that the processor works on several while the sum waits for the last.
 #[inline]
 fn polynomial(coefficients: &[f64; TERMS], x: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * x + c)
+    let (x2, x4) = (x * x, x * x * x * x);
+    let four = |c: &[f64; 4]| (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;
+    coefficients
+        .as_chunks()
+        .0
+        .iter()
+        .rev()
+        .fold(0.0, |sum, chunk| sum * x4 + four(chunk))
 }
 
-/// The derivative of `asin y - y sqrt(1 - y²)` is `2 y²/sqrt(1 - y²)`; its binomial series, integrated.
-const fn segment_series() -> [f64; TERMS] {
+/// `atan t = t (1 - t²/3 + t⁴/5 - …)`.
+const fn arc_tangent_series() -> [f64; TERMS] {
     let mut series = [0.0; TERMS];
-    let mut binomial = 1.0;
     let mut k = 0;
     while k < TERMS {
-        let twice = 2.0 * k as f64;
-        series[k] = 2.0 * binomial / (twice + 3.0);
-        binomial *= (twice + 1.0) / (twice + 2.0);
+        let sign = if k % 2 == 0 { 1.0 } else { -1.0 };
+        series[k] = sign / (2 * k + 1) as f64;
         k += 1;
     }
     series

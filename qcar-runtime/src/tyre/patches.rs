@@ -9,8 +9,8 @@ pub(super) struct Patch {
     pub from: [f64; 2],
     /// Where it leaves the circle.
     pub to: [f64; 2],
-    /// Integrals over what the ground has above the chord between the two.
-    pub above_chord: Moments,
+    /// Integrals over the ground between the two.
+    pub ground: Moments,
 }
 
 /// The line of a piece of road, seen from the centre of a circle.
@@ -87,7 +87,11 @@ pub(super) fn patches(road: &Road, circle: &Circle, (first, last): (usize, usize
 impl Patch {
     fn between(road: &Road, circle: &Circle, (first, from): Place, (last, to): Place) -> Self {
         if first == last {
-            return Self::straight(from, to);
+            return Self {
+                from,
+                to,
+                ground: Moments::straight(from, to),
+            };
         }
         let vertex = |k: usize| {
             let [x, z] = road.vertices()[k];
@@ -96,20 +100,7 @@ impl Patch {
         let ground = Moments::straight(from, vertex(first))
             .plus(road.between(first, last - 1, circle.centre))
             .plus(Moments::straight(vertex(last - 1), to));
-        Self {
-            from,
-            to,
-            above_chord: ground.minus(Moments::straight(from, to)),
-        }
-    }
-
-    #[inline]
-    pub fn straight(from: [f64; 2], to: [f64; 2]) -> Self {
-        Self {
-            from,
-            to,
-            above_chord: Moments::default(),
-        }
+        Self { from, to, ground }
     }
 }
 
@@ -164,9 +155,10 @@ impl Line {
         ]
     }
 
-    /// The unit vector along the line, and that across it away from the centre of a circle above it.
+    /// The unit vectors along the line and across it, up from the ground.
+    #[inline]
     pub fn frame(&self) -> ([f64; 2], [f64; 2]) {
-        (self.along, [self.along[1], -self.along[0]])
+        (self.along, [-self.along[1], self.along[0]])
     }
 
     /// How far a place is ahead of the foot.

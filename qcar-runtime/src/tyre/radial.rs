@@ -7,7 +7,7 @@
 
 use super::patches::{Line, candidates};
 use super::sweep::Sweeps;
-use super::{Change, Touch, Tyre, Wheel, against, norm};
+use super::{Change, Touch, Tyre, Wheel, against, combined, norm};
 use crate::road::{Circle, Road};
 
 /// The contact by radii.
@@ -26,20 +26,24 @@ pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel) -> Option<Touch> {
         return None;
     }
     let deflection = tyre.radius * (1.0 - half_angle(size).cos());
-    let angle = (1.0 - tyre.rate_deflection(deflection) / tyre.radius)
-        .clamp(-1.0, 1.0)
-        .acos();
-    let damping = tyre.radius * (angle + angle.sin() * angle.cos());
+    let rate = tyre.rate(deflection);
+    let [growth, shrinkage] = radii.sweeps.finish();
     let change = |moment| Change {
-        rate: norm(moment) / damping,
+        rate: norm(moment) * rate,
         direction: against(moment),
     };
     Some(Touch {
         deflection,
         direction: against(radii.spring),
-        growth: change(radii.sweeps.growth.moment),
-        shrinkage: change(radii.sweeps.shrinkage.moment),
+        growth: change(growth.moment),
+        shrinkage: change(shrinkage.moment),
     })
+}
+
+/// `∫ cos² φ dφ` over the contact of the unit circle with a flat road: what the dampers feel of a vertical velocity.
+pub(super) fn flat_damping(deflection: f64) -> f64 {
+    let angle = (1.0 - deflection).clamp(-1.0, 1.0).acos();
+    angle + angle.sin() * angle.cos()
 }
 
 /// Integrals over the radii that end on the ground.
@@ -93,14 +97,13 @@ impl Radii {
         Some((from, to))
     }
 
-    /// `∫ (r - p/cos γ) (normal cos γ + along sin γ) dγ` between two angles from the normal of a line at distance p.
+    /// `∫ (r - p/cos γ) (down cos γ + along sin γ) dγ` between two angles from the normal of a line at distance p.
     fn add_spring(&mut self, radius: f64, line: &Line, from: f64, to: f64) {
-        let (along, normal) = line.frame();
-        let across = |angle: f64| radius * angle.sin() - line.distance * angle;
+        let (along, up) = line.frame();
+        let down = |angle: f64| radius * angle.sin() - line.distance * angle;
         let forward = |angle: f64| line.distance * angle.cos().ln() - radius * angle.cos();
-        let (across, forward) = (across(to) - across(from), forward(to) - forward(from));
-        self.spring[0] += normal[0] * across + along[0] * forward;
-        self.spring[1] += normal[1] * across + along[1] * forward;
+        let push = combined([forward(to) - forward(from), down(from) - down(to)], along, up);
+        self.spring = [self.spring[0] + push[0], self.spring[1] + push[1]];
     }
 }
 

@@ -1,6 +1,10 @@
 //! What a moving circle sweeps: the part of an arc that advances into the ground, and the part that retreats.
+//!
+//! The two meet at the turning point, where the circle moves along itself. At an angle θ ahead of it the circle
+//! advances with `v·n = w sin θ`, so in the frame of the turning point all integrals are those of sines and cosines.
 
-use super::circle::segment_ratio;
+use super::circle::angle;
+use super::{combined, dot};
 
 /// Integrals over the arcs that advance, or over those that retreat; `n` is the normal out of the circle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -11,78 +15,114 @@ pub struct Sweep {
     pub moment: [f64; 2],
 }
 
-/// Growth and shrinkage of a contact.
+/// The parts of a contact's rim ahead of the turning point and behind it: one grows, the other shrinks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sweeps {
     radius: f64,
-    velocity: [f64; 2],
-    /// Where the circle moves along itself: the lower of the two points, relative to the centre.
-    turning: [f64; 2],
-    pub growth: Sweep,
-    pub shrinkage: Sweep,
+    per_radius: f64,
+    /// Speed w along the circle at the turning point, positive to the front.
+    speed: f64,
+    /// The direction of the circle there; its normal out of the circle points down.
+    along: [f64; 2],
+    /// With the moment along the circle and across it at the turning point.
+    ahead: Sweep,
+    /// As `ahead`, with the sign of `sin θ`: negative.
+    behind: Sweep,
+}
+
+/// A point of the circle by its angle θ ahead of the turning point, with integrals from there to it.
+#[derive(Clone, Copy, Debug)]
+struct Rim {
+    angle: f64,
+    sine: f64,
+    /// `∫ sin θ dθ`, and with the normal `∫ n sin θ dθ`.
+    sweep: Sweep,
 }
 
 impl Sweeps {
     #[inline]
     pub fn new(radius: f64, velocity: [f64; 2]) -> Self {
-        let [vx, vz] = velocity;
-        let speed = (vx * vx + vz * vz).sqrt();
-        let turning = if speed > 0.0 {
-            [vz / speed * radius, -vx / speed * radius]
+        let speed = dot(velocity, velocity).sqrt().copysign(velocity[0]);
+        // A wheel at rest sweeps nothing, wherever its arcs are split.
+        let along = if speed != 0.0 {
+            [velocity[0] / speed, velocity[1] / speed]
         } else {
-            [0.0, radius]
+            [1.0, 0.0]
         };
-        let down = if turning[1] > 0.0 {
-            [-turning[0], -turning[1]]
-        } else {
-            turning
-        };
+        let per_radius = 1.0 / radius;
         Self {
             radius,
-            velocity,
-            turning: down,
-            growth: Sweep::default(),
-            shrinkage: Sweep::default(),
+            per_radius,
+            speed,
+            along,
+            ahead: Sweep::default(),
+            behind: Sweep::default(),
         }
     }
 
-    /// Adds the lower arc between two points of the circle, from the rear to the front.
+    /// Adds the lower arc between two points of the circle, from the rear to the front, and says which angle it spans.
     #[inline]
-    pub fn add(&mut self, from: [f64; 2], to: [f64; 2]) {
-        if from[0] < self.turning[0] && self.turning[0] < to[0] {
-            self.add_one_way(from, self.turning);
-            self.add_one_way(self.turning, to);
+    pub fn add(&mut self, from: [f64; 2], to: [f64; 2]) -> f64 {
+        let (from, to) = (self.rim(from), self.rim(to));
+        if from.sine < 0.0 && 0.0 < to.sine {
+            self.ahead = self.ahead.plus(&to.sweep, 1.0);
+            self.behind = self.behind.plus(&from.sweep, -1.0);
         } else {
-            self.add_one_way(from, to);
+            let side = if from.sine < 0.0 {
+                &mut self.behind
+            } else {
+                &mut self.ahead
+            };
+            *side = side.plus(&to.sweep, 1.0).plus(&from.sweep, -1.0);
         }
+        to.angle - from.angle
     }
 
-    /// An arc that advances, or retreats, as a whole. In the frame of its chord the integral is
-    /// `∫ n n·v ds = r (e (v·e) (δ + sin δ cos δ) + t (v·t) (δ - sin δ cos δ))` with the half angle δ, `e` across the
-    /// chord and `t` along it.
+    /// Growth and shrinkage of all arcs.
     #[inline]
-    fn add_one_way(&mut self, from: [f64; 2], to: [f64; 2]) {
-        let along = [to[0] - from[0], to[1] - from[1]];
-        let across = [along[1], -along[0]];
-        let dot = |a: [f64; 2]| self.velocity[0] * a[0] + self.velocity[1] * a[1];
-        let (flux, slip) = (dot(across), dot(along));
-        let chord2 = along[0] * along[0] + along[1] * along[1];
-        let sine2 = chord2 / (4.0 * self.radius * self.radius);
-
-        if sine2 <= 0.0 {
-            return;
-        }
-        let thin = sine2 * segment_ratio(sine2);
-        let wide = thin + 2.0 * (1.0 - sine2).max(0.0).sqrt();
-        let scale = flux.signum() / (4.0 * self.radius * sine2.sqrt());
-        let (across_part, along_part) = (scale * flux * wide, scale * slip * thin);
-        let side = if flux > 0.0 {
-            &mut self.growth
-        } else {
-            &mut self.shrinkage
+    pub fn finish(&self) -> [Sweep; 2] {
+        let scale = self.radius * self.speed;
+        let down = [self.along[1], -self.along[0]];
+        let swept = |sweep: &Sweep, scale: f64| Sweep {
+            flux: scale * sweep.flux,
+            moment: combined([scale * sweep.moment[0], scale * sweep.moment[1]], self.along, down),
         };
-        side.flux += flux.abs();
-        side.moment[0] += across[0] * across_part + along[0] * along_part;
-        side.moment[1] += across[1] * across_part + along[1] * along_part;
+        if self.speed > 0.0 {
+            [swept(&self.ahead, scale), swept(&self.behind, -scale)]
+        } else {
+            [swept(&self.behind, scale), swept(&self.ahead, -scale)]
+        }
+    }
+
+    #[inline]
+    fn rim(&self, point: [f64; 2]) -> Rim {
+        let [x, z] = [point[0] * self.per_radius, point[1] * self.per_radius];
+        let (sine, cosine) = (
+            x * self.along[0] + z * self.along[1],
+            x * self.along[1] - z * self.along[0],
+        );
+        let angle = angle(sine, cosine);
+        let moment = [0.5 * (angle - sine * cosine), 0.5 * sine * sine];
+        Rim {
+            angle,
+            sine,
+            sweep: Sweep {
+                flux: 1.0 - cosine,
+                moment,
+            },
+        }
+    }
+}
+
+impl Sweep {
+    #[inline]
+    fn plus(&self, other: &Self, times: f64) -> Self {
+        Self {
+            flux: self.flux + times * other.flux,
+            moment: [
+                self.moment[0] + times * other.moment[0],
+                self.moment[1] + times * other.moment[1],
+            ],
+        }
     }
 }
