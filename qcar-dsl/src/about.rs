@@ -242,3 +242,19 @@ pub struct ResponseLayout {
     /// Nonzeros of the parameter Jacobian: place in `outputs` of this layout, parameter; output after output.
     pub jacobian: Vec<(u16, u16)>,
 }
+
+impl About {
+    /// The names of the row and the column of a place in A, B, C or D.
+    pub fn relates(&self, entry: &Entry) -> (&str, &str) {
+        let (row, column) = (usize::from(entry.row), usize::from(entry.column));
+        let row = match entry.matrix {
+            Matrix::A | Matrix::B => &self.states[row].name,
+            Matrix::C | Matrix::D => &self.outputs[row].name,
+        };
+        let column = match entry.matrix {
+            Matrix::A | Matrix::C => &self.states[column].name,
+            Matrix::B | Matrix::D => &self.inputs[column].name,
+        };
+        (row, column)
+    }
+}

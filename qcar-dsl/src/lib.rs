@@ -43,6 +43,10 @@ pub mod program;
 pub mod schedule;
 // Programs interpreted at run time.
 pub mod evaluate;
+// How an expression is written.
+pub mod notation;
+// Equations as an engineer writes them.
+pub mod equations;
 // Programs printed as Rust.
 pub mod rust;
 // For people: equations, matrices, LaTeX, dot.

@@ -2,7 +2,11 @@
 //!
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
+pub use nalgebra;
+
 pub mod model;
+// What generated models stand on.
+pub mod generated;
 // What every part reports through.
 pub mod error;
 // The measurement as it lies on disk.

@@ -33,19 +33,31 @@ pub trait Model: Send + Sync {
 
     /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
     ///
-    /// See [`ResponseLayout`] for what is written where.
-    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>);
+    /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
+    fn response(&self, excitation: usize, _constants: &[f64], _omega: &[f64], _into: ResponseMut<'_>) {
+        panic!(
+            "excitation {excitation} of {}, which has no frequency response",
+            self.about().name
+        );
+    }
 
     /// The resisting force (N, positive in tension) of the tyre link while it rolls, at stretch `s` (m, negative in
     /// compression) and rate `v` (m/s), with the inner states in `x`. Zero without [`About::contact`].
-    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64;
+    fn contact_force(&self, _constants: &[f64], _x: &[f64], _s: f64, _v: f64) -> f64 {
+        0.0
+    }
 
     /// The equations of motion with the tyre rolling over a profile: its link is taken out, the forces of `contact`
-    /// act on its wheel instead, and its inner states follow `contact.s` and `contact.v`.
-    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]);
+    /// act on its wheel instead, and its inner states follow `contact.s` and `contact.v`. Without
+    /// [`About::contact`] it is [`Model::derivative`].
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, dx: &mut [f64]) {
+        self.derivative(constants, x, u, dx);
+    }
 
-    /// The outputs with the tyre rolling over a profile.
-    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]);
+    /// The outputs with the tyre rolling over a profile. Without [`About::contact`] it is [`Model::outputs`].
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, y: &mut [f64]) {
+        self.outputs(constants, x, u, y);
+    }
 }
 
 /// What a tyre that rolls over a profile gives to its model.
@@ -291,6 +303,13 @@ pub struct Entry {
     pub row: u16,
     /// Column.
     pub column: u16,
+}
+
+impl Entry {
+    /// A place in a matrix.
+    pub const fn at(matrix: Matrix, row: u16, column: u16) -> Entry {
+        Entry { matrix, row, column }
+    }
 }
 
 /// A matrix of the state-space form.

@@ -1,0 +1,295 @@
+//! A straight-line program as Rust: one operation a line, a result stored where it is computed.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::expr::Function;
+use crate::program::{Op, Program, Value};
+
+use super::names::Names;
+use super::pieces::{Leaf, Pieces, op, operations};
+
+/// How a program becomes a function.
+pub struct Signature<'a> {
+    /// The name of the function.
+    pub name: String,
+    /// Its doc comment, line by line; the operation count is added.
+    pub doc: Vec<String>,
+    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
+    pub arguments: Vec<(&'static str, String)>,
+    /// What each result is, for a comment.
+    pub results: Vec<String>,
+    /// Where a leaf is read, and what a reviewer calls it.
+    pub leaf: &'a dyn Fn(Leaf) -> Local,
+    /// What a reviewer calls a value of the program, where the model has a name for it.
+    pub labels: BTreeMap<Value, String>,
+    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
+    pub lines: bool,
+}
+
+/// A leaf as the function reads it.
+pub struct Local {
+    /// The argument, `p`.
+    pub argument: &'static str,
+    /// What of it, `[3]`.
+    pub place: String,
+    /// What a reviewer calls it, `k_tire`.
+    pub name: String,
+}
+
+/// The Rust text of a program: one function, or one that calls several in turn.
+pub fn function(signature: &Signature, program: &Program) -> String {
+    let cut = Pieces::cut(program);
+    let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(signature, &cut, piece).function());
+    match cut.pieces.len() {
+        1 => pieces.collect(),
+        _ => [caller(signature, &cut)]
+            .into_iter()
+            .chain(pieces)
+            .collect::<Vec<_>>()
+            .join("\n"),
+    }
+}
+
+/// The function that hands its arguments to the pieces.
+fn caller(signature: &Signature, cut: &Pieces) -> String {
+    let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
+    let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
+    let mut text = doc(&signature.doc, operations(cut.program), signature.lines);
+    let arguments = signature
+        .arguments
+        .iter()
+        .map(|(name, kind)| format!("{name}: {kind}"))
+        .collect();
+    text += &heading(&signature.name, arguments, signature.lines, cut.program.outputs.len());
+    text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
+    for piece in 1..=cut.pieces.len() {
+        text += &format!(
+            "    {}_{piece}({}, &mut kept, out);\n",
+            signature.name,
+            names.join(", ")
+        );
+    }
+    text + "}\n"
+}
+
+fn doc(lines: &[String], count: usize, a_line: bool) -> String {
+    let operations = if count == 1 { "operation" } else { "operations" };
+    let count = format!("{count} {operations}{}.", if a_line { " a line" } else { "" });
+    let lines = lines.iter().cloned().chain([String::new(), count]);
+    lines
+        .map(|line| format!("{}\n", format!("/// {line}").trim_end()))
+        .collect()
+}
+
+fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) -> String {
+    arguments.push(format!("out: &mut {}", array(lines, results)));
+    format!("pub fn {name}({}) {{\n", arguments.join(", "))
+}
+
+fn array(lines: bool, length: usize) -> String {
+    format!("[{}; {length}]", if lines { "[f64; LINES]" } else { "f64" })
+}
+
+/// Prints one piece of a program, which may be all of it.
+struct Printer<'a> {
+    signature: &'a Signature<'a>,
+    cut: &'a Pieces<'a>,
+    piece: usize,
+    /// The local variable of each value that the piece reads, takes or computes.
+    locals: BTreeMap<Value, String>,
+    /// The results to which each value goes.
+    results: BTreeMap<Value, Vec<usize>>,
+}
+
+impl<'a> Printer<'a> {
+    fn new(signature: &'a Signature<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
+        let mut names = Names::beside(signature.arguments.iter().map(|(argument, _)| *argument));
+        let mut locals = BTreeMap::new();
+        for (leaf, value) in cut.read(piece) {
+            locals.insert(value, names.take(&(signature.leaf)(leaf).name));
+        }
+        for value in cut.taken(piece).into_iter().chain(cut.pieces[piece].iter().copied()) {
+            let label = signature.labels.get(&value).cloned();
+            locals.insert(value, names.take(&label.unwrap_or_else(|| format!("v{}", value.0))));
+        }
+        let mut results: BTreeMap<Value, Vec<usize>> = BTreeMap::new();
+        for (place, &value) in cut.program.outputs.iter().enumerate() {
+            results.entry(value).or_default().push(place);
+        }
+        Printer {
+            signature,
+            cut,
+            piece,
+            locals,
+            results,
+        }
+    }
+
+    fn is_whole(&self) -> bool {
+        self.cut.pieces.len() == 1
+    }
+
+    fn function(&self) -> String {
+        let Signature { name, lines, .. } = self.signature;
+        let count = self.cut.pieces[self.piece].len();
+        let results = self.cut.program.outputs.len();
+        if self.is_whole() {
+            let heading = heading(name, self.arguments(), *lines, results);
+            return doc(&self.signature.doc, count, *lines) + &heading + &self.body();
+        }
+        let number = self.piece + 1;
+        let kept = format!("kept: &mut {}", array(*lines, self.cut.kept.len()));
+        let arguments = self.arguments().into_iter().chain([kept]).collect();
+        // Inlined again, the pieces would be as long as the whole.
+        let attribute = "#[inline(never)]\n";
+        doc(&[format!("Piece {number} of [`{name}`].")], count, *lines)
+            + attribute
+            + &heading(&format!("{name}_{number}"), arguments, *lines, results)
+            + &self.body()
+    }
+
+    /// The arguments; those that the piece does not read have an underscore in front.
+    fn arguments(&self) -> Vec<String> {
+        let read: BTreeSet<&str> = self.leaves().into_iter().map(|(local, _)| local.argument).collect();
+        let underscore = |name: &str| if read.contains(name) { "" } else { "_" };
+        let arguments = self.signature.arguments.iter();
+        arguments
+            .map(|(name, kind)| format!("{}{name}: {kind}", underscore(name)))
+            .collect()
+    }
+
+    fn leaves(&self) -> Vec<(Local, Value)> {
+        let read = self.cut.read(self.piece).into_iter();
+        read.map(|(leaf, value)| ((self.signature.leaf)(leaf), value)).collect()
+    }
+
+    fn body(&self) -> String {
+        let (a_line, once): (Vec<_>, Vec<_>) = self
+            .leaves()
+            .into_iter()
+            .partition(|(local, _)| local.argument == FREQUENCIES);
+        let read = |(local, value): &(Local, Value)| {
+            format!("let {} = {}{};", self.locals[value], local.argument, local.place)
+        };
+        let once: Vec<String> = once.iter().map(read).collect();
+        let kept = self.cut.taken(self.piece).into_iter().map(|value| {
+            format!(
+                "let {} = kept[{}]{};",
+                self.locals[&value],
+                self.cut.kept[&value],
+                self.line()
+            )
+        });
+        let stored = self
+            .cut
+            .stored(self.piece)
+            .into_iter()
+            .map(|(place, value)| self.store(place, value));
+        let computed = self.cut.pieces[self.piece]
+            .iter()
+            .flat_map(|&value| self.compute(value));
+        let repeated: Vec<String> = a_line
+            .iter()
+            .map(read)
+            .chain(kept)
+            .chain(stored)
+            .chain(computed)
+            .collect();
+        match self.signature.lines {
+            true => format!(
+                "{}    for line in 0..LINES {{\n{}    }}\n}}\n",
+                indent(&once, 1),
+                indent(&repeated, 2)
+            ),
+            false => format!("{}{}}}\n", indent(&once, 1), indent(&repeated, 1)),
+        }
+    }
+
+    /// The index of the line, where there are several.
+    fn line(&self) -> &'static str {
+        if self.signature.lines { "[line]" } else { "" }
+    }
+
+    /// The statement that computes a value, and those that put it where it is wanted.
+    fn compute(&self, value: Value) -> Vec<String> {
+        let mut statements = vec![format!("let {} = {};", self.locals[&value], self.operation(value))];
+        if let Some(place) = self.cut.kept.get(&value) {
+            statements.push(format!("kept[{place}]{} = {};", self.line(), self.locals[&value]));
+        }
+        let results = self.results.get(&value).into_iter().flatten();
+        statements.extend(results.map(|&place| self.store(place, value)));
+        statements
+    }
+
+    fn store(&self, place: usize, value: Value) -> String {
+        let comment = self.signature.results.get(place).map(|result| format!(" // {result}"));
+        format!(
+            "out[{place}]{} = {};{}",
+            self.line(),
+            self.operand(value),
+            comment.unwrap_or_default()
+        )
+    }
+
+    fn operand(&self, value: Value) -> String {
+        match op(self.cut.program, value) {
+            Op::Constant(number) => literal(number),
+            _ => self.locals[&value].clone(),
+        }
+    }
+
+    fn operation(&self, value: Value) -> String {
+        let at = |v: Value| self.operand(v);
+        match op(self.cut.program, value) {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self.operand(value),
+            Op::Neg(a) => format!("-{}", at(a)),
+            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
+            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
+            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
+            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Pow(a, b) => format!("f64::powf({}, {})", at(a), at(b)),
+            Op::Min(a, b) => format!("f64::min({}, {})", at(a), at(b)),
+            Op::Max(a, b) => format!("f64::max({}, {})", at(a), at(b)),
+            Op::Call(f, a) => format!("{}({})", function_path(f), at(a)),
+            Op::Select(test, a, b) => format!("if {} > 0.0 {{ {} }} else {{ {} }}", at(test), at(a), at(b)),
+        }
+    }
+}
+
+/// The argument of a frequency response that has a value for each line.
+pub const FREQUENCIES: &str = "frequencies";
+
+fn indent(statements: &[String], depth: usize) -> String {
+    statements
+        .iter()
+        .map(|statement| format!("{}{statement}\n", "    ".repeat(depth)))
+        .collect()
+}
+
+fn literal(number: f64) -> String {
+    match number {
+        _ if number.is_nan() => "f64::NAN".into(),
+        _ if number.is_infinite() => if number > 0.0 {
+            "f64::INFINITY"
+        } else {
+            "f64::NEG_INFINITY"
+        }
+        .into(),
+        _ => format!("{number:?}"),
+    }
+}
+
+fn function_path(f: Function) -> &'static str {
+    match f {
+        Function::Abs => "f64::abs",
+        Function::Sign => "sign",
+        Function::Sqrt => "f64::sqrt",
+        Function::Exp => "f64::exp",
+        Function::Ln => "f64::ln",
+        Function::Sin => "f64::sin",
+        Function::Cos => "f64::cos",
+        Function::Tan => "f64::tan",
+        Function::Atan => "f64::atan",
+        Function::Tanh => "f64::tanh",
+    }
+}

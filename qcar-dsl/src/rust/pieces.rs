@@ -1,0 +1,117 @@
+//! A long program in pieces: rustc's optimiser is superlinear in the length of a function.
+//!
+//! What a later piece needs of an earlier one goes through an array, `kept`.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use crate::expr::Symbol;
+use crate::program::{Op, Program, Value};
+
+/// The longest piece, in operations.
+const LONGEST: usize = 1000;
+
+/// A program and where it is cut.
+pub struct Pieces<'a> {
+    /// All of it.
+    pub program: &'a Program,
+    /// The computed values of each piece, in order; one piece at least.
+    pub pieces: Vec<Vec<Value>>,
+    /// The values that one piece leaves to a later one, with their places in `kept`.
+    pub kept: BTreeMap<Value, usize>,
+}
+
+/// What a program reads from its arguments.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Debug)]
+pub enum Leaf {
+    /// A prepared constant.
+    Prepared(u32),
+    /// A leaf of the equations.
+    Symbol(Symbol),
+}
+
+impl<'a> Pieces<'a> {
+    /// Cuts a program into pieces of about the same length.
+    pub fn cut(program: &'a Program) -> Pieces<'a> {
+        let computed: Vec<Value> = computed(program).collect();
+        let count = computed.len().div_ceil(LONGEST).max(1);
+        let length = computed.len().div_ceil(count).max(1);
+        let mut pieces: Vec<Vec<Value>> = computed.chunks(length).map(<[Value]>::to_vec).collect();
+        if pieces.is_empty() {
+            pieces.push(Vec::new());
+        }
+        let mut cut = Pieces {
+            program,
+            pieces,
+            kept: BTreeMap::new(),
+        };
+        let crossing: BTreeSet<Value> = (0..cut.pieces.len()).flat_map(|piece| cut.taken(piece)).collect();
+        cut.kept = crossing.into_iter().zip(0..).collect();
+        cut
+    }
+
+    /// The values that a piece takes from an earlier one.
+    pub fn taken(&self, piece: usize) -> BTreeSet<Value> {
+        let values = &self.pieces[piece];
+        let used = values.iter().flat_map(|&value| operands(op(self.program, value)));
+        used.filter(|&value| is_computed(self.program, value) && value < values[0])
+            .collect()
+    }
+
+    /// The leaves that a piece reads, in the order of their places.
+    pub fn read(&self, piece: usize) -> BTreeMap<Leaf, Value> {
+        let used = self.pieces[piece]
+            .iter()
+            .flat_map(|&value| operands(op(self.program, value)));
+        let stored = self.stored(piece).into_iter().map(|(_, value)| value);
+        used.chain(stored)
+            .filter_map(|value| Some((as_leaf(self.program, value)?, value)))
+            .collect()
+    }
+
+    /// The results that are no operation of their own (numbers, leaves), with their places: the first piece stores them.
+    pub fn stored(&self, piece: usize) -> Vec<(usize, Value)> {
+        let results = self.program.outputs.iter().copied().enumerate();
+        results
+            .filter(|&(_, value)| piece == 0 && !is_computed(self.program, value))
+            .collect()
+    }
+}
+
+/// How many operations of a program compute something.
+pub fn operations(program: &Program) -> usize {
+    computed(program).count()
+}
+
+/// What a value is.
+pub fn op(program: &Program, value: Value) -> Op {
+    program.ops[value.0 as usize]
+}
+
+/// What a value reads, where it reads something.
+pub fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
+    match op(program, value) {
+        Op::Input(symbol) => Some(Leaf::Symbol(symbol)),
+        Op::Prepared(place) => Some(Leaf::Prepared(place)),
+        _ => None,
+    }
+}
+
+fn computed(program: &Program) -> impl Iterator<Item = Value> {
+    (0..program.ops.len() as u32)
+        .map(Value)
+        .filter(|&value| is_computed(program, value))
+}
+
+fn is_computed(program: &Program, value: Value) -> bool {
+    !matches!(op(program, value), Op::Constant(_) | Op::Input(_) | Op::Prepared(_))
+}
+
+fn operands(op: Op) -> Vec<Value> {
+    match op {
+        Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => vec![],
+        Op::Neg(a) | Op::Call(_, a) => vec![a],
+        Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => vec![a, b],
+        Op::Pow(a, b) | Op::Min(a, b) | Op::Max(a, b) => vec![a, b],
+        Op::Select(a, b, c) => vec![a, b, c],
+    }
+}

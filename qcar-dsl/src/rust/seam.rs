@@ -1,0 +1,95 @@
+//! `impl Model`: the generated functions behind the runtime's trait.
+
+use crate::about::About;
+use crate::schedule::Compiled;
+
+use super::names::camel;
+use super::straight::response_name;
+
+/// The model's type and its implementation of the seam.
+pub fn implementation(compiled: &Compiled) -> String {
+    let about = &compiled.about;
+    let name = camel(&about.name);
+    format!(
+        "/// This model behind the seam of the workbench.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct {name};
+
+impl seam::Model for {name} {{
+    fn about(&self) -> &seam::About {{
+        &ABOUT
+    }}
+
+    fn prepare(&self, p: &[f64], constants: &mut [f64]) {{
+        straight::prepare(fixed(p), fixed_mut(constants));
+    }}
+
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {{
+        straight::derivative(fixed(constants), fixed(x), fixed(u), fixed_mut(dx));
+    }}
+
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]) {{
+        straight::outputs(fixed(constants), fixed(x), fixed(u), fixed_mut(y));
+    }}
+
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {{
+        straight::matrices(fixed(p), {point}, fixed_mut(nonzeros));
+    }}
+
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {{
+        straight::sensitivities(fixed(p), {point}, fixed_mut(nonzeros));
+    }}
+
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {{
+        straight::parameter_jacobian(fixed(p), fixed(x), fixed(u), fixed_mut(nonzeros));
+    }}
+{response}{rolling}}}
+",
+        point = "fixed(x), fixed(u)",
+        response = response(about),
+        rolling = if about.contact.is_some() { ROLLING } else { "" },
+    )
+}
+
+/// The frequency responses, one arm for each excitation with and without its Jacobian.
+fn response(about: &About) -> String {
+    if about.responses.is_empty() {
+        return String::new();
+    }
+    let arm = |place: usize, suffix: &str| {
+        let function = response_name(about, place, suffix);
+        format!(
+            "            ({place}, {}) => respond(omega, into, |lines, out| straight::{function}(constants, lines, out)),\n",
+            !suffix.is_empty()
+        )
+    };
+    let arms: String = (0..about.responses.len())
+        .flat_map(|place| [arm(place, ""), arm(place, "_jacobian")])
+        .collect();
+    format!(
+        "
+    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: seam::ResponseMut<'_>) {{
+        let constants = fixed(constants);
+        match (excitation, into.jacobian.is_some()) {{
+{arms}            _ => no_response(&ABOUT, excitation),
+        }}
+    }}
+"
+    )
+}
+
+const ROLLING: &str = "
+    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
+        let mut force = [0.0];
+        straight::contact_force(fixed(constants), fixed(x), s, v, &mut force);
+        force[0]
+    }
+
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, dx: &mut [f64]) {
+        straight::rolling_derivative(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(dx));
+    }
+
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, y: &mut [f64]) {
+        straight::rolling_outputs(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(y));
+    }
+";

@@ -1,0 +1,135 @@
+//! What generated models stand on.
+//!
+//! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
+//! here a frequency response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.
+
+use nalgebra::SMatrix;
+
+use crate::model::{About, ResponseMut};
+
+/// How many lines of a frequency response are computed together: a cache line of each row.
+pub const LINES: usize = 8;
+
+/// The state-space form `dx = A x + B u`, `y = C x + D u` of a model with N states, M inputs and O outputs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StateSpace<const N: usize, const M: usize, const O: usize> {
+    /// ∂f/∂x
+    pub a: SMatrix<f64, N, N>,
+    /// ∂f/∂u
+    pub b: SMatrix<f64, N, M>,
+    /// ∂h/∂x
+    pub c: SMatrix<f64, O, N>,
+    /// ∂h/∂u
+    pub d: SMatrix<f64, O, M>,
+}
+
+impl<const N: usize, const M: usize, const O: usize> StateSpace<N, M, O> {
+    /// All zero.
+    pub fn zeros() -> Self {
+        StateSpace {
+            a: SMatrix::zeros(),
+            b: SMatrix::zeros(),
+            c: SMatrix::zeros(),
+            d: SMatrix::zeros(),
+        }
+    }
+}
+
+/// The first `N` values of a slice.
+///
+/// # Panics
+///
+/// Where there are fewer.
+#[inline]
+#[track_caller]
+pub fn fixed<const N: usize>(slice: &[f64]) -> &[f64; N] {
+    slice.first_chunk().unwrap_or_else(|| too_short(slice.len(), N))
+}
+
+/// The first `N` values of a slice, to be written.
+///
+/// # Panics
+///
+/// Where there are fewer.
+#[inline]
+#[track_caller]
+pub fn fixed_mut<const N: usize>(slice: &mut [f64]) -> &mut [f64; N] {
+    let length = slice.len();
+    slice.first_chunk_mut().unwrap_or_else(|| too_short(length, N))
+}
+
+#[cold]
+#[track_caller]
+fn too_short(length: usize, needed: usize) -> ! {
+    panic!("a slice of {length} values where a model needs {needed}")
+}
+
+/// Says that a model has no such excitation.
+///
+/// # Panics
+///
+/// Always.
+#[cold]
+#[track_caller]
+pub fn no_response(about: &About, excitation: usize) -> ! {
+    panic!(
+        "excitation {excitation} of {}, which has {}",
+        about.name,
+        about.responses.len()
+    )
+}
+
+/// -1, 0 or 1: at rest there is no direction.
+#[inline]
+pub fn sign(value: f64) -> f64 {
+    if value == 0.0 { 0.0 } else { value.signum() }
+}
+
+/// Runs `block` over all lines, a block at a time, and puts its rows where they are wanted: real parts, imaginary
+/// parts, and the same of the Jacobian.
+///
+/// # Panics
+///
+/// Where the rows of `into` are not `R` rows of `omega.len()` lines.
+#[inline]
+pub fn respond<const R: usize>(
+    omega: &[f64],
+    mut into: ResponseMut<'_>,
+    block: impl Fn(&[f64; LINES], &mut [[f64; LINES]; R]),
+) {
+    let jacobian = into.jacobian.as_ref().map_or(0, |(re, im)| re.len() + im.len());
+    assert_eq!(
+        into.re.len() + into.im.len() + jacobian,
+        R * omega.len(),
+        "a response has {R} rows"
+    );
+    let mut rows = [[0.0; LINES]; R];
+    let (chunks, rest) = omega.as_chunks::<LINES>();
+    for (place, lines) in chunks.iter().enumerate() {
+        block(lines, &mut rows);
+        scatter(&rows, &mut into, omega.len(), place * LINES, LINES);
+    }
+    if let Some(&last) = rest.last() {
+        let mut lines = [last; LINES];
+        lines[..rest.len()].copy_from_slice(rest);
+        block(&lines, &mut rows);
+        scatter(&rows, &mut into, omega.len(), chunks.len() * LINES, rest.len());
+    }
+}
+
+/// Copies a block of `count` lines from `start` on to the rows of the whole response.
+fn scatter(rows: &[[f64; LINES]], into: &mut ResponseMut<'_>, lines: usize, start: usize, count: usize) {
+    let mut rows = rows.iter();
+    let (re, im) = match &mut into.jacobian {
+        Some((re, im)) => (&mut re[..], &mut im[..]),
+        None => (&mut [][..], &mut [][..]),
+    };
+    for part in [&mut into.re[..], &mut into.im[..], re, im] {
+        for (to, from) in part.chunks_exact_mut(lines).zip(&mut rows) {
+            match to[start..].first_chunk_mut::<LINES>() {
+                Some(whole) if count == LINES => *whole = *from,
+                _ => to[start..start + count].copy_from_slice(&from[..count]),
+            }
+        }
+    }
+}
