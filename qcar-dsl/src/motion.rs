@@ -503,6 +503,8 @@ impl<'a> Derivation<'a> {
     /// Keeps the definitions that are used, and collects the inputs.
     fn finish(self, states: Vec<Symbol>, rates: Vec<Expr>, outputs: Vec<Expr>) -> Motion {
         let mut used = self.g.symbols(rates.iter().chain(&outputs).copied());
+        // The force of a rolling tyre acts through its contact, and is asked for by itself.
+        used.extend(self.tyre.map(|tyre| Symbol::LinkForce(tyre.link)));
         let mut definitions = self.definitions;
         for &(symbol, value) in definitions.iter().rev() {
             if used.contains(&symbol) {

@@ -6,23 +6,43 @@ use std::collections::BTreeMap;
 
 use crate::equations::named_quantities;
 use crate::expr::{Expr, LinkId, Node, Symbol};
+use crate::model::Term;
 use crate::program::{Op, Program, Value};
 use crate::schedule::Compiled;
 
 /// The values of a program that have a name.
 pub fn labels(compiled: &Compiled, program: &Program) -> BTreeMap<Value, String> {
-    let mut finder = Finder {
-        compiled,
-        program,
-        found: BTreeMap::new(),
-    };
+    let mut finder = Finder::new(compiled, program);
     let mut labels = BTreeMap::new();
-    for (name, expression) in named_quantities(&compiled.model).into_iter().chain(of_motion(compiled)) {
+    for (name, expression) in named_quantities(&compiled.model)
+        .into_iter()
+        .chain(of_laws(compiled))
+        .chain(of_motion(compiled))
+    {
         if let Some(value) = finder.value(expression) {
             labels.entry(value).or_insert(name);
         }
     }
+    for (place, op) in program.ops.iter().enumerate() {
+        if let Some(name) = reciprocal_name(compiled, program, &labels, *op) {
+            labels.entry(Value(place as u32)).or_insert(name);
+        }
+    }
     labels
+}
+
+/// `per_m_wheel` for `1 / m_wheel`.
+fn reciprocal_name(compiled: &Compiled, program: &Program, labels: &BTreeMap<Value, String>, op: Op) -> Option<String> {
+    let at = |value: Value| program.ops[value.0 as usize];
+    match op {
+        Op::Div(one, of) if at(one) == Op::Constant(1.0) => match at(of) {
+            Op::Input(Symbol::Parameter(place)) => {
+                Some(format!("per_{}", compiled.about.parameters[place as usize].name))
+            }
+            _ => labels.get(&of).map(|name| format!("per_{name}")),
+        },
+        _ => None,
+    }
 }
 
 /// What a reviewer calls each constant of a parameter set.
@@ -34,6 +54,19 @@ pub fn of_constants(compiled: &Compiled) -> Vec<String> {
         _ => labels.get(value).cloned().unwrap_or_else(|| format!("c{place}")),
     };
     prepare.outputs.iter().enumerate().map(name).collect()
+}
+
+/// Stiffness and damping of links whose text gives them as an expression: `k_spring`, `c_damper`.
+fn of_laws(compiled: &Compiled) -> Vec<(String, Expr)> {
+    let links = compiled.model.links.iter();
+    let terms = links.flat_map(|link| link.law.terms.iter().map(|term| (&link.name, *term)));
+    let labels = terms.filter_map(|(link, term)| match term {
+        Term::Spring(k) => Some((format!("k_{link}"), k)),
+        Term::Damper(c) => Some((format!("c_{link}"), c)),
+        Term::Inerter(_) | Term::Force(_) => None,
+    });
+    let is_compound = |e: Expr| !matches!(compiled.graph.node(e), Node::Constant(_) | Node::Symbol(_));
+    labels.filter(|&(_, e)| is_compound(e)).collect()
 }
 
 fn of_motion(compiled: &Compiled) -> Vec<(String, Expr)> {
@@ -57,16 +90,41 @@ struct Finder<'a> {
     compiled: &'a Compiled,
     program: &'a Program,
     found: BTreeMap<Expr, Option<Value>>,
+    /// What it finds in `prepare`, where the program reads prepared constants.
+    prepare: Option<Box<Finder<'a>>>,
 }
 
-impl Finder<'_> {
+impl<'a> Finder<'a> {
+    fn new(compiled: &'a Compiled, program: &'a Program) -> Self {
+        let prepared = program.ops.iter().any(|op| matches!(op, Op::Prepared(_)));
+        let prepare = prepared.then(|| Box::new(Finder::new(compiled, &compiled.programs.prepare)));
+        Finder {
+            compiled,
+            program,
+            found: BTreeMap::new(),
+            prepare,
+        }
+    }
+
     fn value(&mut self, e: Expr) -> Option<Value> {
         if let Some(&known) = self.found.get(&e) {
             return known;
         }
-        let value = self.look_up(e);
+        let value = self.prepared(e).or_else(|| self.look_up(e));
         self.found.insert(e, value);
         value
+    }
+
+    fn prepared(&mut self, e: Expr) -> Option<Value> {
+        let value = self.prepare.as_mut()?.value(e)?;
+        let place = self
+            .compiled
+            .programs
+            .prepare
+            .outputs
+            .iter()
+            .position(|&output| output == value)?;
+        self.place(&[Op::Prepared(place as u32)])
     }
 
     fn look_up(&mut self, e: Expr) -> Option<Value> {
@@ -91,7 +149,14 @@ impl Finder<'_> {
             }
             Node::Div(a, b) => {
                 let (a, b) = (self.value(a)?, self.value(b)?);
-                self.place(&[Op::Div(a, b)])
+                self.place(&[Op::Div(a, b)]).or_else(|| {
+                    let reciprocal = self.reciprocal(b)?;
+                    self.place(&[Op::Mul(a, reciprocal), Op::Mul(reciprocal, a)])
+                })
+            }
+            Node::Powi(a, 2) => {
+                let a = self.value(a)?;
+                self.place(&[Op::Mul(a, a)])
             }
             _ => None,
         }
@@ -103,6 +168,11 @@ impl Finder<'_> {
             Some(&(_, value)) => self.value(value),
             None => self.place(&[Op::Input(symbol)]),
         }
+    }
+
+    fn reciprocal(&self, of: Value) -> Option<Value> {
+        let one = self.place(&[Op::Constant(1.0)])?;
+        self.place(&[Op::Div(one, of)])
     }
 
     fn place(&self, ops: &[Op]) -> Option<Value> {
