@@ -133,6 +133,21 @@ impl Tyre {
         self.radius
     }
 
+    /// How the road is felt.
+    pub fn geometry(&self) -> Geometry {
+        self.geometry
+    }
+
+    /// The same tyre feeling the road in another way.
+    pub fn with_geometry(self, geometry: Geometry) -> Self {
+        Self { geometry, ..self }
+    }
+
+    /// Length of the contact with a flat road at the static deflection, m.
+    pub fn patch(&self) -> f64 {
+        2.0 * (self.static_deflection * (2.0 * self.radius - self.static_deflection)).sqrt()
+    }
+
     /// The contact of a wheel with a road; none where the circle is clear of the ground.
     ///
     /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled

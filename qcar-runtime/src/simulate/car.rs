@@ -1,0 +1,109 @@
+//! A model on its tyre, ready to roll.
+
+use super::equilibrium::{self, Unbalanced};
+use super::failure::SimulateError;
+use super::settings::scales;
+use crate::model::{ContactAbout, InputKind, Model, Quantity};
+use crate::tyre::{Geometry, Tyre};
+
+/// A model with its parameters and its tyre.
+pub struct Car<'a, M: ?Sized> {
+    /// A model with a tyre link between a mass and a road.
+    pub model: &'a M,
+    /// A value for each parameter of the model, SI.
+    pub parameters: &'a [f64],
+    /// Radius, static deflection and geometry of the tyre.
+    pub tyre: Tyre,
+    /// m/s².
+    pub gravity: f64,
+    /// What of the model is simulated.
+    pub variant: Variant,
+}
+
+/// The variants of thesis section 3.6.3.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Variant {
+    /// All of the model.
+    #[default]
+    Complete,
+    /// The wheel and all else moves along the road at constant speed.
+    LongitudinallyLocked,
+    /// Longitudinally locked, and the tyre feels no more of the road than its height below the wheel's centre.
+    PureVertical,
+}
+
+impl<M: Model + ?Sized> Car<'_, M> {
+    /// The tyre link, or why the car cannot roll.
+    pub(super) fn contact(&self) -> Result<&ContactAbout, SimulateError> {
+        let about = self.model.about();
+        let (found, expected) = (self.parameters.len(), about.parameters.len());
+        if found != expected {
+            return Err(SimulateError::Count {
+                name: "the parameter set",
+                found,
+                expected,
+            });
+        }
+        let model = || about.name.to_string();
+        about
+            .contact
+            .as_ref()
+            .ok_or_else(|| SimulateError::NothingRolls { model: model() })
+    }
+
+    /// The tyre as the variant has it.
+    pub(super) fn rolling_tyre(&self) -> Tyre {
+        match self.variant {
+            Variant::PureVertical => self.tyre.with_geometry(Geometry::Point),
+            Variant::Complete | Variant::LongitudinallyLocked => self.tyre,
+        }
+    }
+
+    /// Places of the states that the variant keeps from moving: all along the axis in which the wheel rolls.
+    pub(super) fn locked(&self, contact: &ContactAbout) -> Vec<usize> {
+        let free = self.variant == Variant::Complete;
+        let Some(rolling) = contact.axes.get(1).filter(|_| !free) else {
+            return Vec::new();
+        };
+        let states = self.model.about().states.iter().enumerate();
+        states
+            .filter(|(_, state)| state.axis == rolling.axis)
+            .map(|(place, _)| place)
+            .collect()
+    }
+
+    /// What depends on the parameters alone.
+    pub(super) fn constants(&self) -> Vec<f64> {
+        let mut constants = vec![0.0; self.model.about().constants];
+        self.model.prepare(self.parameters, &mut constants);
+        constants
+    }
+
+    /// Gravity, every motion at `height` and every force at zero.
+    pub(super) fn inputs(&self, height: f64) -> Vec<f64> {
+        let input = |kind: InputKind| match kind {
+            InputKind::Gravity => self.gravity,
+            InputKind::Motion(_, Quantity::Position) => height,
+            InputKind::Motion(..) | InputKind::Force(_) => 0.0,
+        };
+        self.model.about().inputs.iter().map(|i| input(i.kind)).collect()
+    }
+
+    /// Where the model comes to rest on its tyre as it is on the rig: near to where it rests while it rolls.
+    pub(super) fn standing(&self, constants: &[f64], inputs: &[f64]) -> Result<Vec<f64>, SimulateError> {
+        let scales: Vec<f64> = scales(self.model.about()).collect();
+        let mut x = vec![0.0; scales.len()];
+        let derivative = |x: &[f64], dx: &mut [f64]| self.model.derivative(constants, x, inputs, dx);
+        equilibrium::settle(&scales, derivative, &mut x).map_err(|unbalanced| self.unbalanced(&unbalanced))?;
+        Ok(x)
+    }
+
+    pub(super) fn unbalanced(&self, unbalanced: &Unbalanced) -> SimulateError {
+        let about = self.model.about();
+        SimulateError::NoEquilibrium {
+            model: about.name.to_string(),
+            state: about.states[unbalanced.state].name.to_string(),
+            rate: unbalanced.rate,
+        }
+    }
+}

@@ -1,0 +1,78 @@
+//! What keeps a simulation from being run.
+
+use crate::road::RoadError;
+use crate::solver::Report;
+use crate::tyre::TyreError;
+
+/// Why there is no simulation of what was asked for.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum SimulateError {
+    #[error(transparent)]
+    Road(#[from] RoadError),
+    #[error(transparent)]
+    Tyre(#[from] TyreError),
+    #[error("{name} is {value} {unit}; expected a positive number")]
+    NotPositive {
+        name: &'static str,
+        value: f64,
+        unit: &'static str,
+    },
+    #[error("{name} has {found} values; expected {expected}")]
+    Count {
+        name: &'static str,
+        found: usize,
+        expected: usize,
+    },
+    #[error("model `{model}` has no tyre that can roll; give its tyre link between a mass and a road")]
+    NothingRolls { model: String },
+    #[error(
+        "a sample rate of {rate} Hz is too low at {speed} m/s: the contact patch is passed in {passage} s, \
+         which takes at least {least} Hz to be seen"
+    )]
+    TooFewSamples {
+        rate: f64,
+        speed: f64,
+        passage: f64,
+        least: f64,
+    },
+    #[error(
+        "the tyre would be deflected by {deflection} m under the static load, more than its radius of {radius} m; \
+         check k_tire, the static load and deflection, and the masses"
+    )]
+    TooSoft { deflection: f64, radius: f64 },
+    #[error(
+        "model `{model}` has no static equilibrium: with all else balanced, d({state})/dt stays at {rate}; \
+         check that every mass is held, and the parameters of the links that carry it"
+    )]
+    NoEquilibrium { model: String, state: String, rate: f64 },
+    #[error("the simulation of model `{model}` stopped: {report}")]
+    Stopped { model: String, report: Report },
+    #[error("input {place} is driven by excitation {excitation}, but model `{model}` has {count}")]
+    NoSuchExcitation {
+        model: String,
+        place: usize,
+        excitation: usize,
+        count: usize,
+    },
+    #[error("excitation `{name}` is a motion; its record must be a displacement, velocity or acceleration")]
+    MotionByForce { name: String },
+    #[error("excitation `{name}` is a force; its record must be a force")]
+    ForceByMotion { name: String },
+    #[error(
+        "the motion `{name}` cannot be held between samples, since its velocity would be infinite; \
+         declare `band_limited = true`"
+    )]
+    HeldMotion { name: String },
+    #[error("the record of `{name}` has {value} at sample {sample}; expected a finite number")]
+    NotFinite { name: String, sample: usize, value: f64 },
+}
+
+/// `value`, or a complaint.
+pub(super) fn positive(name: &'static str, value: f64, unit: &'static str) -> Result<f64, SimulateError> {
+    if value.is_finite() && value > 0.0 {
+        Ok(value)
+    } else {
+        Err(SimulateError::NotPositive { name, value, unit })
+    }
+}

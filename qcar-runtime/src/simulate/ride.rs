@@ -1,0 +1,145 @@
+//! Rides over a road at constant speed.
+
+use rayon::prelude::*;
+
+use super::car::Car;
+use super::failure::{SimulateError, positive};
+use super::recorder::Recorder;
+use super::rolling::Rolling;
+use super::sampling::Grid;
+use super::settings::Settings;
+use crate::model::Model;
+use crate::road::Road;
+use crate::solver::Effort;
+use crate::tyre::{Geometry, Tyre};
+
+/// A ride that is to be simulated.
+#[derive(Clone, Copy)]
+pub struct Drive<'a> {
+    /// The wheel's centre is above its x = 0 at t = 0.
+    pub road: &'a Road,
+    /// m/s.
+    pub speed: f64,
+    /// Hz.
+    pub sample_rate: f64,
+    /// Number of samples, the first at t = 0.
+    pub samples: usize,
+}
+
+/// A ride that was simulated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ride {
+    /// Time of each sample, s.
+    pub time: Vec<f64>,
+    /// Each output of the model, through [`AntiAlias`](super::AntiAlias).
+    pub outputs: Vec<Vec<f64>>,
+    /// Force of the tyre on the wheel in z and x, N, as it is at the samples (not filtered: exactly zero in the air).
+    pub force: [Vec<f64>; 2],
+    /// Area of the tyre's contact, m², as it is at the samples; for another geometry than [`Geometry::Area`], that of
+    /// the equivalent deflection.
+    pub area: Vec<f64>,
+    /// When the tyre lost the ground, s.
+    pub lift_offs: Vec<f64>,
+    /// When it came back, s.
+    pub landings: Vec<f64>,
+    /// Deflection of the tyre before the obstacle, m.
+    pub static_deflection: f64,
+    /// The constant force that drives the wheel against its rolling drag, N.
+    pub traction: f64,
+    /// What the integration cost.
+    pub effort: Effort,
+}
+
+/// Simulates each ride, in parallel; the results do not depend on the number of threads.
+///
+/// # Errors
+/// For each ride as [`ride`].
+pub fn rides<M: Model + ?Sized>(
+    car: &Car<'_, M>,
+    drives: &[Drive<'_>],
+    settings: &Settings,
+) -> Vec<Result<Ride, SimulateError>> {
+    drives.par_iter().map(|drive| ride(car, drive, settings)).collect()
+}
+
+/// Simulates a ride that begins at rest on the flat ground before the road.
+///
+/// # Errors
+/// A drive or car that makes no sense, a road that is too short, a model without a tyre that rolls, no static
+/// equilibrium, and an integration that stops early.
+pub fn ride<M: Model + ?Sized>(
+    car: &Car<'_, M>,
+    drive: &Drive<'_>,
+    settings: &Settings,
+) -> Result<Ride, SimulateError> {
+    let tyre = car.rolling_tyre();
+    drive.check(&tyre)?;
+    let grid = Grid::new(drive.sample_rate, drive.samples);
+    let start = drive.start(&tyre).min(grid.start());
+    let (rolling, mut x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
+    let (static_deflection, traction) = (rolling.deflection(start, &x), rolling.traction);
+
+    let about = car.model.about();
+    let span = (start, grid.end());
+    let mut recorder = Recorder::new(rolling, grid, about.states.len(), about.outputs.len());
+    let effort = settings.integrate(about, &mut recorder, span, (drive.longest_step(&tyre), &[]), &mut x)?;
+    Ok(Ride {
+        time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
+        outputs: recorder.outputs(),
+        force: recorder.force,
+        area: recorder.area,
+        lift_offs: recorder.lift_offs,
+        landings: recorder.landings,
+        static_deflection,
+        traction,
+        effort,
+    })
+}
+
+/// The fewest samples while an obstacle passes through the contact patch that still show an impact.
+const SAMPLES_PER_PATCH: f64 = 4.0;
+
+impl Drive<'_> {
+    fn check(&self, tyre: &Tyre) -> Result<(), SimulateError> {
+        let speed = positive("the speed", self.speed, "m/s")?;
+        let rate = positive("the sample rate", self.sample_rate, "Hz")?;
+        positive("the number of samples", self.samples as f64, "")?;
+        self.road.check_reaches(speed * (self.samples - 1) as f64 / rate)?;
+        let passage = tyre.patch() / speed;
+        let least = SAMPLES_PER_PATCH / passage;
+        if rate < least {
+            Err(SimulateError::TooFewSamples {
+                rate,
+                speed,
+                passage,
+                least,
+            })
+        } else {
+            Ok(())
+        }
+    }
+
+    /// When the whole circle of the tyre stands before the first point of the road, s.
+    fn start(&self, tyre: &Tyre) -> f64 {
+        (self.road.extent()[0] - tyre.radius()) / self.speed
+    }
+
+    /// The longest step that cannot pass over any part of the road unseen, s.
+    ///
+    /// A circle feels what is within its static patch, so a quarter of that; a point feels only the piece of road that
+    /// it is on.
+    fn longest_step(&self, tyre: &Tyre) -> f64 {
+        let piece = || {
+            self.road
+                .vertices()
+                .windows(2)
+                .map(|pair| pair[1][0] - pair[0][0])
+                .filter(|dx| *dx > 0.0)
+        };
+        let length = match tyre.geometry() {
+            Geometry::Point => piece().fold(0.25 * tyre.patch(), f64::min),
+            Geometry::Area | Geometry::Radial => 0.25 * tyre.patch(),
+        };
+        length / self.speed
+    }
+}

@@ -1,0 +1,166 @@
+//! A model whose tyre rolls over a road: the right-hand side of thesis figure 3.2.
+
+use super::car::Car;
+use super::equilibrium;
+use super::failure::SimulateError;
+use super::settings::scales;
+use crate::model::{Contact, ContactAbout, Model};
+use crate::road::Road;
+use crate::tyre::{Geometry, Touch, Tyre, Wheel};
+
+/// What rolls, where and how fast.
+pub(super) struct Rolling<'a, M: ?Sized> {
+    model: &'a M,
+    constants: Vec<f64>,
+    /// Gravity, and every motion and force at rest.
+    inputs: Vec<f64>,
+    pub tyre: Tyre,
+    road: &'a Road,
+    /// m/s.
+    pub speed: f64,
+    wheel: WheelStates,
+    /// Places of states that do not move.
+    locked: Vec<usize>,
+    /// The constant force in x that balances the rolling drag on a flat road, N.
+    pub traction: f64,
+    /// Up to where the road has no further vertical step, m, for a tyre that feels such a step at once.
+    smooth_until: f64,
+}
+
+/// Places of the wheel's position and velocity, in z and, where it moves, in x.
+struct WheelStates {
+    z: [usize; 2],
+    x: Option<[usize; 2]>,
+}
+
+impl WheelStates {
+    fn new(about: &ContactAbout) -> Self {
+        let mut places = about
+            .axes
+            .iter()
+            .map(|axis| [axis.position, axis.velocity].map(usize::from));
+        Self {
+            z: places.next().unwrap_or_default(),
+            x: places.next(),
+        }
+    }
+}
+
+impl<'a, M: Model + ?Sized> Rolling<'a, M> {
+    /// A car at rest at time `t` on flat ground, and its state.
+    ///
+    /// The tyre's damping has a part along a flat road too, since its front grows and its rear shrinks: a drag. A
+    /// constant traction balances it, so that nothing moves before the road does.
+    pub fn at_rest(car: &Car<'a, M>, road: &'a Road, speed: f64, t: f64) -> Result<(Self, Vec<f64>), SimulateError> {
+        let about = car.contact()?;
+        let height = road.vertices()[0][1];
+        let mut rolling = Self {
+            model: car.model,
+            constants: car.constants(),
+            inputs: car.inputs(height),
+            tyre: car.rolling_tyre(),
+            road,
+            speed,
+            wheel: WheelStates::new(about),
+            locked: car.locked(about),
+            traction: 0.0,
+            smooth_until: f64::INFINITY,
+        };
+        let mut x = car.standing(&rolling.constants, &rolling.inputs)?;
+        rolling.check_deflection(height - x[rolling.wheel.z[0]])?;
+        let scales: Vec<f64> = scales(car.model.about()).collect();
+        let settled = equilibrium::settle(&scales, |x, dx| rolling.derivative_without_drag(t, x, dx), &mut x);
+        settled.map_err(|unbalanced| car.unbalanced(&unbalanced))?;
+        rolling.check_deflection(rolling.deflection(t, &x))?;
+        rolling.traction = -rolling.contact(rolling.touch(t, &x).as_ref(), &x).force[1];
+        Ok((rolling, x))
+    }
+
+    fn check_deflection(&self, deflection: f64) -> Result<(), SimulateError> {
+        let radius = self.tyre.radius();
+        if deflection < radius {
+            Ok(())
+        } else {
+            Err(SimulateError::TooSoft { deflection, radius })
+        }
+    }
+
+    fn derivative_without_drag(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        let mut contact = self.contact(self.touch(t, x).as_ref(), x);
+        contact.force[1] = 0.0;
+        self.model
+            .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
+    }
+
+    /// `dx/dt` at time `t`.
+    #[inline]
+    pub fn derivative(&self, t: f64, x: &[f64], dx: &mut [f64]) {
+        let contact = self.contact(self.touch(t, x).as_ref(), x);
+        self.model
+            .rolling_derivative(&self.constants, x, &self.inputs, &self.driven(contact), dx);
+        for &place in &self.locked {
+            dx[place] = 0.0;
+        }
+    }
+
+    /// The outputs of the model at time `t`, and the contact they stem from.
+    pub fn outputs(&self, t: f64, x: &[f64], y: &mut [f64]) -> (Option<Touch>, Contact) {
+        let touch = self.touch(t, x);
+        let contact = self.contact(touch.as_ref(), x);
+        self.model
+            .rolling_outputs(&self.constants, x, &self.inputs, &self.driven(contact), y);
+        (touch, contact)
+    }
+
+    /// The contact of the tyre with the road at time `t`.
+    #[inline]
+    pub fn touch(&self, t: f64, x: &[f64]) -> Option<Touch> {
+        let mut wheel = self.wheel(t, x);
+        // Before a step has become an event, the solver looks ahead as if there were none.
+        wheel.position[0] = wheel.position[0].min(self.smooth_until);
+        self.tyre.touch(self.road, &wheel)
+    }
+
+    /// Deflection of the tyre at time `t`, m.
+    pub fn deflection(&self, t: f64, x: &[f64]) -> f64 {
+        self.touch(t, x).map_or(0.0, |touch| touch.deflection)
+    }
+
+    /// How far the wheel's centre is from a vertical step that its tyre feels at once, m.
+    pub fn to_next_step(&self, t: f64, x: &[f64]) -> f64 {
+        self.smooth_until.next_up() - self.wheel(t, x).position[0]
+    }
+
+    /// Notes which vertical steps of the road lie behind the wheel.
+    pub fn pass_steps(&mut self, t: f64, x: &[f64]) {
+        if self.tyre.geometry() == Geometry::Point {
+            let here = self.wheel(t, x).position[0];
+            let next = self.road.steps().find(|&step| step > here);
+            self.smooth_until = next.map_or(f64::INFINITY, f64::next_down);
+        }
+    }
+
+    /// The wheel's centre: above x = 0 at t = 0, and `x_wheel` ahead of a car of constant speed.
+    #[inline]
+    fn wheel(&self, t: f64, x: &[f64]) -> Wheel {
+        let [z, vz] = self.wheel.z.map(|place| x[place]);
+        let [ahead, faster] = self.wheel.x.map_or([0.0; 2], |places| places.map(|place| x[place]));
+        Wheel {
+            position: [self.speed * t + ahead, self.tyre.radius() + z],
+            velocity: [self.speed + faster, vz],
+        }
+    }
+
+    /// What a contact gives to the model. Without one nothing pushes, and the tyre's link is at rest.
+    #[inline]
+    fn contact(&self, touch: Option<&Touch>, x: &[f64]) -> Contact {
+        let law = |s: f64, v: f64| self.model.contact_force(&self.constants, x, s, v);
+        touch.map_or(Contact::default(), |touch| touch.force(law))
+    }
+
+    #[inline]
+    fn driven(&self, mut contact: Contact) -> Contact {
+        contact.force[1] += self.traction;
+        contact
+    }
+}
