@@ -1,9 +1,30 @@
 //! The whole compiler in one function.
 
+use proc_macro2::TokenStream;
+
 use crate::check::Checked;
 use crate::describe::describe;
+use crate::diagnostic::Report;
+use crate::front::{check_text, check_tokens};
 use crate::schedule::{Compiled, schedule};
+use crate::source::{Load, Source};
 use crate::{linear, motion, response};
+
+/// Compiles a model file.
+///
+/// # Errors
+/// The report of every mistake that is found.
+pub fn compile(source: Source, load: Load) -> Result<Compiled, Report> {
+    check_text(source, load).map(derive)
+}
+
+/// Compiles the tokens of an inline macro.
+///
+/// # Errors
+/// One `compile_error!` for each mistake, at the mistaken token.
+pub fn compile_tokens(tokens: TokenStream, load: Load) -> Result<Compiled, TokenStream> {
+    check_tokens(tokens, load).map(derive)
+}
 
 /// Derives a model's equations, its matrices and its responses, and schedules them.
 pub fn derive(model: Checked) -> Compiled {

@@ -53,3 +53,5 @@ pub mod rust;
 pub mod show;
 // The whole compiler in one function.
 pub mod compile;
+// Model files from disk, for the doors.
+pub mod disk;

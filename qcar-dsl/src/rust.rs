@@ -16,6 +16,11 @@ mod typed;
 
 use crate::schedule::Compiled;
 
+/// The name of the type that stands for a model: `AxleD` for `axle_d`.
+pub fn type_name(model: &str) -> String {
+    names::camel(model)
+}
+
 /// The Rust text of a model: `pub mod name { … }`.
 ///
 /// The same model gives the same bytes, wherever its file lies; `FINGERPRINT` in the text is a hash of the rest of it.
