@@ -36,6 +36,7 @@ pub struct Tyre {
     radius: f64,
     geometry: Geometry,
     rates: Rates,
+    static_deflection: f64,
     /// What turns the change of a contact at the static deflection into a rate.
     static_rate: f64,
 }
@@ -120,12 +121,10 @@ impl Tyre {
             radius,
             geometry,
             rates,
+            static_deflection,
             static_rate: 0.0,
         };
-        Ok(Self {
-            static_rate: tyre.rate_at(static_deflection),
-            ..tyre
-        })
+        Ok(tyre.with_geometry(geometry))
     }
 
     /// Unloaded radius, m.
@@ -140,7 +139,11 @@ impl Tyre {
 
     /// The same tyre feeling the road in another way.
     pub fn with_geometry(self, geometry: Geometry) -> Self {
-        Self { geometry, ..self }
+        let tyre = Self { geometry, ..self };
+        Self {
+            static_rate: tyre.rate_at(self.static_deflection),
+            ..tyre
+        }
     }
 
     /// Length of the contact with a flat road at the static deflection, m.
