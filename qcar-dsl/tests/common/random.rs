@@ -1,0 +1,187 @@
+//! Random linear models: trees of masses and nodes on a road, with cross links, levers, inerters and inner states.
+
+use proptest::prelude::*;
+use qcar_dsl::check::Checked;
+use qcar_dsl::expr::{CoordinateId, Expr, Symbol};
+use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
+
+use super::Builder;
+
+/// What a link is made of, besides its spring.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Parts {
+    Spring,
+    SpringDamper,
+    SpringDamperInerter,
+    /// A spring in parallel with a spring and damper in series, by an inner state.
+    SpringMaxwell,
+    /// A law written out as an expression, with two inner states.
+    Written,
+}
+
+/// A coordinate and the link that holds it.
+#[derive(Clone, Debug)]
+pub struct Member {
+    pub node: bool,
+    pub parent: prop::sample::Index,
+    pub parts: Parts,
+    /// Another coordinate that a lever takes into the stretch.
+    pub lever: Option<prop::sample::Index>,
+}
+
+#[derive(Clone, Debug)]
+pub struct Plan {
+    pub members: Vec<Member>,
+    pub cross: Vec<(prop::sample::Index, prop::sample::Index, Parts)>,
+    /// What the parameters are made of.
+    pub seed: u64,
+}
+
+fn parts() -> impl Strategy<Value = Parts> {
+    prop_oneof![
+        Just(Parts::Spring),
+        Just(Parts::SpringDamper),
+        Just(Parts::SpringDamperInerter),
+        Just(Parts::SpringMaxwell),
+        Just(Parts::Written),
+    ]
+}
+
+fn member() -> impl Strategy<Value = Member> {
+    let lever = prop::option::weighted(0.3, any::<prop::sample::Index>());
+    (prop::bool::weighted(0.3), any::<prop::sample::Index>(), parts(), lever).prop_map(
+        |(node, parent, parts, lever)| Member {
+            node,
+            parent,
+            parts,
+            lever,
+        },
+    )
+}
+
+pub fn plan() -> impl Strategy<Value = Plan> {
+    let cross = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), parts());
+    let members = prop::collection::vec(member(), 1..6);
+    let cross = prop::collection::vec(cross, 0..3);
+    (members, cross, any::<u64>()).prop_map(|(members, cross, seed)| Plan { members, cross, seed })
+}
+
+fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
+    let mut p = |name: &str| b.parameter(&format!("{name}{n}"));
+    let l = qcar_dsl::expr::LinkId(n as u16);
+    match parts {
+        Parts::Spring => (vec![Term::Spring(p("k"))], vec![]),
+        Parts::SpringDamper => (vec![Term::Spring(p("k")), Term::Damper(p("c"))], vec![]),
+        Parts::SpringDamperInerter => (
+            vec![Term::Spring(p("k")), Term::Damper(p("c")), Term::Inerter(p("b"))],
+            vec![],
+        ),
+        Parts::SpringMaxwell => {
+            let (k, k_m, c_m) = (p("k"), p("k_m"), p("c_m"));
+            let g = &mut b.model.graph;
+            let (v, f) = (g.symbol(Symbol::Rate(l)), g.symbol(Symbol::Inner(l, 0)));
+            let (gain, decay) = (g.mul(k_m, v), g.div(k_m, c_m));
+            let relaxed = g.mul(decay, f);
+            let rate = g.sub(gain, relaxed);
+            (vec![Term::Spring(k), Term::Force(f)], vec![rate])
+        }
+        Parts::Written => {
+            let (k, a, r) = (p("k"), p("a"), p("r"));
+            let g = &mut b.model.graph;
+            let s = g.symbol(Symbol::Stretch(l));
+            let [first, second] = [0, 1].map(|i| g.symbol(Symbol::Inner(l, i)));
+            let elastic = g.mul(k, s);
+            let both = g.add(first, second);
+            let shared = g.mul(a, both);
+            let force = g.add(elastic, shared);
+            let behind = g.sub(s, first);
+            let first_rate = g.mul(r, behind);
+            let behind = g.sub(first, second);
+            let second_rate = g.mul(a, behind);
+            (vec![Term::Force(force)], vec![first_rate, second_rate])
+        }
+    }
+}
+
+impl Plan {
+    /// The model and its parameters.
+    pub fn build(&self) -> (Checked, Vec<f64>) {
+        let mut b = Builder::new("random");
+        let road = b.coordinate("z", "road", CoordinateKind::Road);
+        b.gravity("z");
+        let mut coordinates = vec![road];
+        let total = b.parameter("total");
+        let mut rest = total;
+        let mut links = Vec::new();
+        for (i, member) in self.members.iter().enumerate() {
+            let kind = if member.node && i > 0 {
+                CoordinateKind::Node
+            } else {
+                let mass = b.parameter(&format!("m{i}"));
+                rest = b.model.graph.sub(rest, mass);
+                CoordinateKind::Mass(mass)
+            };
+            let c = b.coordinate("z", &format!("q{i}"), kind);
+            let parent = *member.parent.get(&coordinates);
+            links.push((
+                c,
+                parent,
+                member.parts,
+                member.lever.map(|lever| *lever.get(&coordinates)),
+            ));
+            coordinates.push(c);
+        }
+        // What is left of the total is a mass of its own: a derived quantity in which every other mass appears.
+        let last = b.mass("z", "last", rest);
+        links.push((last, road, Parts::SpringDamper, None));
+        coordinates.push(last);
+        links.extend(
+            self.cross
+                .iter()
+                .map(|(i, j, parts)| (*i.get(&coordinates), *j.get(&coordinates), *parts, None)),
+        );
+        links.retain(|(upper, lower, ..)| upper != lower);
+        for (n, &(upper, lower, mut parts, lever)) in links.iter().enumerate() {
+            // An inerter between two nodes gives two accelerations but one balance.
+            let ends = [Some(upper), Some(lower), lever];
+            let node = |c: CoordinateId| b.model.coordinates[c.0 as usize].kind == CoordinateKind::Node;
+            if parts == Parts::SpringDamperInerter && ends.into_iter().flatten().filter(|&c| node(c)).count() > 1 {
+                parts = Parts::SpringDamper;
+            }
+            let (terms, inner) = terms(&mut b, n, parts);
+            let mut stretch = b.between(upper, lower);
+            if let Some(third) = lever.filter(|&third| third != upper && third != lower) {
+                let (ratio, one) = (b.parameter(&format!("ratio{n}")), b.number(1.0));
+                let g = &mut b.model.graph;
+                stretch[1].1 = g.sub(ratio, one);
+                stretch.push((third, g.neg(ratio)));
+            }
+            b.link_with_states("z", &format!("l{n}"), &stretch, terms, &inner);
+        }
+        b.force("f", coordinates[1]);
+        self.outputs(&mut b, &coordinates, links.len());
+        let model = b.build();
+        let mut p: Vec<f64> = (0..model.parameters.len())
+            .map(|i| between_half_and_two(self.seed, i as u64))
+            .collect();
+        p[0] = 20.0;
+        (model, p)
+    }
+
+    fn outputs(&self, b: &mut Builder, coordinates: &[CoordinateId], links: usize) {
+        for &c in coordinates {
+            b.output(Signal::Motion(c, Quantity::Acceleration));
+            b.output(Signal::Motion(c, Quantity::Velocity));
+            b.output(Signal::Motion(c, Quantity::Position));
+        }
+        for l in (0..links as u16).map(qcar_dsl::expr::LinkId) {
+            b.output(Signal::LinkForce(l));
+            b.output(Signal::LinkStretch(l));
+        }
+    }
+}
+
+fn between_half_and_two(seed: u64, place: u64) -> f64 {
+    let mixed = (seed ^ place.wrapping_mul(0x9E37_79B9_7F4A_7C15)).wrapping_mul(0xD6E8_FEB8_6659_FD93);
+    0.5 + 1.5 * ((mixed ^ (mixed >> 32)) >> 11) as f64 / (1u64 << 53) as f64
+}
