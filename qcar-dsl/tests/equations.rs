@@ -78,6 +78,9 @@ fn matrices<T: ComplexField<RealField = f64> + Copy>(model: &Checked, about: &Ab
 
 const STEP: f64 = 1e-30;
 
+/// Parameters of random models are about 1, so that rounding errors are well below this times the tolerance.
+const FLOOR: f64 = 1e-4;
+
 /// Parameters with a complex step in one of them.
 fn stepped(p: &[f64], which: usize) -> Vec<Complex<f64>> {
     p.iter()
@@ -99,19 +102,20 @@ fn judge(model: Checked, p: &[f64]) {
     evaluator.derivative(&constants, &x, &u, &mut dx);
     evaluator.outputs(&constants, &x, &u, &mut y);
     let (rates, outputs) = equations(&model, about, p, &x, &u);
-    assert_close("f", &dx, &rates, 1e-9);
-    assert_close("h", &y, &outputs, 1e-9);
+    assert_close("f", &dx, &rates, 1e-9, FLOOR);
+    assert_close("h", &y, &outputs, 1e-9, FLOOR);
 
     let mut nonzeros = vec![0.0; about.matrices.len()];
     evaluator.matrices(p, &x, &u, &mut nonzeros);
     let mut want = matrices(&model, about, p);
     let listed: Vec<f64> = about.matrices.iter().map(|entry| want.remove(entry).unwrap()).collect();
-    assert_close("A, B, C, D", &nonzeros, &listed, 1e-9);
+    assert_close("A, B, C, D", &nonzeros, &listed, 1e-9, FLOOR);
     assert_close(
         "what is not listed",
         &vec![0.0; want.len()],
         &want.into_values().collect::<Vec<_>>(),
         1e-9,
+        FLOOR,
     );
 
     judge_sensitivities(&model, &evaluator, p, &x, &u);
@@ -139,7 +143,7 @@ fn judge_sensitivities(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f
             .map(|entry| got.get(entry).copied().unwrap_or(0.0))
             .collect();
         let want: Vec<f64> = entries.iter().map(|entry| changes[entry].im / STEP).collect();
-        assert_close("dA, dB, dC, dD", &got, &want, 1e-9);
+        assert_close("dA, dB, dC, dD", &got, &want, 1e-9, FLOOR);
 
         let (rates, outputs) = equations(model, about, &p, &complex(x), &complex(u));
         let mut got = vec![0.0; rates.len() + outputs.len()];
@@ -149,7 +153,7 @@ fn judge_sensitivities(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f
             }
         }
         let want: Vec<f64> = rates.iter().chain(&outputs).map(|value| value.im / STEP).collect();
-        assert_close("df/dp, dh/dp", &got, &want, 1e-9);
+        assert_close("df/dp, dh/dp", &got, &want, 1e-9, FLOOR);
     }
 }
 
@@ -163,7 +167,7 @@ fn a_whole_axle_is_its_matrices() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(common::cases(64))]
 
     #[test]
     fn random_models_are_their_matrices(plan in plan()) {

@@ -16,13 +16,22 @@ use qcar_dsl::units::Unit;
 
 const UNIT: Unit = Unit { sixths: [0; 3] };
 
-/// Holds values against what they should be: relative to each, to a thousandth of the largest, or, where all are
-/// rounding errors of what should be zero, to a ten-thousandth.
-pub fn assert_close(what: &str, got: &[f64], want: &[f64], tolerance: f64) {
+/// So many random cases, without a file of those that failed before.
+pub fn cases(cases: u32) -> proptest::test_runner::Config {
+    proptest::test_runner::Config {
+        cases,
+        failure_persistence: None,
+        ..std::default::Default::default()
+    }
+}
+
+/// Holds values against what they should be: relative to each, to a thousandth of the largest, or to `floor`, the size
+/// of a value that is nothing but rounding errors.
+pub fn assert_close(what: &str, got: &[f64], want: &[f64], tolerance: f64, floor: f64) {
     assert_eq!(got.len(), want.len(), "{what}");
     let largest = want.iter().fold(0.0f64, |m, w| m.max(w.abs()));
     for (i, (g, w)) in got.iter().zip(want).enumerate() {
-        let scale = w.abs().max(1e-3 * largest).max(1e-4);
+        let scale = w.abs().max(1e-3 * largest).max(floor);
         assert!((g - w).abs() <= tolerance * scale, "{what}[{i}]: got {g}, want {w}");
     }
 }

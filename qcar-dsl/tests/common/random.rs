@@ -103,6 +103,9 @@ fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
     }
 }
 
+/// A link to be: its ends, what it is made of, what a lever takes into its stretch.
+type Ends = (CoordinateId, CoordinateId, Parts, Option<CoordinateId>);
+
 impl Plan {
     /// The model and its parameters.
     pub fn build(&self) -> (Checked, Vec<f64>) {
@@ -112,7 +115,7 @@ impl Plan {
         let mut coordinates = vec![road];
         let total = b.parameter("total");
         let mut rest = total;
-        let mut links = Vec::new();
+        let mut links: Vec<Ends> = Vec::new();
         for (i, member) in self.members.iter().enumerate() {
             let kind = if member.node && i > 0 {
                 CoordinateKind::Node
@@ -141,13 +144,8 @@ impl Plan {
                 .map(|(i, j, parts)| (*i.get(&coordinates), *j.get(&coordinates), *parts, None)),
         );
         links.retain(|(upper, lower, ..)| upper != lower);
-        for (n, &(upper, lower, mut parts, lever)) in links.iter().enumerate() {
-            // An inerter between two nodes gives two accelerations but one balance.
-            let ends = [Some(upper), Some(lower), lever];
-            let node = |c: CoordinateId| b.model.coordinates[c.0 as usize].kind == CoordinateKind::Node;
-            if parts == Parts::SpringDamperInerter && ends.into_iter().flatten().filter(|&c| node(c)).count() > 1 {
-                parts = Parts::SpringDamper;
-            }
+        hold_nodes(&b, &mut links);
+        for (n, &(upper, lower, parts, lever)) in links.iter().enumerate() {
             let (terms, inner) = terms(&mut b, n, parts);
             let mut stretch = b.between(upper, lower);
             if let Some(third) = lever.filter(|&third| third != upper && third != lower) {
@@ -177,6 +175,25 @@ impl Plan {
         for l in (0..links as u16).map(qcar_dsl::expr::LinkId) {
             b.output(Signal::LinkForce(l));
             b.output(Signal::LinkStretch(l));
+        }
+    }
+}
+
+/// Makes random links solvable. An inerter between two nodes would give two accelerations but one balance; a damper
+/// between two nodes leaves their common motion free unless a damper holds one of them.
+fn hold_nodes(b: &Builder, links: &mut Vec<Ends>) {
+    let node = |c: &CoordinateId| b.model.coordinates[c.0 as usize].kind == CoordinateKind::Node;
+    for n in 0..links.len() {
+        let (upper, lower, parts, lever) = links[n];
+        let nodes: Vec<_> = [Some(upper), Some(lower), lever]
+            .into_iter()
+            .flatten()
+            .filter(node)
+            .collect();
+        if nodes.len() > 1 && matches!(parts, Parts::SpringDamper | Parts::SpringDamperInerter) {
+            links[n].2 = Parts::SpringDamper;
+            let road = CoordinateId(0);
+            links.extend(nodes.into_iter().map(|c| (c, road, Parts::SpringDamper, None)));
         }
     }
 }
