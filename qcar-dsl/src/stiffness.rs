@@ -81,11 +81,12 @@ fn relaxation(model: &Checked, g: &mut Graph, l: LinkId, force: Expr) -> Complex
 fn solve(g: &mut Graph, mut a: Vec<Vec<Complex>>, mut b: Vec<Complex>) -> Vec<Complex> {
     let n = b.len();
     for pivot in 0..n {
+        let above = a[pivot].clone();
         for row in pivot + 1..n {
-            let factor = a[row][pivot].div(g, a[pivot][pivot]);
-            for column in pivot + 1..n {
-                let product = factor.mul(g, a[pivot][column]);
-                a[row][column] = a[row][column].sub(g, product);
+            let factor = a[row][pivot].div(g, above[pivot]);
+            for (entry, &above) in a[row].iter_mut().zip(&above) {
+                let product = factor.mul(g, above);
+                *entry = entry.sub(g, product);
             }
             let product = factor.mul(g, b[pivot]);
             b[row] = b[row].sub(g, product);
