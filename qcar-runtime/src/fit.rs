@@ -1,1 +1,30 @@
-//! (to come)
+//! The rig fit of thesis section 3.5.2: model parameters from measured transmissibilities.
+//!
+//! [`Setup::new`] checks a [`Plan`] against model and measurement; whatever is wrong comes out there. [`Setup::fit`]
+//! is total: it searches from several starts and returns a [`Fit`], also where little could be determined.
+
+// What is fitted to.
+pub mod observation;
+// Which ratios of the measured signals to take.
+pub mod channels;
+// From the runs of a campaign to what is fitted.
+pub mod measure;
+// What the engineer decides: starts, bounds, weights.
+pub mod plan;
+// The residual of thesis section 3.5.2.1.
+mod cost;
+// Plan, model and measurement checked against each other.
+mod setup;
+// Several starts over the bounds.
+mod search;
+// From the Jacobian at the optimum to honest error bars.
+mod uncertainty;
+// The fit percentage of thesis section 3.5.2.4.
+pub mod quality;
+// The result as values to print or to serialise.
+pub mod report;
+
+pub use observation::{Level, Observation};
+pub use plan::{Plan, Weighting};
+pub use report::Fit;
+pub use setup::Setup;

@@ -9,20 +9,20 @@ use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::response::ratio::{Ratio, ratio};
 use qcar_runtime::response::signal::{SignalError, locate};
 use std::collections::BTreeMap;
-use support::{Chain, PARAMETERS, acceleration, closed_form, truth};
+use support::{Assembled, CHAIN, acceleration, chain};
 
 const FREQUENCIES: [f64; 4] = [0.7, 3.0, 11.0, 27.0];
 
 fn given(names: impl IntoIterator<Item = &'static str>) -> BTreeMap<String, f64> {
-    let value = |name: &str| PARAMETERS.iter().find(|p| p.0 == name).map_or(1.0, |p| p.2);
+    let value = |name: &str| CHAIN.iter().find(|p| p.0 == name).map_or(1.0, |p| p.2);
     names.into_iter().map(|name| (name.to_owned(), value(name))).collect()
 }
 
-fn values(chain: &Chain) -> Values {
-    Values::resolve(chain.about(), &given(PARAMETERS.map(|p| p.0)), &BTreeMap::new()).unwrap()
+fn values(chain: &Assembled) -> Values {
+    Values::resolve(chain.about(), &given(CHAIN.map(|p| p.0)), &BTreeMap::new()).unwrap()
 }
 
-fn transmissibility(chain: &Chain, numerator: &Signal, denominator: &Signal) -> Ratio {
+fn transmissibility(chain: &Assembled, numerator: &Signal, denominator: &Signal) -> Ratio {
     ratio(chain, &values(chain), 0, numerator, denominator, &FREQUENCIES).unwrap()
 }
 
@@ -35,8 +35,8 @@ fn assert_near(actual: Complex<f64>, expected: Complex<f64>, relative: f64) {
 }
 
 /// The response a model gives and the one taken from its matrices, both about the same closed form.
-fn both() -> [Chain; 2] {
-    [Chain::new(true), Chain::new(false)]
+fn both() -> [Assembled; 2] {
+    [chain(true), chain(false)]
 }
 
 #[test]
@@ -46,7 +46,7 @@ fn ratios_from_the_pad_and_between_masses_are_those_of_the_closed_form() {
         let body_to_pwt = transmissibility(&chain, &acceleration("pwt"), &acceleration("body"));
         for (line, frequency) in FREQUENCIES.iter().enumerate() {
             let omega = std::f64::consts::TAU * frequency;
-            let h = closed_form(&truth(), omega);
+            let h = chain.closed_form(&support::truth(&CHAIN), omega);
             assert_near(pad_to_body.value[line], h[0] / (-omega * omega), 1e-11);
             assert_near(body_to_pwt.value[line], h[2] / h[0], 1e-11);
         }
@@ -55,7 +55,7 @@ fn ratios_from_the_pad_and_between_masses_are_those_of_the_closed_form() {
 
 #[test]
 fn a_slow_pad_moves_everything_with_it() {
-    let chain = Chain::new(true);
+    let chain = chain(true);
     let slow = ratio(
         &chain,
         &values(&chain),
@@ -89,17 +89,17 @@ fn the_parameter_jacobian_is_that_of_finite_differences() {
         let ratio = transmissibility(&chain, &acceleration("pwt"), &acceleration("wheel"));
         for (parameter, slope) in ratio.jacobian.iter().filter(|(parameter, _)| *parameter < 9) {
             let value = |scale: f64, line: usize| {
-                let mut p = truth();
+                let mut p = support::truth(&CHAIN);
                 p[*parameter] *= scale;
-                let h = closed_form(&p, std::f64::consts::TAU * FREQUENCIES[line]);
+                let h = chain.closed_form(&p, std::f64::consts::TAU * FREQUENCIES[line]);
                 h[2] / h[1]
             };
             for (line, slope) in slope.iter().enumerate() {
-                let step = 1e-5 * truth()[*parameter];
+                let step = 1e-5 * support::truth(&CHAIN)[*parameter];
                 let expected = (value(1.0 + 1e-5, line) - value(1.0 - 1e-5, line)) / (2.0 * step);
                 let size = expected
                     .norm()
-                    .max(1e-3 * ratio.value[line].norm() / truth()[*parameter]);
+                    .max(1e-3 * ratio.value[line].norm() / support::truth(&CHAIN)[*parameter]);
                 assert!((slope - expected).norm() < 1e-5 * size, "{parameter} {line}");
             }
         }
@@ -108,9 +108,9 @@ fn the_parameter_jacobian_is_that_of_finite_differences() {
 
 #[test]
 fn a_tied_parameter_follows_and_adds_its_slope() {
-    let tied = Chain::with_default(8, Default::Same(6));
-    let free = Chain::new(true);
-    let others = PARAMETERS.map(|p| p.0).into_iter().filter(|name| *name != "c_pwt_z");
+    let tied = chain(true).with_default(8, Default::Same(6));
+    let free = chain(true);
+    let others = CHAIN.map(|p| p.0).into_iter().filter(|name| *name != "c_pwt_z");
     let values = Values::resolve(tied.about(), &given(others), &BTreeMap::new()).unwrap();
     assert_eq!(values.as_slice()[8], values.as_slice()[6]);
     let together = ratio(
@@ -132,15 +132,15 @@ fn a_tied_parameter_follows_and_adds_its_slope() {
 
 #[test]
 fn a_value_breaks_a_tie_and_the_vehicle_fills_gaps() {
-    let tied = Chain::with_default(8, Default::Same(6));
-    let names = PARAMETERS.map(|p| p.0).into_iter().filter(|name| *name != "m_corner");
+    let tied = chain(true).with_default(8, Default::Same(6));
+    let names = CHAIN.map(|p| p.0).into_iter().filter(|name| *name != "m_corner");
     let values = Values::resolve(tied.about(), &given(names), &given(["m_corner", "r_tire"])).unwrap();
-    assert_eq!(values.as_slice(), truth());
+    assert_eq!(values.as_slice(), support::truth(&CHAIN));
 }
 
 #[test]
 fn every_parameter_at_fault_is_named_at_once() {
-    let chain = Chain::new(true);
+    let chain = chain(true);
     let mut given = given([
         "m_corner",
         "m_wheel",
@@ -164,7 +164,7 @@ fn every_parameter_at_fault_is_named_at_once() {
 
 #[test]
 fn a_signal_that_the_model_cannot_give_is_refused_with_what_it_has() {
-    let chain = Chain::new(true);
+    let chain = chain(true);
     let response = Response::new(&chain, 0, &FREQUENCIES);
     let find = |signal: &Signal| locate(chain.about(), response.layout(), 0, signal).unwrap_err();
     let unknown = find(&acceleration("sf"));

@@ -2,8 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// Singular values of the scaled Jacobian below this part of the largest one count as zero.
-const RANK_TOLERANCE: f64 = 1e-10;
+/// Singular values of the scaled Jacobian below this part of the largest one count as zero: no measurement has the
+/// seven digits that it would take to see such a direction.
+const RANK_TOLERANCE: f64 = 1e-7;
 
 /// A variable takes part in an unseen direction when its component is at least this large.
 const TAKES_PART: f64 = 1e-3;

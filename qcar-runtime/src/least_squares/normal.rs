@@ -11,9 +11,10 @@ pub(super) struct NormalEquations {
     pub matrix: DMatrix<f64>,
     /// `Jᵀr`.
     pub gradient: DVector<f64>,
-    /// One over the largest norm that each column ever had; 1 for a column that was always zero.
+    /// The largest norm that each column ever had.
+    pub largest: DVector<f64>,
+    /// One over it; 1 for a column that was always zero.
     pub scale: DVector<f64>,
-    largest: DVector<f64>,
 }
 
 impl NormalEquations {
@@ -21,8 +22,8 @@ impl NormalEquations {
         Self {
             matrix: DMatrix::zeros(variables, variables),
             gradient: DVector::zeros(variables),
-            scale: DVector::repeat(variables, 1.0),
             largest: DVector::zeros(variables),
+            scale: DVector::repeat(variables, 1.0),
         }
     }
 

@@ -16,7 +16,8 @@ pub(super) struct Interior {
     curvature: DVector<f64>,
     /// Distance to the bound that the descent direction meets, infinite where it meets none.
     distance: DVector<f64>,
-    scale: DVector<f64>,
+    /// What a unit of each variable is worth in residuals; zero for one that no residual sees.
+    worth: DVector<f64>,
 }
 
 impl Interior {
@@ -49,7 +50,7 @@ impl Interior {
             factor,
             curvature,
             distance,
-            scale: normal.scale.clone(),
+            worth: normal.largest.clone(),
         }
     }
 
@@ -59,20 +60,25 @@ impl Interior {
         if length == 0.0 {
             return 0.0;
         }
-        let cosine = |k: usize| (normal.gradient[k] * self.scale[k]).abs() / length;
-        let room = |k: usize| (self.distance[k] / (self.scale[k] * length)).min(1.0);
-        (0..self.scale.len()).map(|k| cosine(k) * room(k)).fold(0.0, f64::max)
+        let cosine = |k: usize| (normal.gradient[k] * normal.scale[k]).abs() / length;
+        let room = |k: usize| (self.distance[k] / (normal.scale[k] * length)).min(1.0);
+        (0..self.worth.len()).map(|k| cosine(k) * room(k)).fold(0.0, f64::max)
     }
 
     /// The length of the start in scaled variables: a first step may change a variable by as much as itself.
     pub fn first_radius(&self, x: &DVector<f64>) -> f64 {
-        let length = x.component_div(&self.factor).norm();
+        let seen = |k: &usize| self.worth[*k] > 0.0;
+        let length = (0..x.len())
+            .filter(seen)
+            .map(|k| (x[k] / self.factor[k]).powi(2))
+            .sum::<f64>()
+            .sqrt();
         if length > 0.0 { length } else { 1.0 }
     }
 
-    /// The length of a vector in units of what one residual norm of each column is worth.
+    /// The length of a vector by what its components are worth in residuals.
     pub fn scaled_length(&self, vector: &DVector<f64>) -> f64 {
-        vector.component_div(&self.scale).norm()
+        vector.component_mul(&self.worth).norm()
     }
 }
 

@@ -80,11 +80,6 @@ impl Logarithms {
         (&self.d_magnitude[range.clone()], &self.d_angle[range])
     }
 
-    /// True where a term depends on a column.
-    pub fn depends(&self, term: usize, column: usize) -> bool {
-        self.sources[term].iter().any(|&(of, _)| of == column)
-    }
-
     fn slope_range(&self, term: usize, column: usize) -> std::ops::Range<usize> {
         let start = (term * self.columns + column) * self.lines;
         start..start + self.lines

@@ -1,7 +1,9 @@
 //! From what is given to a value for every parameter of the model.
 
+use crate::error::{Place, Problem};
 use crate::model::{About, Default};
 use std::collections::BTreeMap;
+use std::path::Path;
 use thiserror::Error;
 
 /// A value for every parameter, and which of them move together.
@@ -53,6 +55,28 @@ impl ParameterError {
         match self {
             Self::Unknown { name, .. } | Self::Missing { name, .. } | Self::NotFinite { name, .. } => name,
         }
+    }
+
+    /// The same as a problem of the file that gives the values.
+    pub fn problem(&self, file: &Path) -> Problem {
+        let (found, expected, remedy) = match self {
+            Self::Unknown { model, nearest, .. } => (
+                "this parameter".to_owned(),
+                format!("a parameter of model `{model}`"),
+                unknown_remedy(nearest),
+            ),
+            Self::Missing { name, model, unit, doc } => (
+                "no value".to_owned(),
+                format!("a value in {unit} ({doc}), since model `{model}` has no default for it"),
+                format!("add a table [parameters.{name}]"),
+            ),
+            Self::NotFinite { value, .. } => (
+                value.to_string(),
+                "a finite number".to_owned(),
+                "correct the value".to_owned(),
+            ),
+        };
+        Problem::new(file, Place::Name(self.name().to_owned()), found, expected, remedy)
     }
 }
 

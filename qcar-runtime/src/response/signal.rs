@@ -1,6 +1,8 @@
 //! Where a measured signal is found among the rows of a response.
 
+use crate::error::{Place, Problem};
 use crate::model::{About, Excitation, Quantity, ResponseLayout, Signal, SignalKind};
+use std::path::Path;
 use thiserror::Error;
 
 /// A signal under one excitation: a row of its response, or the excitation itself, times a power of jω.
@@ -55,6 +57,44 @@ pub enum SignalError {
         /// The model's name.
         model: String,
     },
+}
+
+impl SignalError {
+    /// The same as a problem of the file that asks for `channel`.
+    pub fn problem(&self, file: &Path, channel: &str) -> Problem {
+        let (found, expected, remedy) = match self {
+            Self::Unknown {
+                location,
+                axis,
+                model,
+                known,
+            } => (
+                format!("`{location}` along {axis}"),
+                format!("a place of model `{model}`, which has {known}"),
+                "choose a model that has it, or leave the channel out".to_owned(),
+            ),
+            Self::NoOutput {
+                location,
+                quantity,
+                model,
+            } => (
+                format!("the {quantity} of `{location}`"),
+                format!("an output of model `{model}`"),
+                format!("add `output {location}.{quantity};` to the model"),
+            ),
+            Self::Silent {
+                location,
+                axis,
+                excitation,
+                model,
+            } => (
+                format!("`{location}`, which does not move along {axis} in model `{model}`"),
+                format!("a place that moves when `{excitation}` does"),
+                "leave the channel out".to_owned(),
+            ),
+        };
+        Problem::new(file, Place::Name(channel.to_owned()), found, expected, remedy)
+    }
 }
 
 /// Finds `signal` in the response to `excitation`.

@@ -1,4 +1,4 @@
-//! A model written by hand for the tests: pad, wheel, body and powertrain in a chain, all linear.
+//! Models for the tests, assembled from masses and links by incidence: `M q̈ + C q̇ + K q = k z_pad + c ż_pad`.
 
 use nalgebra::{Complex, DMatrix, DVector};
 use qcar_runtime::model::{
@@ -7,8 +7,31 @@ use qcar_runtime::model::{
 };
 use std::borrow::Cow;
 
-/// Names, units and true values of the parameters. The last one acts along x, where nothing is excited.
-pub const PARAMETERS: [(&str, &str, f64); 10] = [
+/// A function of the parameters.
+pub type Law = fn(&[f64]) -> f64;
+
+/// A spring and a damper over a stretch.
+pub struct Element {
+    /// Its name.
+    pub name: &'static str,
+    /// Coordinates (`pad` among them) with their shares of the stretch, upper before lower.
+    pub ends: Vec<(&'static str, Law)>,
+    /// Stiffness and damping.
+    pub law: [Law; 2],
+}
+
+/// A model along z over one pad. Its last parameter acts nowhere.
+pub struct Assembled {
+    about: About,
+    masses: Vec<(&'static str, Law)>,
+    elements: Vec<Element>,
+}
+
+/// Name, unit and true value of a parameter.
+pub type Given = (&'static str, &'static str, f64);
+
+/// Parameters of [`chain`]. The last one acts along x, where nothing is excited.
+pub const CHAIN: [Given; 10] = [
     ("m_corner", "kg", 490.0),
     ("m_wheel", "kg", 45.0),
     ("m_pwt", "kg", 70.0),
@@ -21,31 +44,31 @@ pub const PARAMETERS: [(&str, &str, f64); 10] = [
     ("k_wheel_x", "N/m", 400e3),
 ];
 
-/// The masses in the order of the states.
-pub const MASSES: [&str; 3] = ["body", "wheel", "pwt"];
-
-/// The chain.
-pub struct Chain {
-    about: About,
+/// Pad, wheel, body and powertrain in a chain; if not `linear`, its response is to be taken from its matrices.
+pub fn chain(linear: bool) -> Assembled {
+    let masses: Vec<(&'static str, Law)> =
+        vec![("body", |p| p[0] - p[1] - p[2]), ("wheel", |p| p[1]), ("pwt", |p| p[2])];
+    let elements = vec![
+        between("tire", "wheel", "pad", [|p| p[3], |p| p[4]]),
+        between("spring", "body", "wheel", [|p| p[5], |_| 0.0]),
+        between("damper", "body", "wheel", [|_| 0.0, |p| p[6]]),
+        between("powertrain_mount", "pwt", "body", [|p| p[7], |p| p[8]]),
+    ];
+    Assembled::new("chain", &CHAIN, masses, elements, linear)
 }
 
-impl Chain {
-    /// A chain that says of itself whether it is linear: if not, its response is taken from its matrices.
-    pub fn new(linear: bool) -> Self {
-        Self { about: about(linear) }
-    }
-
-    /// The same with some other default of a parameter.
-    pub fn with_default(parameter: usize, default: Default) -> Self {
-        let mut about = about(true);
-        about.parameters.to_mut()[parameter].default = default;
-        Self { about }
+/// An element straight between two coordinates.
+pub fn between(name: &'static str, upper: &'static str, lower: &'static str, law: [Law; 2]) -> Element {
+    Element {
+        name,
+        ends: vec![(upper, |_| 1.0), (lower, |_| -1.0)],
+        law,
     }
 }
 
 /// True values.
-pub fn truth() -> Vec<f64> {
-    PARAMETERS.iter().map(|parameter| parameter.2).collect()
+pub fn truth(parameters: &[Given]) -> Vec<f64> {
+    parameters.iter().map(|parameter| parameter.2).collect()
 }
 
 /// The acceleration of a mass or of the pad.
@@ -57,83 +80,97 @@ pub fn acceleration(location: &'static str) -> Signal {
     }
 }
 
-/// `M q̈ + C q̇ + K q = pull_k z_pad + pull_c ż_pad`.
 struct System {
     m: DVector<f64>,
     k: DMatrix<f64>,
     c: DMatrix<f64>,
-    pull_k: DVector<f64>,
-    pull_c: DVector<f64>,
+    pull: [DVector<f64>; 2],
 }
 
-fn system(p: &[f64]) -> System {
-    let chain = |wheel: f64, tire: f64, pwt: f64| {
-        DMatrix::from_row_slice(
-            3,
-            3,
-            &[wheel + pwt, -wheel, -pwt, -wheel, wheel + tire, 0.0, -pwt, 0.0, pwt],
-        )
-    };
-    let pull = |tire: f64| DVector::from_column_slice(&[0.0, tire, 0.0]);
-    System {
-        m: DVector::from_column_slice(&[p[0] - p[1] - p[2], p[1], p[2]]),
-        k: chain(p[5], p[3], p[7]),
-        c: chain(p[6], p[4], p[8]),
-        pull_k: pull(p[3]),
-        pull_c: pull(p[4]),
+impl Assembled {
+    /// Assembles a model from its parts.
+    pub fn new(
+        name: &'static str,
+        parameters: &[Given],
+        masses: Vec<(&'static str, Law)>,
+        elements: Vec<Element>,
+        linear: bool,
+    ) -> Self {
+        let about = about(name, parameters, &masses, &elements, linear);
+        Self {
+            about,
+            masses,
+            elements,
+        }
     }
-}
 
-/// Accelerations of the masses for a unit displacement of the pad.
-pub fn closed_form(p: &[f64], omega: f64) -> DVector<Complex<f64>> {
-    let System {
-        m,
-        k,
-        c,
-        pull_k,
-        pull_c,
-    } = system(p);
-    let s = Complex::new(0.0, omega);
-    let z = DMatrix::from_fn(3, 3, |i, j| {
-        Complex::from(k[(i, j)]) + s * c[(i, j)] + if i == j { s * s * m[i] } else { Complex::default() }
-    });
-    let force = DVector::from_fn(3, |i, _| Complex::from(pull_k[i]) + s * pull_c[i]);
-    z.lu().solve(&force).expect("the chain is held and damped") * (s * s)
-}
+    /// The same with some other default of a parameter.
+    pub fn with_default(mut self, parameter: usize, default: Default) -> Self {
+        self.about.parameters.to_mut()[parameter].default = default;
+        self
+    }
 
-/// All of A, B, C and D row by row; u is pad height, pad velocity and gravity.
-fn dense(p: &[f64]) -> Vec<f64> {
-    let System {
-        m,
-        k,
-        c,
-        pull_k,
-        pull_c,
-    } = system(p);
-    let acceleration = |i: usize| {
-        let of_states = (0..3)
-            .map(|j| -k[(i, j)] / m[i])
-            .chain((0..3).map(|j| -c[(i, j)] / m[i]))
-            .collect::<Vec<_>>();
-        (of_states, [pull_k[i] / m[i], pull_c[i] / m[i], -1.0])
-    };
-    let velocity = |i: usize| (0..6).map(move |j| f64::from(u8::from(j == i + 3)));
-    let a = (0..3).flat_map(velocity).chain((0..3).flat_map(|i| acceleration(i).0));
-    let b = std::iter::repeat_n(0.0, 9).chain((0..3).flat_map(|i| acceleration(i).1));
-    let c = (0..3).flat_map(|i| acceleration(i).0);
-    let d = (0..3).flat_map(|i| acceleration(i).1);
-    a.chain(b).chain(c).chain(d).collect()
-}
+    fn system(&self, p: &[f64]) -> System {
+        let n = self.masses.len();
+        let place = |name: &str| self.masses.iter().position(|mass| mass.0 == name);
+        let zero = || DVector::zeros(n);
+        let m = DVector::from_iterator(n, self.masses.iter().map(|mass| (mass.1)(p)));
+        let mut system = System {
+            m,
+            k: DMatrix::zeros(n, n),
+            c: DMatrix::zeros(n, n),
+            pull: [zero(), zero()],
+        };
+        for element in &self.elements {
+            let mut incidence = zero();
+            let mut pad = 0.0;
+            for (name, share) in &element.ends {
+                match place(name) {
+                    Some(place) => incidence[place] += share(p),
+                    None => pad += share(p),
+                }
+            }
+            let square = &incidence * incidence.transpose();
+            system.k += &square * (element.law[0])(p);
+            system.c += &square * (element.law[1])(p);
+            for (pull, law) in system.pull.iter_mut().zip(element.law) {
+                *pull -= &incidence * (pad * law(p));
+            }
+        }
+        system
+    }
 
-fn entries() -> Vec<Entry> {
-    let block = |matrix, rows: u16, columns: u16| {
-        (0..rows).flat_map(move |row| (0..columns).map(move |column| Entry { matrix, row, column }))
-    };
-    block(Matrix::A, 6, 6)
-        .chain(block(Matrix::B, 6, 3))
-        .chain(block(Matrix::C, 3, 6))
-        .chain(block(Matrix::D, 3, 3))
-        .collect()
+    /// Accelerations of the masses for a unit displacement of the pad.
+    pub fn closed_form(&self, p: &[f64], omega: f64) -> DVector<Complex<f64>> {
+        let System { m, k, c, pull } = self.system(p);
+        let s = Complex::new(0.0, omega);
+        let n = m.len();
+        let z = DMatrix::from_fn(n, n, |i, j| {
+            Complex::from(k[(i, j)]) + s * c[(i, j)] + if i == j { s * s * m[i] } else { Complex::default() }
+        });
+        let force = DVector::from_fn(n, |i, _| Complex::from(pull[0][i]) + s * pull[1][i]);
+        z.lu().solve(&force).expect("the model is held and damped") * (s * s)
+    }
+
+    /// All of A, B, C and D row by row; u is pad height, pad velocity and gravity.
+    fn dense(&self, p: &[f64]) -> Vec<f64> {
+        let System { m, k, c, pull } = self.system(p);
+        let n = m.len();
+        let of_states = |i: usize| -> Vec<f64> {
+            (0..n)
+                .map(|j| -k[(i, j)] / m[i])
+                .chain((0..n).map(|j| -c[(i, j)] / m[i]))
+                .collect()
+        };
+        let of_inputs = |i: usize| [pull[0][i] / m[i], pull[1][i] / m[i], -1.0];
+        let velocity = |i: usize| (0..2 * n).map(move |j| f64::from(u8::from(j == i + n)));
+        let a = (0..n).flat_map(velocity).chain((0..n).flat_map(of_states));
+        let b = std::iter::repeat_n(0.0, 3 * n).chain((0..n).flat_map(of_inputs));
+        a.chain(b)
+            .chain((0..n).flat_map(of_states))
+            .chain((0..n).flat_map(of_inputs))
+            .collect()
+    }
 }
 
 /// Central differences; what is compared with them allows for their error.
@@ -151,7 +188,7 @@ where
     pairs.map(|(up, down)| (up - down) / (2.0 * step)).collect()
 }
 
-impl Model for Chain {
+impl Model for Assembled {
     fn about(&self) -> &About {
         &self.about
     }
@@ -161,25 +198,25 @@ impl Model for Chain {
     }
 
     fn derivative(&self, p: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {
-        let all = dense(p);
+        let (all, n) = (self.dense(p), x.len());
         for (i, dx) in dx.iter_mut().enumerate() {
-            let of_states: f64 = (0..6).map(|j| all[i * 6 + j] * x[j]).sum();
-            *dx = of_states + (0..3).map(|j| all[36 + i * 3 + j] * u[j]).sum::<f64>();
+            let of_states: f64 = (0..n).map(|j| all[i * n + j] * x[j]).sum();
+            *dx = of_states + (0..3).map(|j| all[n * n + i * 3 + j] * u[j]).sum::<f64>();
         }
     }
 
     fn outputs(&self, p: &[f64], x: &[f64], u: &[f64], y: &mut [f64]) {
-        let mut dx = [0.0; 6];
+        let mut dx = vec![0.0; x.len()];
         self.derivative(p, x, u, &mut dx);
-        y.copy_from_slice(&dx[3..]);
+        y.copy_from_slice(&dx[x.len() / 2..]);
     }
 
     fn matrices(&self, p: &[f64], _: &[f64], _: &[f64], nonzeros: &mut [f64]) {
-        nonzeros.copy_from_slice(&dense(p));
+        nonzeros.copy_from_slice(&self.dense(p));
     }
 
     fn sensitivities(&self, p: &[f64], _: &[f64], _: &[f64], nonzeros: &mut [f64]) {
-        let all = (0..p.len()).flat_map(|parameter| differences(p, parameter, dense));
+        let all = (0..p.len()).flat_map(|parameter| differences(p, parameter, |p| self.dense(p)));
         nonzeros.iter_mut().zip(all).for_each(|(to, value)| *to = value);
     }
 
@@ -189,7 +226,7 @@ impl Model for Chain {
         let (lines, seen) = (omega.len(), p.len() - 1);
         let (jacobian_re, jacobian_im) = into.jacobian.expect("the fit asks for it");
         for (line, &omega) in omega.iter().enumerate() {
-            let accelerations = |p: &[f64]| closed_form(p, omega).iter().copied().collect::<Vec<_>>();
+            let accelerations = |p: &[f64]| self.closed_form(p, omega).iter().copied().collect::<Vec<_>>();
             for (mass, value) in accelerations(p).into_iter().enumerate() {
                 into.re[mass * lines + line] = value.re;
                 into.im[mass * lines + line] = value.im;
@@ -216,59 +253,26 @@ impl Model for Chain {
     }
 }
 
-fn about(linear: bool) -> About {
-    let parameter = |&(name, unit, _): &(&'static str, &'static str, f64)| Parameter {
-        name: name.into(),
-        unit: unit.into(),
-        doc: format!("What `{name}` is").into(),
-        default: Default::None,
-        range: None,
-        known: name == "m_corner",
-    };
-    let state = |name: String, unit: &'static str, mass: &&'static str, kind| State {
-        name: name.into(),
-        unit: unit.into(),
-        location: (*mass).into(),
-        axis: "z".into(),
-        kind,
-    };
-    let positions = MASSES
-        .iter()
-        .map(|mass| state(format!("z_{mass}"), "m", mass, StateKind::Position));
-    let velocities = MASSES
-        .iter()
-        .map(|mass| state(format!("vz_{mass}"), "m/s", mass, StateKind::Velocity));
-    let input = |name: &'static str, unit: &'static str, kind| Input {
-        name: name.into(),
-        unit: unit.into(),
-        axis: "z".into(),
-        kind,
-    };
-    let link = |name: &'static str, upper: &'static str, lower: &'static str| Link {
-        name: name.into(),
-        axis: "z".into(),
-        ends: vec![upper.into(), lower.into()].into(),
-    };
-    let seen = PARAMETERS.len() as u16 - 1;
+fn about(
+    name: &'static str,
+    parameters: &[Given],
+    masses: &[(&'static str, Law)],
+    elements: &[Element],
+    linear: bool,
+) -> About {
+    let count = parameters.len() as u16;
     About {
-        name: "chain".into(),
-        doc: "Pad, wheel, body and powertrain".into(),
-        parameters: PARAMETERS.iter().map(parameter).collect(),
-        states: positions.chain(velocities).collect(),
+        name: name.into(),
+        doc: "A model for tests".into(),
+        parameters: parameters.iter().map(parameter).collect(),
+        states: states(masses),
         inputs: vec![
             input("z_pad", "m", InputKind::Motion(0, Quantity::Position)),
             input("vz_pad", "m/s", InputKind::Motion(0, Quantity::Velocity)),
             input("g", "m/s^2", InputKind::Gravity),
         ]
         .into(),
-        outputs: MASSES
-            .iter()
-            .map(|mass| Output {
-                name: format!("z_{mass}_acceleration").into(),
-                unit: "m/s^2".into(),
-                signal: acceleration(mass),
-            })
-            .collect(),
+        outputs: masses.iter().map(output).collect(),
         excitations: vec![Excitation {
             name: "pad".into(),
             axis: "z".into(),
@@ -282,27 +286,89 @@ fn about(linear: bool) -> About {
             denominator: acceleration("pad"),
         }]
         .into(),
-        links: vec![
-            link("tire", "wheel", "pad"),
-            link("spring", "body", "wheel"),
-            link("damper", "body", "wheel"),
-            link("powertrain_mount", "pwt", "body"),
-        ]
-        .into(),
+        links: elements.iter().map(link).collect(),
         contact: None,
-        constants: PARAMETERS.len(),
+        constants: parameters.len(),
         linear,
-        matrices: entries().into(),
-        sensitivities: (0..PARAMETERS.len() as u16)
-            .flat_map(|parameter| entries().into_iter().map(move |entry| (entry, parameter)))
+        matrices: entries(masses.len() as u16).into(),
+        sensitivities: (0..count)
+            .flat_map(|parameter| {
+                entries(masses.len() as u16)
+                    .into_iter()
+                    .map(move |entry| (entry, parameter))
+            })
             .collect(),
         parameter_jacobian: Cow::Borrowed(&[]),
         responses: vec![ResponseLayout {
-            outputs: (0..3).collect(),
-            jacobian: (0..3)
-                .flat_map(|mass| (0..seen).map(move |parameter| (mass, parameter)))
+            outputs: (0..masses.len() as u16).collect(),
+            jacobian: (0..masses.len() as u16)
+                .flat_map(|mass| (0..count - 1).map(move |parameter| (mass, parameter)))
                 .collect(),
         }]
         .into(),
     }
+}
+
+fn parameter(&(name, unit, _): &Given) -> Parameter {
+    Parameter {
+        name: name.into(),
+        unit: unit.into(),
+        doc: format!("What `{name}` is").into(),
+        default: Default::None,
+        range: None,
+        known: name == "m_corner",
+    }
+}
+
+fn states(masses: &[(&'static str, Law)]) -> Cow<'static, [State]> {
+    let state = |name: String, unit: &'static str, mass: &'static str, kind| State {
+        name: name.into(),
+        unit: unit.into(),
+        location: mass.into(),
+        axis: "z".into(),
+        kind,
+    };
+    let positions = masses
+        .iter()
+        .map(|mass| state(format!("z_{}", mass.0), "m", mass.0, StateKind::Position));
+    let velocities = masses
+        .iter()
+        .map(|mass| state(format!("vz_{}", mass.0), "m/s", mass.0, StateKind::Velocity));
+    positions.chain(velocities).collect()
+}
+
+fn input(name: &'static str, unit: &'static str, kind: InputKind) -> Input {
+    Input {
+        name: name.into(),
+        unit: unit.into(),
+        axis: "z".into(),
+        kind,
+    }
+}
+
+fn output(mass: &(&'static str, Law)) -> Output {
+    Output {
+        name: format!("z_{}_acceleration", mass.0).into(),
+        unit: "m/s^2".into(),
+        signal: acceleration(mass.0),
+    }
+}
+
+fn link(element: &Element) -> Link {
+    Link {
+        name: element.name.into(),
+        axis: "z".into(),
+        ends: element.ends.iter().map(|end| Cow::Borrowed(end.0)).collect(),
+    }
+}
+
+fn entries(masses: u16) -> Vec<Entry> {
+    let block = |matrix, rows: u16, columns: u16| {
+        (0..rows).flat_map(move |row| (0..columns).map(move |column| Entry { matrix, row, column }))
+    };
+    let of_states = block(Matrix::A, 2 * masses, 2 * masses).chain(block(Matrix::B, 2 * masses, 3));
+    of_states
+        .chain(block(Matrix::C, masses, 2 * masses))
+        .chain(block(Matrix::D, masses, 3))
+        .collect()
 }

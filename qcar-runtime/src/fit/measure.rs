@@ -1,0 +1,268 @@
+//! From the runs of a campaign to what is fitted.
+
+use super::channels::{Channels, across_links, is_excitation};
+use super::observation::{Difference, Level, Observation, Pair};
+use crate::campaign::{Campaign, Channel as Sensor, History, Quantity, Run, Side, Test};
+use crate::error::{InputError, Place, Problem};
+use crate::model::{self, About, Channel, Signal, SignalKind};
+use crate::transmissibility::{Options, Point, Transmissibility, points, transmissibilities};
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+/// Measures the channels of every sweep and time history of a campaign that excites the model.
+///
+/// `wanted` names the channels to fit, as `near_to_far` of two measured places; without it they are those over the
+/// model's force elements (see [`across_links`]).
+///
+/// # Errors
+/// What [`Campaign::history`] and [`transmissibilities`] find wrong with a run, runs that record no excitation of the
+/// model, and wanted channels that were not measured.
+pub fn levels(
+    campaign: &Campaign,
+    about: &About,
+    wanted: Option<&[String]>,
+    options: &Options,
+) -> Result<Vec<Level>, InputError> {
+    let runs: Vec<&Run> = campaign
+        .runs
+        .iter()
+        .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory { .. }))
+        .collect();
+    let measured: Vec<_> = runs
+        .par_iter()
+        .map(|run| level(campaign, run, about, wanted, options))
+        .collect();
+    let (mut levels, mut problems) = (Vec::new(), Vec::new());
+    for result in measured {
+        match result {
+            Ok(level) => levels.push(level),
+            Err(error) => problems.extend(error.problems),
+        }
+    }
+    InputError::unless_empty(problems, Some(levels))
+}
+
+fn level(
+    campaign: &Campaign,
+    run: &Run,
+    about: &About,
+    wanted: Option<&[String]>,
+    options: &Options,
+) -> Result<Level, InputError> {
+    let history = campaign.history(run)?;
+    let measured = points(&history);
+    let (excitation, reference) = excitation(&history, about, &measured)?;
+    let along: Vec<Point> = measured
+        .into_iter()
+        .filter(|point| point.axis == reference.axis)
+        .collect();
+    let signals: Vec<Signal> = along.iter().map(|point| signal(about, point)).collect();
+    let channels = match wanted {
+        None => across_links(about, &about.excitations[excitation], &signals),
+        Some(wanted) => named(campaign, about, excitation, &signals, wanted)?,
+    };
+    let all: Vec<(&Channel, bool)> = channels
+        .fitted
+        .iter()
+        .map(|channel| (channel, true))
+        .chain(channels.compared.iter().map(|channel| (channel, false)))
+        .collect();
+    let place = |signal: &Signal| along[signals.iter().position(|s| s == signal).expect("taken from there")].clone();
+    let pairs: Vec<_> = all
+        .iter()
+        .map(|(channel, _)| (place(&channel.denominator), place(&channel.numerator)))
+        .collect();
+    let ratios = transmissibilities(&history, &reference, &pairs, options)?;
+    let differences = differences(&history, &reference, &pairs, options)?;
+    let observations = all.iter().zip(ratios).zip(differences);
+    let observations = observations
+        .map(|(((channel, fitted), ratio), differences)| observation(&history, channel, *fitted, ratio, differences));
+    Ok(Level {
+        name: run.file.clone(),
+        role: run.role,
+        excitation,
+        observations: observations.collect(),
+    })
+}
+
+/// The excitation of the model that a run records, and the point where it does.
+fn excitation(history: &History, about: &About, measured: &[Point]) -> Result<(usize, Point), InputError> {
+    for (place, excitation) in about.excitations.iter().enumerate() {
+        if let Some(point) = measured
+            .iter()
+            .find(|point| is_excitation(excitation, &signal(about, point)))
+        {
+            return Ok((place, point.clone()));
+        }
+    }
+    let measured: Vec<String> = measured.iter().map(|point| format!("`{}`", point.location)).collect();
+    let excitations: Vec<String> = about.excitations.iter().map(|e| format!("`{}`", e.name)).collect();
+    let expected = format!(
+        "a channel of {}, which excite model `{}`",
+        excitations.join(" or "),
+        about.name
+    );
+    let remedy = "record the excitation, or choose another model";
+    Err(Problem::new(
+        &history.file,
+        Place::File,
+        format!("channels of {}", measured.join(", ")),
+        expected,
+        remedy,
+    )
+    .into())
+}
+
+/// The channels that were asked for by name; those from the excitation stand beside them.
+fn named(
+    campaign: &Campaign,
+    about: &About,
+    excitation: usize,
+    measured: &[Signal],
+    wanted: &[String],
+) -> Result<Channels, InputError> {
+    let default = across_links(about, &about.excitations[excitation], measured);
+    let (mut fitted, mut problems) = (Vec::new(), Vec::new());
+    for name in wanted {
+        let pair = measured
+            .iter()
+            .flat_map(|near| measured.iter().map(move |far| (near, far)));
+        let mut same =
+            pair.filter(|(near, far)| near != far && *name == format!("{}_to_{}", near.location, far.location));
+        match same.next() {
+            Some((near, far)) => fitted.push(Channel {
+                name: name.clone().into(),
+                numerator: far.clone(),
+                denominator: near.clone(),
+            }),
+            None => problems.push(unknown_channel(campaign, name, measured)),
+        }
+    }
+    let compared = default.fitted.into_iter().chain(default.compared);
+    let compared = compared
+        .filter(|channel| fitted.iter().all(|other| other.name != channel.name))
+        .collect();
+    InputError::unless_empty(problems, Some(Channels { fitted, compared }))
+}
+
+fn unknown_channel(campaign: &Campaign, name: &str, measured: &[Signal]) -> Problem {
+    let places: Vec<String> = measured.iter().map(|signal| format!("`{}`", signal.location)).collect();
+    let expected = format!("`near_to_far` of two measured places, which are {}", places.join(", "));
+    let remedy = "correct the name of the channel";
+    Problem::new(
+        campaign.manifest(),
+        Place::Name(name.to_owned()),
+        "a channel that was not measured",
+        expected,
+        remedy,
+    )
+}
+
+/// A measured point as the model names it.
+fn signal(about: &About, point: &Point) -> Signal {
+    let axis = point.axis.name();
+    let link = about
+        .links
+        .iter()
+        .any(|link| link.name == point.location.as_str() && link.axis == axis);
+    let kind = match point.quantity {
+        Quantity::Displacement if link => SignalKind::Stretch,
+        Quantity::Acceleration => SignalKind::Motion(model::Quantity::Acceleration),
+        Quantity::Velocity => SignalKind::Motion(model::Quantity::Velocity),
+        Quantity::Displacement => SignalKind::Motion(model::Quantity::Position),
+        Quantity::Force => SignalKind::Force,
+    };
+    Signal {
+        location: point.location.clone().into(),
+        axis: axis.into(),
+        kind,
+    }
+}
+
+fn observation(
+    history: &History,
+    channel: &Channel,
+    fitted: bool,
+    ratio: Transmissibility,
+    differences: Vec<Difference>,
+) -> Observation {
+    let relative_variance = ratio
+        .variance
+        .iter()
+        .zip(&ratio.value)
+        .map(|(variance, value)| variance / value.norm_sqr());
+    let band = match &history.test {
+        Test::Sweep(sweep) => (sweep.start_frequency, sweep.end_frequency),
+        _ => (ratio.frequency[0], ratio.frequency[ratio.frequency.len() - 1]),
+    };
+    let sensors = |point: &Point| history.signals.iter().filter(|(sensor, _)| at(sensor, point)).count();
+    Observation {
+        channel: channel.clone(),
+        fitted,
+        relative_variance: relative_variance.collect(),
+        sensors: (sensors(&ratio.to), sensors(&ratio.from)),
+        frequency: ratio.frequency,
+        value: ratio.value,
+        band,
+        differences,
+    }
+}
+
+fn at(sensor: &Sensor, point: &Point) -> bool {
+    sensor.location == point.location && sensor.axis == point.axis && sensor.quantity == point.quantity
+}
+
+/// For each pair of points, what its symmetric sensors say apart from each other.
+fn differences(
+    history: &History,
+    reference: &Point,
+    pairs: &[(Point, Point)],
+    options: &Options,
+) -> Result<Vec<Vec<Difference>>, InputError> {
+    let mut all = vec![Vec::new(); pairs.len()];
+    for (pair, sides) in [
+        (Pair::LeftRight, [Side::Left, Side::Right]),
+        (Pair::FrontRear, [Side::Front, Side::Rear]),
+    ] {
+        let doubled = doubled(history, reference, sides);
+        if doubled.is_empty() {
+            continue;
+        }
+        let one = |dropped: Side| transmissibilities(&without(history, &doubled, dropped), reference, pairs, options);
+        let (first, second) = (one(sides[1])?, one(sides[0])?);
+        for ((all, first), second) in all.iter_mut().zip(first).zip(second) {
+            let half = first
+                .value
+                .iter()
+                .zip(&second.value)
+                .map(|(a, b)| (a / b).ln() * Complex::from(0.5))
+                .collect();
+            all.push(Difference { pair, half });
+        }
+    }
+    Ok(all)
+}
+
+/// The points that both sides have a sensor at. The reference stays the mean of its sensors: the virtual centre pad.
+fn doubled(history: &History, reference: &Point, sides: [Side; 2]) -> Vec<Point> {
+    let has = |point: &Point, side: Side| history.signals.iter().any(|(s, _)| at(s, point) && s.side == side);
+    points(history)
+        .into_iter()
+        .filter(|p| p != reference && sides.iter().all(|&side| has(p, side)))
+        .collect()
+}
+
+fn without(history: &History, points: &[Point], side: Side) -> History {
+    let dropped = |sensor: &Sensor| sensor.side == side && points.iter().any(|point| at(sensor, point));
+    let signals = history
+        .signals
+        .iter()
+        .filter(|(sensor, _)| !dropped(sensor))
+        .cloned()
+        .collect();
+    History {
+        file: history.file.clone(),
+        signals,
+        ..history.clone()
+    }
+}

@@ -1,0 +1,56 @@
+//! What is fitted to: measured ratios over frequency, run by run.
+
+use crate::campaign::Role;
+use crate::model::Channel;
+use nalgebra::Complex;
+
+/// The ratios measured in one run, all under one excitation.
+#[derive(Clone, Debug)]
+pub struct Level {
+    /// The file of the run.
+    pub name: String,
+    /// What it may be used for.
+    pub role: Role,
+    /// Place in the model's excitations.
+    pub excitation: usize,
+    /// The ratios.
+    pub observations: Vec<Observation>,
+}
+
+/// A measured ratio of two signals.
+#[derive(Clone, Debug)]
+pub struct Observation {
+    /// Which ratio.
+    pub channel: Channel,
+    /// True where it enters the cost (if its run does), false where it is only compared.
+    pub fitted: bool,
+    /// Hz, ascending.
+    pub frequency: Vec<f64>,
+    /// A value for each line.
+    pub value: Vec<Complex<f64>>,
+    /// `E|δT|² / |T|²` for each line, by random noise.
+    pub relative_variance: Vec<f64>,
+    /// Where the excitation reached, Hz.
+    pub band: (f64, f64),
+    /// How many sensors the numerator and the denominator are means of.
+    pub sensors: (usize, usize),
+    /// What the sensors of a pair say apart from each other.
+    pub differences: Vec<Difference>,
+}
+
+/// Half the logarithm of the ratio of what two symmetric sensors give, `½ ln (T_first / T_second)`.
+#[derive(Clone, Debug)]
+pub struct Difference {
+    /// Which pair: differences of one pair belong together across channels.
+    pub pair: Pair,
+    /// A value for each line.
+    pub half: Vec<Complex<f64>>,
+}
+
+/// Two symmetric places.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Pair {
+    LeftRight,
+    FrontRear,
+}

@@ -1,0 +1,102 @@
+//! Several starts over the bounds, since the cost has more minima than one.
+//!
+//! The starts after the first are points of the additive low-discrepancy sequence of Roberts, "The unreasonable
+//! effectiveness of quasirandom sequences" (2018): `frac(s + j α^k)`, with 1/α the root of `x^(n+1) = x + 1`. They
+//! depend on the seed alone, and each search on its start alone, so the result does not depend on the threads.
+
+use super::setup::Setup;
+use crate::least_squares::{Bounds, Options, Outcome};
+use crate::model::Model;
+use rayon::prelude::*;
+
+/// What ends a local search: tight enough that searches to one minimum agree on it.
+pub(super) const OPTIONS: Options = Options {
+    gradient: 1e-8,
+    cost: 1e-9,
+    step: 1e-7,
+    evaluations: 100,
+};
+
+/// Two searches found the same minimum when their costs differ by less than this part.
+const SAME_COST: f64 = 1e-5;
+
+/// All local searches.
+pub(super) struct Search {
+    /// The lowest minimum; the start itself where nothing could be searched.
+    pub best: Outcome,
+    /// Distinct minima, lowest first.
+    pub minima: Vec<Minimum>,
+    /// Evaluations of all searches together.
+    pub evaluations: usize,
+    /// Local searches.
+    pub starts: usize,
+}
+
+/// A minimum and the searches that ended in it.
+pub(super) struct Minimum {
+    pub cost: f64,
+    pub x: Vec<f64>,
+    pub starts: Vec<usize>,
+}
+
+impl Search {
+    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Self {
+        let points = starts(&setup.start(), &setup.bounds, setup.plan.starts.max(1), setup.plan.seed);
+        let outcomes: Vec<Outcome> = points.par_iter().map(|start| setup.local(start)).collect();
+        let evaluations = outcomes.iter().map(|outcome| outcome.evaluations).sum();
+        let minima = distinct(&outcomes);
+        // Without any converged search the first one is reported, with why it stopped.
+        let best = minima.first().map_or(0, |minimum| minimum.starts[0]);
+        let starts = outcomes.len();
+        let best = outcomes.into_iter().nth(best).expect("there is at least one start");
+        Self {
+            best,
+            minima,
+            evaluations,
+            starts,
+        }
+    }
+}
+
+/// The minima of the searches that converged, lowest first, each with the searches that found it.
+fn distinct(outcomes: &[Outcome]) -> Vec<Minimum> {
+    let mut order: Vec<usize> = (0..outcomes.len()).filter(|&k| outcomes[k].stop.converged()).collect();
+    order.sort_by(|&a, &b| outcomes[a].cost.total_cmp(&outcomes[b].cost).then(a.cmp(&b)));
+    let mut minima: Vec<Minimum> = Vec::new();
+    for k in order {
+        let Outcome { cost, x, .. } = &outcomes[k];
+        match minima.last_mut() {
+            Some(last) if cost - last.cost <= SAME_COST * last.cost => last.starts.push(k),
+            _ => minima.push(Minimum {
+                cost: *cost,
+                x: x.clone(),
+                starts: vec![k],
+            }),
+        }
+    }
+    minima
+}
+
+/// The given start, then points spread over the bounds: evenly on a logarithmic scale where both ends are positive.
+/// A variable without finite bounds keeps its start value.
+fn starts(given: &[f64], bounds: &Bounds, count: usize, seed: u64) -> Vec<Vec<f64>> {
+    let growth = growth(given.len());
+    let spread = |j: usize, k: usize| {
+        // The golden section of the seed moves the whole sequence and leaves its spread as it is.
+        let shift = 0.5 + seed as f64 * 0.618_033_988_749_894_9;
+        let part = (shift + j as f64 * growth.powi(-(k as i32 + 1))).fract();
+        let (lower, upper) = (bounds.lower[k], bounds.upper[k]);
+        match (lower.is_finite() && upper.is_finite(), lower > 0.0) {
+            (false, _) => given[k],
+            (true, true) => lower * (upper / lower).powf(part),
+            (true, false) => lower + (upper - lower) * part,
+        }
+    };
+    let others = (1..count).map(|j| (0..given.len()).map(|k| spread(j, k)).collect());
+    std::iter::once(given.to_vec()).chain(others).collect()
+}
+
+/// The positive root of `x^(n+1) = x + 1`, by fixed-point iteration, which contracts.
+fn growth(n: usize) -> f64 {
+    (0..40).fold(1.5, |x: f64, _| (1.0 + x).powf(1.0 / (n as f64 + 1.0)))
+}

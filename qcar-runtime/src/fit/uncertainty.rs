@@ -1,0 +1,249 @@
+//! From the Jacobian at the optimum to honest error bars.
+//!
+//! The covariance is the sum of three parts, all propagated through the Jacobian at the optimum:
+//!
+//! 1. *Scatter*: what the residuals show, `(JᵀJ)⁻¹ S (JᵀJ)⁻¹` with S the sum of outer products of the scores of the
+//!    lines. All channels and runs at one line are one cluster; neighbouring lines may be correlated (Newey & West,
+//!    "A simple, positive semi-definite, heteroskedasticity and autocorrelation consistent covariance matrix",
+//!    Econometrica 55, 1987). So noise of any colour and smooth misfit of the model both count.
+//! 2. *Asymmetry*: the two sides of an axle differ, and the model stands for their mean. Half the difference of what
+//!    the two sides say moves the parameters by about one standard deviation of that mean. It is a sample of one, so
+//!    no parameter gets less than the typical relative shift, over all parameters that are well determined otherwise.
+//! 3. *Gains*: each sensor's gain is wrong by a constant that no residual need show.
+
+use super::observation::Pair;
+use super::setup::Setup;
+use crate::least_squares::Outcome;
+use crate::least_squares::information::{Information, Unseen, correlation};
+use crate::model::{Model, Signal};
+use nalgebra::{Complex, DMatrix, DVector};
+
+/// What is known of the errors of the free parameters.
+pub(super) struct Uncertainty {
+    information: Information,
+    /// Variances of the seen parameters by cause: scatter, asymmetry, gains.
+    parts: [DVector<f64>; 3],
+    covariance: DMatrix<f64>,
+    /// Typical relative shift by asymmetry; zero where no two sides were measured.
+    pub asymmetry: f64,
+}
+
+/// The standard error of a parameter, total and by cause.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct StandardError {
+    /// All causes together.
+    pub total: f64,
+    /// By the scatter of the residuals.
+    pub scatter: f64,
+    /// By differences between the sides of the axle.
+    pub asymmetry: f64,
+    /// By gain errors of the sensors.
+    pub gain: f64,
+}
+
+pub(super) fn estimate<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome) -> Uncertainty {
+    let free: Vec<bool> = outcome.at_bound.iter().map(|&bound| bound == 0).collect();
+    let information = Information::new(&outcome.jacobian, &free);
+    let x = DVector::from_iterator(
+        information.seen().len(),
+        information.seen().iter().map(|&k| outcome.x[k]),
+    );
+    let scatter = scatter(setup, outcome, &information);
+    let gains = gains(setup, outcome, &information);
+    let others = scatter.diagonal() + gains.diagonal();
+    let (asymmetric, asymmetry) = asymmetry(setup, outcome, &information, &x, &others);
+    let parts = [scatter.diagonal(), asymmetric.diagonal(), gains.diagonal()];
+    Uncertainty {
+        information,
+        parts,
+        covariance: scatter + asymmetric + gains,
+        asymmetry,
+    }
+}
+
+impl Uncertainty {
+    /// The standard error of a free parameter, where it has one.
+    pub fn standard_error(&self, variable: usize) -> Option<StandardError> {
+        let place = self.information.seen().iter().position(|&k| k == variable)?;
+        let part = |k: usize| self.parts[k][place].max(0.0).sqrt();
+        let total = self.covariance[(place, place)].max(0.0).sqrt();
+        Some(StandardError {
+            total,
+            scatter: part(0),
+            asymmetry: part(1),
+            gain: part(2),
+        })
+    }
+
+    /// Why a free parameter has none, where it is off its bounds.
+    pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
+        self.information.unseen(variable)
+    }
+
+    /// Pairs of free parameters that the channels tell apart badly: those whose estimates correlate by more than
+    /// `least` under independent residuals, with their correlation.
+    pub fn correlations(&self, least: f64) -> Vec<(usize, usize, f64)> {
+        let seen = self.information.seen();
+        let matrix = correlation(self.information.inverse());
+        let pairs = (0..seen.len()).flat_map(|i| (0..i).map(move |j| (j, i)));
+        pairs
+            .map(|(j, i)| (seen[j], seen[i], matrix[(j, i)]))
+            .filter(|pair| pair.2.abs() > least)
+            .collect()
+    }
+}
+
+/// Lines as independent clusters; correlation of neighbours makes a variance larger where it is found, and never
+/// smaller: at the optimum the scores sum to zero, which looks like negative correlation.
+fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
+    let count = information.seen().len();
+    let (mut independent, mut correlated) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
+    for grid in 0..setup.grids.len() {
+        let scores = scores(setup, outcome, information, grid);
+        independent += &scores * scores.transpose();
+        correlated += long_run(&scores);
+    }
+    let covariance = information.inverse() * independent * information.inverse();
+    let long_run = information.inverse() * correlated * information.inverse();
+    let growth = |k: usize| {
+        if long_run[(k, k)] > covariance[(k, k)] {
+            long_run[(k, k)] / covariance[(k, k)]
+        } else {
+            1.0
+        }
+    };
+    DMatrix::from_fn(count, count, |i, j| covariance[(i, j)] * (growth(i) * growth(j)).sqrt())
+}
+
+/// For each line of a grid, the gradient of its share of the cost: a column a line.
+///
+/// The residuals are those that the line would have if it were not fitted to, `(1 − H)⁻¹ r` with its block H of the
+/// projection (CR3, MacKinnon & White, "Some heteroskedasticity-consistent covariance matrix estimators with improved
+/// finite sample properties", J. Econometrics 29, 1985): the few lines at a resonance decide on a parameter, and the
+/// fit goes through them.
+fn scores<M: Model + ?Sized>(
+    setup: &Setup<'_, M>,
+    outcome: &Outcome,
+    information: &Information,
+    grid: usize,
+) -> DMatrix<f64> {
+    let lines = setup.grids[grid].frequency.len();
+    let mut scores = DMatrix::zeros(information.seen().len(), lines);
+    for line in 0..lines {
+        let of_grid = setup.targets.iter().filter(|target| target.grid == grid);
+        let rows: Vec<usize> = of_grid
+            .flat_map(|target| [target.rows().0.start + line, target.rows().1.start + line])
+            .collect();
+        let slopes = outcome.jacobian.select_rows(&rows).select_columns(information.seen());
+        let residual = outcome.residual.select_rows(&rows);
+        let free = DMatrix::identity(rows.len(), rows.len()) - &slopes * information.inverse() * slopes.transpose();
+        // A line that alone decides on a parameter has no residual of its own.
+        let unfitted = free.lu().solve(&residual).unwrap_or(residual);
+        scores.set_column(line, &(slopes.transpose() * unfitted));
+    }
+    scores
+}
+
+/// The covariance of the sum of correlated columns, with Bartlett's kernel over the square root of their number.
+fn long_run(scores: &DMatrix<f64>) -> DMatrix<f64> {
+    let lines = scores.ncols();
+    let lags = (lines as f64).sqrt() as usize;
+    let mut sum = scores * scores.transpose();
+    for lag in 1..=lags.min(lines.saturating_sub(1)) {
+        let shifted = scores.columns(lag, lines - lag) * scores.columns(0, lines - lag).transpose();
+        let weight = 1.0 - lag as f64 / (lags + 1) as f64;
+        sum += (&shifted + shifted.transpose()) * weight;
+    }
+    sum
+}
+
+/// The covariance by asymmetry, and the typical relative shift; `others` are the variances by the other causes.
+fn asymmetry<M: Model + ?Sized>(
+    setup: &Setup<'_, M>,
+    outcome: &Outcome,
+    information: &Information,
+    x: &DVector<f64>,
+    others: &DVector<f64>,
+) -> (DMatrix<f64>, f64) {
+    let mut covariance = DMatrix::zeros(x.len(), x.len());
+    for pair in [Pair::LeftRight, Pair::FrontRear] {
+        let pattern = pattern(setup, |target, line| {
+            let differences = &setup.observation(target).differences;
+            differences
+                .iter()
+                .filter(|difference| difference.pair == pair)
+                .map(|difference| difference.half[line])
+                .sum()
+        });
+        let shift = information.shift(&outcome.jacobian, &pattern);
+        covariance += &shift * shift.transpose();
+    }
+    let typical = typical_shift(&covariance.diagonal(), others, x);
+    for k in 0..x.len() {
+        covariance[(k, k)] = covariance[(k, k)].max((typical * x[k]).powi(2));
+    }
+    (covariance, typical)
+}
+
+/// The r.m.s. of the relative shifts, each weighted by how little else moves its parameter.
+fn typical_shift(squares: &DVector<f64>, others: &DVector<f64>, x: &DVector<f64>) -> f64 {
+    let precision = x.zip_map(others, |x, other| x * x / other.max(f64::MIN_POSITIVE));
+    let relative = squares.zip_map(x, |square, x| square / (x * x));
+    if x.is_empty() {
+        0.0
+    } else {
+        (relative.dot(&precision) / precision.sum()).sqrt()
+    }
+}
+
+fn gains<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
+    let count = information.seen().len();
+    let mut covariance = DMatrix::zeros(count, count);
+    for signal in signals(setup) {
+        let pattern = pattern(setup, |target, _| {
+            let observation = setup.observation(target);
+            let share = |of: &Signal, sensors: usize| {
+                if of == signal {
+                    1.0 / (sensors as f64).sqrt()
+                } else {
+                    0.0
+                }
+            };
+            let above = share(&observation.channel.numerator, observation.sensors.0);
+            let below = share(&observation.channel.denominator, observation.sensors.1);
+            Complex::from(setup.plan.gain_error * (above - below))
+        });
+        let shift = information.shift(&outcome.jacobian, &pattern);
+        covariance += &shift * shift.transpose();
+    }
+    covariance
+}
+
+/// The signals of all targets, each once.
+fn signals<'a, M: Model + ?Sized>(setup: &'a Setup<'_, M>) -> Vec<&'a Signal> {
+    let mut all: Vec<&Signal> = Vec::new();
+    for target in 0..setup.targets.len() {
+        let channel = &setup.observation(target).channel;
+        for signal in [&channel.numerator, &channel.denominator] {
+            if !all.contains(&signal) {
+                all.push(signal);
+            }
+        }
+    }
+    all
+}
+
+/// What an error of the measured logarithms, given by target and line, does to the residual.
+fn pattern<M: Model + ?Sized>(setup: &Setup<'_, M>, error: impl Fn(usize, usize) -> Complex<f64>) -> DVector<f64> {
+    let rows = setup.targets.iter().map(|target| 2 * target.lines()).sum();
+    let mut pattern = DVector::zeros(rows);
+    for (place, target) in setup.targets.iter().enumerate() {
+        let (magnitude, phase) = target.rows();
+        for (line, (magnitude, phase)) in magnitude.zip(phase).enumerate() {
+            let error = error(place, line);
+            pattern[magnitude] = -target.weight.0[line] * error.re;
+            pattern[phase] = -target.weight.1[line] * error.im;
+        }
+    }
+    pattern
+}
