@@ -9,6 +9,7 @@ use crate::model::Model;
 #[derive(Clone, Debug)]
 pub struct Checked {
     model: Model,
+    text: String,
     warnings: Report,
 }
 
@@ -20,8 +21,19 @@ impl Checked {
     pub fn trust(model: Model) -> Self {
         Checked {
             model,
+            text: String::new(),
             warnings: Report::default(),
         }
+    }
+
+    /// The model as a file of its own, options taken; empty for a model taken on trust.
+    pub fn text(&self) -> &str {
+        &self.text
+    }
+
+    /// The same model with its text.
+    pub(crate) fn with_text(self, text: String) -> Self {
+        Checked { text, ..self }
     }
 
     /// What is likely not meant, though it compiles.

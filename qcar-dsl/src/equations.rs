@@ -225,19 +225,37 @@ fn combination(graph: &mut Graph, link: &Link, kind: fn(CoordinateId) -> Symbol)
         let motion = graph.symbol(kind(coordinate));
         Summand::signed(graph, false, coefficient, &[motion])
     };
-    link.stretch.iter().map(term).collect()
+    let mut terms: Vec<Summand> = link.stretch.iter().map(term).collect();
+    terms.sort_by_key(|term| term.negative);
+    terms
 }
 
 /// The terms of a law over a stretch, its rate and its acceleration.
 fn summands(graph: &mut Graph, terms: &[Term], [s, v, a]: [Expr; 3]) -> Vec<Summand> {
-    let mut signed = |first, rest: &[Expr]| Summand::signed(graph, false, first, rest);
-    let summand = |term: &Term| match *term {
-        Term::Spring(k) => signed(k, &[s]),
-        Term::Damper(c) => signed(c, &[v]),
-        Term::Inerter(b) => signed(b, &[a]),
-        Term::Force(f) => signed(f, &[]),
-    };
-    terms.iter().map(summand).collect()
+    let mut summands = Vec::new();
+    for term in terms {
+        match *term {
+            Term::Spring(k) => summands.push(Summand::signed(graph, false, k, &[s])),
+            Term::Damper(c) => summands.push(Summand::signed(graph, false, c, &[v])),
+            Term::Inerter(b) => summands.push(Summand::signed(graph, false, b, &[a])),
+            Term::Force(force) => spread(graph, false, force, &mut summands),
+        }
+    }
+    summands
+}
+
+/// The terms of a sum, however its additions are nested.
+fn spread(graph: &mut Graph, negative: bool, e: Expr, into: &mut Vec<Summand>) {
+    match graph.node(e) {
+        Node::Neg(a) => spread(graph, !negative, a, into),
+        Node::Add(a, b) | Node::Sub(a, b) => {
+            let minus = matches!(graph.node(e), Node::Sub(..));
+            spread(graph, negative, a, into);
+            spread(graph, negative != minus, b, into);
+        }
+        Node::Mul(a, b) => into.push(Summand::signed(graph, negative, a, &[b])),
+        _ => into.push(Summand::signed(graph, negative, e, &[])),
+    }
 }
 
 /// A spring, damper or inerter between no more than two points without levers.

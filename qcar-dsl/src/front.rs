@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use proc_macro2::TokenStream;
 use quote::quote_spanned;
 
+use crate::canonical::canonical;
 use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Report, Severity, names, reading};
 use crate::parse::{Reading, parse_text, parse_tokens};
@@ -159,7 +160,7 @@ impl<'a> Front<'a> {
         match check(model) {
             Ok((checked, warnings)) => {
                 self.found.extend(warnings);
-                Some(checked)
+                Some(checked.with_text(canonical(axle, &taken, elements)))
             }
             Err(found) => {
                 self.found.extend(found);

@@ -18,6 +18,8 @@ pub mod print;
 // Tree to graph: options taken, elements expanded, names resolved, units checked.
 pub mod model;
 pub mod resolve;
+// One member of a family as a file of its own.
+pub mod canonical;
 // The structure: what is held, what is solvable, what can be seen.
 pub mod check;
 // The front end in one function.

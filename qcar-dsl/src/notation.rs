@@ -1,4 +1,4 @@
-//! How an expression is written: for the model file, for a terminal, for LaTeX.
+//! How an expression is written: for a terminal, for LaTeX.
 
 use std::collections::BTreeMap;
 
@@ -8,8 +8,6 @@ use crate::model::Model;
 /// A way of writing mathematics.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Notation {
-    /// As in a model file, so that it can be read back: `k*s/mr^2`.
-    File,
     /// Unicode for a terminal: `k/mr² s`.
     Text,
     /// LaTeX mathematics with amsmath: `\frac{k}{mr^{2}} s`.
@@ -41,6 +39,10 @@ impl Summand {
         let (opposite, magnitude) = match graph.node(first) {
             Node::Neg(a) => (true, a),
             Node::Constant(bits) if f64::from_bits(bits) < 0.0 => (true, graph.constant(-f64::from_bits(bits))),
+            Node::Add(a, b) if graph.as_constant(a).is_some_and(|value| value < 0.0) => {
+                let less = graph.neg(a);
+                (true, graph.sub(less, b))
+            }
             Node::Sub(a, b) if graph.as_constant(b).is_some() => (true, graph.sub(b, a)),
             _ => (false, first),
         };
@@ -95,6 +97,13 @@ impl<'a> Writer<'a> {
             Node::Constant(bits) => number(f64::from_bits(bits), self.notation),
             Node::Symbol(symbol) => self.symbol(symbol),
             Node::Neg(a) => format!("-{}", self.inside(a, Binding::Product)),
+            Node::Add(a, b) if self.is_negative(a) => {
+                format!(
+                    "{} - {}",
+                    self.inside(b, Binding::Sum),
+                    number(-self.graph.as_constant(a).unwrap_or(0.0), self.notation)
+                )
+            }
             Node::Add(a, b) => format!("{} + {}", self.inside(a, Binding::Sum), self.addend(b)),
             Node::Sub(a, b) => format!(
                 "{} - {}",
@@ -158,7 +167,6 @@ impl<'a> Writer<'a> {
         });
         let written: Vec<String> = written.chain(force.clone()).collect();
         let joint = match self.notation {
-            Notation::File => "*",
             Notation::Text => " ",
             Notation::Latex => r"\,",
         };
@@ -169,11 +177,10 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// What follows a `+`: a sum needs parentheses only where it starts with a sign, or in a file, where the order of
-    /// the additions is kept.
+    /// What follows a `+`: a sum needs parentheses only where it starts with a sign.
     fn addend(&self, e: Expr) -> String {
         let written = self.write(e);
-        let is_open = self.binding(e) == Binding::Sum && (self.notation == Notation::File || written.starts_with('-'));
+        let is_open = written.starts_with('-') || matches!(self.graph.node(e), Node::Select(..));
         if is_open { self.parentheses(&written) } else { written }
     }
 
@@ -185,8 +192,6 @@ impl<'a> Writer<'a> {
             Symbol::Position(c) => self.motion(c, 0),
             Symbol::Velocity(c) => self.motion(c, 1),
             Symbol::Acceleration(c) => self.motion(c, 2),
-            Symbol::Stretch(_) if self.notation == Notation::File => "s".into(),
-            Symbol::Rate(_) if self.notation == Notation::File => "v".into(),
             Symbol::Stretch(l) => self.of_link("s", l),
             Symbol::Rate(l) => self.of_link("v", l),
             Symbol::LinkForce(l) => self.of_link("F", l),
@@ -213,15 +218,10 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// An inner state: `maxwell_f`, of the mass of the file its bare name.
+    /// An inner state: `maxwell_f_mount`.
     fn inner(&self, link: LinkId, place: u16) -> String {
-        let name = self.model.links[link.0 as usize].law.inner[place as usize]
-            .name
-            .replace('.', "_");
-        match self.notation {
-            Notation::File => name,
-            _ => self.of_link(&name, link),
-        }
+        let inner = &self.model.links[link.0 as usize].law.inner[place as usize];
+        self.of_link(&inner.name.replace('.', "_"), link)
     }
 
     /// A coordinate or its derivative: `z_body`, `ż_body`, `z̈_body`; an angle has the letter φ.
@@ -257,6 +257,15 @@ impl<'a> Writer<'a> {
         }
     }
 
+    /// A whole row or column.
+    pub fn any(&self) -> &'static str {
+        if self.notation == Notation::Latex {
+            r"\cdot"
+        } else {
+            "·"
+        }
+    }
+
     /// The time derivative of something written.
     pub fn derivative(&self, written: &str) -> String {
         match self.notation {
@@ -273,16 +282,8 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The sign of a coefficient (is it negative?) and its magnitude, in parentheses where a product needs them.
-    pub fn coefficient(&self, e: Expr) -> (bool, String) {
-        match self.graph.node(e) {
-            Node::Neg(a) => (true, self.inside(a, Binding::Power)),
-            Node::Constant(bits) => (
-                f64::from_bits(bits) < 0.0,
-                number(f64::from_bits(bits).abs(), self.notation),
-            ),
-            _ => (false, self.inside(e, Binding::Power)),
-        }
+    fn is_negative(&self, e: Expr) -> bool {
+        self.graph.as_constant(e).is_some_and(|value| value < 0.0)
     }
 
     fn binding(&self, e: Expr) -> Binding {
@@ -291,6 +292,7 @@ impl<'a> Writer<'a> {
         }
         match self.graph.node(e) {
             Node::Neg(_) | Node::Add(..) | Node::Sub(..) => Binding::Sum,
+            Node::Select(..) if self.notation == Notation::Text => Binding::Sum,
             Node::Mul(..) => Binding::Product,
             Node::Div(..) if self.notation == Notation::Latex => Binding::Product,
             Node::Div(..) => Binding::Quotient,
@@ -338,7 +340,6 @@ impl<'a> Writer<'a> {
     fn power(&self, a: Expr, n: i32) -> String {
         let base = self.inside(a, Binding::Atom);
         match self.notation {
-            Notation::File => format!("{base}^{n}"),
             Notation::Latex => format!("{base}^{{{n}}}"),
             Notation::Text => format!("{base}{}", superscript(n)),
         }
@@ -346,7 +347,6 @@ impl<'a> Writer<'a> {
 
     fn magnitude(&self, a: Expr) -> String {
         match self.notation {
-            Notation::File => format!("abs({})", self.write(a)),
             Notation::Text => format!("|{}|", self.write(a)),
             Notation::Latex => format!(r"\left|{}\right|", self.write(a)),
         }

@@ -1,7 +1,6 @@
 //! What the compiler has understood, for people: each stage of a model as text.
 
 mod dot;
-mod file;
 mod latex;
 mod matrices;
 
@@ -13,7 +12,7 @@ use crate::schedule::Compiled;
 /// A stage that people can look at.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Stage {
-    /// The model as a file: options taken, elements expanded. It reads back as the same model.
+    /// The model as a file of its own, options taken. It reads back as the same model.
     Model,
     /// The equations of motion.
     Equations,
@@ -59,7 +58,7 @@ impl Stage {
 /// A stage of a model as text.
 pub fn show(compiled: &Compiled, stage: Stage) -> String {
     match stage {
-        Stage::Model => file::model(&compiled.model),
+        Stage::Model => compiled.model.text().to_string(),
         Stage::Equations => equations(compiled),
         Stage::Matrices => matrices::matrices(compiled),
         Stage::Rust => rust::module(compiled),
@@ -68,11 +67,25 @@ pub fn show(compiled: &Compiled, stage: Stage) -> String {
     }
 }
 
+/// The widest line of equations.
+const WIDTH: usize = 110;
+
 fn equations(compiled: &Compiled) -> String {
     let section = |(heading, equations): (String, Vec<Equation>)| {
-        let line = |e: &Equation| format!("    {} = {}\n", e.left, e.right.join(" "));
-        format!("{heading}\n\n{}", equations.iter().map(line).collect::<String>())
+        format!("{heading}\n\n{}", equations.iter().map(equation).collect::<String>())
     };
     let sections = Sheet::new(&compiled.model, Notation::Text).sections();
     sections.into_iter().map(section).collect::<Vec<_>>().join("\n")
+}
+
+/// An equation over as many lines as it needs, broken between terms.
+fn equation(equation: &Equation) -> String {
+    let mut lines = vec![format!("    {} =", equation.left)];
+    for term in &equation.right {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + term.chars().count() < WIDTH => *line += &format!(" {term}"),
+            _ => lines.push(format!("            {term}")),
+        }
+    }
+    lines.join("\n") + "\n"
 }

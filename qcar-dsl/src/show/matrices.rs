@@ -44,22 +44,74 @@ pub fn matrices(compiled: &Compiled) -> String {
     text
 }
 
-/// The nonzeros of each matrix: where, what.
+/// The nonzeros of each matrix: where, what. An output that is the rate of a state has that state's rows.
 pub fn entries(compiled: &Compiled, notation: Notation) -> Vec<(Matrix, Vec<(String, String)>)> {
     let mut writer = Writer::new(&compiled.model, &compiled.graph, notation);
     named_quantities(&compiled.model)
         .iter()
         .for_each(|(name, value)| writer.name(*value, name));
+    let about = &compiled.about;
     let of = |matrix: Matrix| {
-        let nonzeros = compiled
-            .linear
-            .matrices
-            .iter()
-            .filter(|(entry, _)| entry.matrix == matrix);
-        let written = |(entry, value): &(Entry, Expr)| (place(&compiled.about, &writer, entry), writer.write(*value));
-        (matrix, nonzeros.map(written).collect())
+        let mut lines = Vec::new();
+        for row in 0..rows(about, matrix) {
+            let nonzeros = self::row(compiled, matrix, row);
+            match same_as_state(compiled, matrix, row) {
+                Some(state) if !nonzeros.is_empty() => {
+                    lines.push(reference(
+                        &writer,
+                        &about.outputs[row].name,
+                        matrix,
+                        &about.states[state].name,
+                    ));
+                }
+                _ => lines.extend(
+                    nonzeros
+                        .iter()
+                        .map(|(entry, value)| (place(about, &writer, entry), writer.write(*value))),
+                ),
+            }
+        }
+        (matrix, lines)
     };
-    [Matrix::A, Matrix::B, Matrix::C, Matrix::D].map(of).into()
+    let all = [Matrix::A, Matrix::B, Matrix::C, Matrix::D].map(of);
+    all.into_iter().filter(|(_, lines)| !lines.is_empty()).collect()
+}
+
+fn rows(about: &About, matrix: Matrix) -> usize {
+    match matrix {
+        Matrix::A | Matrix::B => about.states.len(),
+        Matrix::C | Matrix::D => about.outputs.len(),
+    }
+}
+
+fn row(compiled: &Compiled, matrix: Matrix, row: usize) -> Vec<(Entry, Expr)> {
+    let nonzeros = compiled.linear.matrices.iter();
+    nonzeros
+        .filter(|(entry, _)| entry.matrix == matrix && usize::from(entry.row) == row)
+        .copied()
+        .collect()
+}
+
+/// The state whose rate an output is, by its rows of A and B.
+fn same_as_state(compiled: &Compiled, matrix: Matrix, output: usize) -> Option<usize> {
+    let values = |matrix, row| -> Vec<(u16, Expr)> {
+        self::row(compiled, matrix, row)
+            .into_iter()
+            .map(|(entry, value)| (entry.column, value))
+            .collect()
+    };
+    let is_output = matches!(matrix, Matrix::C | Matrix::D);
+    let same = |&state: &usize| {
+        values(Matrix::A, state) == values(Matrix::C, output) && values(Matrix::B, state) == values(Matrix::D, output)
+    };
+    is_output.then(|| (0..compiled.about.states.len()).find(same))?
+}
+
+/// `[z_body_acceleration, ·] = A[vz_body, ·]`
+fn reference(writer: &Writer, output: &str, matrix: Matrix, state: &str) -> (String, String) {
+    let of_rates = if matrix == Matrix::C { Matrix::A } else { Matrix::B };
+    let row = |name: &str| format!("[{}, {}]", writer.identifier(name), writer.any());
+    (row(output), format!("{of_rates:?}{}", row(state)))
 }
 
 fn place(about: &About, writer: &Writer, entry: &Entry) -> String {
