@@ -54,7 +54,7 @@ pub fn function(signature: &Signature, program: &Program) -> String {
 fn caller(signature: &Signature, cut: &Pieces) -> String {
     let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
     let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, operations(cut.program), signature.lines);
+    let mut text = doc(&signature.doc, operations(cut.program), signature.lines) + inline(signature.lines, true);
     let arguments = signature
         .arguments
         .iter()
@@ -84,6 +84,16 @@ fn doc(lines: &[String], count: usize, a_line: bool) -> String {
 fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) -> String {
     arguments.push(format!("out: &mut {}", array(lines, results)));
     format!("pub fn {name}({}) {{\n", arguments.join(", "))
+}
+
+/// The code over lines is inlined into one function for each instruction set, as loops one after the other; any other
+/// piece stays a function of its own, since inlined again they would be as long as the whole.
+fn inline(lines: bool, whole: bool) -> &'static str {
+    match (lines, whole) {
+        (true, _) => "#[inline(always)]\n",
+        (false, true) => "",
+        (false, false) => "#[inline(never)]\n",
+    }
 }
 
 fn array(lines: bool, length: usize) -> String {
@@ -125,25 +135,22 @@ impl<'a> Printer<'a> {
         }
     }
 
-    fn is_whole(&self) -> bool {
-        self.cut.pieces.len() == 1
-    }
-
     fn function(&self) -> String {
         let Signature { name, lines, .. } = self.signature;
         let count = self.cut.pieces[self.piece].len();
         let results = self.cut.program.outputs.len();
-        if self.is_whole() {
-            let heading = heading(name, self.arguments(), *lines, results);
-            return doc(&self.signature.doc, count, *lines) + &heading + &self.body();
+        if self.cut.pieces.len() == 1 {
+            let (doc, heading) = (
+                doc(&self.signature.doc, count, *lines),
+                heading(name, self.arguments(), *lines, results),
+            );
+            return doc + inline(*lines, true) + &heading + &self.body();
         }
         let number = self.piece + 1;
         let kept = format!("kept: &mut {}", array(*lines, self.cut.kept.len()));
         let arguments = self.arguments().into_iter().chain([kept]).collect();
-        // Inlined again, the pieces would be as long as the whole.
-        let attribute = "#[inline(never)]\n";
         doc(&[format!("Piece {number} of [`{name}`].")], count, *lines)
-            + attribute
+            + inline(*lines, false)
             + &heading(&format!("{name}_{number}"), arguments, *lines, results)
             + &self.body()
     }

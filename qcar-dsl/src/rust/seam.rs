@@ -57,9 +57,9 @@ fn response(about: &About) -> String {
         return String::new();
     }
     let arm = |place: usize, suffix: &str| {
-        let function = response_name(about, place, suffix);
+        let block = camel(&response_name(about, place, suffix));
         format!(
-            "            ({place}, {}) => respond(omega, into, |lines, out| straight::{function}(constants, lines, out)),\n",
+            "            ({place}, {}) => respond(omega, into, &{block}(constants)),\n",
             !suffix.is_empty()
         )
     };
@@ -76,6 +76,30 @@ fn response(about: &About) -> String {
     }}
 "
     )
+}
+
+/// The straight-line functions of the responses as types, which the runtime compiles once for each instruction set.
+pub fn blocks(about: &About) -> String {
+    let block = |place: usize, suffix: &str| {
+        let (function, layout) = (response_name(about, place, suffix), &about.responses[place]);
+        let jacobian = if suffix.is_empty() { 0 } else { layout.jacobian.len() };
+        let (name, rows) = (camel(&function), 2 * (layout.outputs.len() + jacobian));
+        format!(
+            "
+struct {name}<'a>(&'a [f64; CONSTANTS]);
+
+impl Block<{rows}> for {name}<'_> {{
+    #[inline(always)]
+    fn compute(&self, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; {rows}]) {{
+        straight::{function}(self.0, frequencies, rows);
+    }}
+}}
+"
+        )
+    };
+    (0..about.responses.len())
+        .flat_map(|place| [block(place, ""), block(place, "_jacobian")])
+        .collect()
 }
 
 const ROLLING: &str = "
