@@ -33,3 +33,5 @@ pub mod simulate;
 pub mod compare;
 // Gradients of K&C curves.
 pub mod kc;
+// Where the measurement disagrees with the model, and what would explain it.
+pub mod discover;

@@ -18,6 +18,8 @@ use crate::spectrum::{Segments, Trend, Window};
 mod line;
 // The whole record, by local rational functions.
 mod local;
+// The multiples of a sweep's frequency, apart from each other.
+pub mod harmonics;
 // Segment averages.
 mod averaged;
 // At which frequencies.

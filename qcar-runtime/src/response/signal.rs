@@ -127,8 +127,8 @@ fn power_of_excitation(source: &Excitation, signal: &Signal) -> Option<i32> {
     }
 }
 
-/// The output with this signal, or that of another derivative of the same motion.
-fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
+/// The output with this signal, or that of another derivative of the same motion, and the power of jω from it.
+pub(crate) fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
     let powers = about.outputs.iter().enumerate().filter_map(|(place, output)| {
         let here = output.signal.location == signal.location && output.signal.axis == signal.axis;
         let power = match (signal.kind, output.signal.kind) {

@@ -28,7 +28,7 @@ pub(super) fn lines(signals: &[Vec<f64>], rate: f64, frequencies: &[f64], least:
 }
 
 /// `2 half + 1` lines around `centre`, moved where they would hold line 0, which is the offset, or leave the spectrum.
-fn neighbourhood(centre: usize, half: usize, count: usize) -> std::ops::Range<usize> {
+pub(super) fn neighbourhood(centre: usize, half: usize, count: usize) -> std::ops::Range<usize> {
     let length = (2 * half + 1).min(count - 1);
     let first = centre.saturating_sub(half).clamp(1, count - length);
     first..first + length
@@ -107,7 +107,7 @@ fn fit(reference: &[Complex<f64>], response: &[Complex<f64>], offsets: &[f64]) -
 }
 
 /// Of unit columns; where the response is flat, b₁ and a₁ cannot be told apart and share the part that they explain.
-fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
+pub(super) fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     const SAME: f64 = 1e-10;
     regressors
         .clone()

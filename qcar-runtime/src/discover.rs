@@ -1,0 +1,20 @@
+//! Where simulation and measurement disagree, and by how much more than they may.
+//!
+//! The modules stand in the order of the data: what a campaign holds becomes evidence, a model predicts it, sensors may
+//! be wrong to the extent of their calibration, a refit takes out what parameters can explain, and what is left is the
+//! gap. Nothing here knows an effect, or an axle, by name.
+
+// What a campaign holds: series of measured values with their uncertainty.
+pub mod evidence;
+// What sensors may be wrong by, in all runs alike.
+pub mod nuisance;
+// What a model says of the evidence.
+pub mod predict;
+// Parameters and sensor errors that explain the evidence best.
+pub mod refit;
+// What is left, in units of uncertainty: how much, and where.
+pub mod gap;
+
+pub use evidence::Evidence;
+pub use gap::Gap;
+pub use refit::{Free, Refit, refit};

@@ -1,0 +1,218 @@
+//! What a campaign holds, as series of measured values with their uncertainty.
+//!
+//! Every series knows its run, its sensor and what its values are; every run its role, its level and what drove it.
+//! Uncertainty is the noise of a value, independent from line to line. What is common to all lines of a sensor, such as
+//! its calibration, is not in it: see [`nuisance`](super::nuisance).
+
+// Swept sines: the first harmonics at each frequency.
+mod sweep;
+
+use nalgebra::Complex;
+
+use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
+use crate::error::{InputError, Place, Problem};
+use crate::model::{About, Signal, SignalKind};
+use crate::response::signal::best_output;
+use crate::transmissibility::Point;
+
+/// What a campaign holds.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Evidence {
+    /// In the order of the campaign, without those that add nothing.
+    pub runs: Vec<Run>,
+    /// The series of all runs, run after run.
+    pub series: Vec<Series>,
+    /// What was left out, and why, as sentences for the engineer.
+    pub notices: Vec<String>,
+}
+
+/// A run of the campaign.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Run {
+    /// Its file, as the campaign calls it.
+    pub name: String,
+    /// What it may be used for.
+    pub role: Role,
+    /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a history's input.
+    pub level: f64,
+    /// What drove it.
+    pub stimulus: Stimulus,
+}
+
+/// What drove a run.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stimulus {
+    /// A swept sine.
+    Sweep {
+        /// The sensor that the responses are related to.
+        reference: Point,
+        /// Its mean signal over the sides.
+        signal: Vec<f64>,
+        /// Hz.
+        rate: f64,
+        /// Hz, increasing: where responses were asked for.
+        frequency: Vec<f64>,
+        /// Amplitude of the reference there, in its unit.
+        amplitude: Vec<f64>,
+        /// First and last frequency of the sweep, Hz.
+        band: (f64, f64),
+    },
+}
+
+/// Values of one kind that one sensor gave in one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Series {
+    /// Place in [`Evidence::runs`].
+    pub run: usize,
+    /// The sensor: the mean of all sides of a location.
+    pub sensor: Point,
+    /// What the values are.
+    pub kind: Kind,
+    /// Where each value belongs; see [`Kind`].
+    pub at: Vec<f64>,
+    /// The values; the imaginary part is zero where they are real.
+    pub value: Vec<Complex<f64>>,
+    /// Standard deviation of the noise of each value: `E|error|²` is its square.
+    pub sigma: Vec<f64>,
+}
+
+/// What the values of a series are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Kind {
+    /// Responses at `order` times the frequency (Hz) of the excitation at which they stand, over its amplitude there.
+    Harmonic(usize),
+}
+
+impl Kind {
+    /// True where values have an imaginary part.
+    pub fn complex(self) -> bool {
+        match self {
+            Kind::Harmonic(_) => true,
+        }
+    }
+
+    /// What a value at `at` is listed under in Hz, where it has a frequency.
+    pub fn frequency(self, at: f64) -> Option<f64> {
+        match self {
+            Kind::Harmonic(order) => Some(order as f64 * at),
+        }
+    }
+}
+
+impl Series {
+    /// Number of real residuals.
+    pub fn residuals(&self) -> usize {
+        self.value.len() * if self.kind.complex() { 2 } else { 1 }
+    }
+}
+
+impl Evidence {
+    /// Reads what the runs of a campaign say of a model.
+    ///
+    /// Sensors at places that the model does not have are left out with a notice, so that all variants of this model
+    /// are held against the same evidence.
+    ///
+    /// # Errors
+    /// Where a file cannot be read, a sweep has no pad, or no run says anything.
+    pub fn from_campaign(campaign: &Campaign, about: &About) -> Result<Self, InputError> {
+        let mut evidence = Evidence {
+            runs: Vec::new(),
+            series: Vec::new(),
+            notices: Vec::new(),
+        };
+        for run in &campaign.runs {
+            evidence.add(campaign, about, run)?;
+        }
+        if evidence.series.is_empty() {
+            let mut remedy = "add a run with sensors at places of the model".to_owned();
+            evidence
+                .notices
+                .iter()
+                .for_each(|notice| remedy = format!("{remedy}; {notice}"));
+            let found = "no run that says anything of the model";
+            return Err(Problem::new(campaign.manifest(), Place::File, found, "measured responses", remedy).into());
+        }
+        Ok(evidence)
+    }
+
+    /// The series of the runs of one role, with their places.
+    pub fn of_role(&self, role: Role) -> impl Iterator<Item = (usize, &Series)> {
+        let series = self.series.iter().enumerate();
+        series.filter(move |(_, series)| self.runs[series.run].role == role)
+    }
+
+    /// The same with only the runs that `keep` wants.
+    pub fn only(&self, keep: impl Fn(&Run) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(&self.runs[run])).collect();
+        let place = |run: usize| kept.iter().position(|&k| k == run);
+        let series = self.series.iter().filter_map(|series| {
+            let run = place(series.run)?;
+            Some(Series { run, ..series.clone() })
+        });
+        Evidence {
+            runs: kept.iter().map(|&run| self.runs[run].clone()).collect(),
+            series: series.collect(),
+            notices: self.notices.clone(),
+        }
+    }
+
+    fn add(&mut self, campaign: &Campaign, about: &About, run: &crate::campaign::Run) -> Result<(), InputError> {
+        match &run.test {
+            Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
+            _ => Ok(()),
+        }
+    }
+
+    /// Of the sensors of a run, those at places that the model has.
+    fn known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
+        let (known, unknown): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| has(about, point));
+        for point in unknown {
+            let notice = format!(
+                "{run}: the model has no `{}` along {}; that sensor is left out",
+                point.location,
+                point.axis.name()
+            );
+            self.notices.push(notice);
+        }
+        known
+    }
+}
+
+/// What a sensor measures, in the model's words.
+///
+/// On a link a displacement is its stretch.
+pub fn signal_of(about: &About, point: &Point) -> Signal {
+    let link = about
+        .links
+        .iter()
+        .any(|link| link.name == point.location && link.axis == point.axis.name());
+    let kind = match point.quantity {
+        Quantity::Force => SignalKind::Force,
+        Quantity::Displacement if link => SignalKind::Stretch,
+        Quantity::Displacement => SignalKind::Motion(crate::model::Quantity::Position),
+        Quantity::Velocity => SignalKind::Motion(crate::model::Quantity::Velocity),
+        Quantity::Acceleration => SignalKind::Motion(crate::model::Quantity::Acceleration),
+    };
+    Signal {
+        location: point.location.clone().into(),
+        axis: point.axis.name().into(),
+        kind,
+    }
+}
+
+/// The excitation of the model that a sensor measures, if it measures one.
+pub fn excitation_of(about: &About, point: &Point) -> Option<usize> {
+    about.excitations.iter().position(|excitation| {
+        let force = point.quantity == Quantity::Force;
+        excitation.name == point.location && excitation.axis == point.axis.name() && excitation.force == force
+    })
+}
+
+fn has(about: &About, point: &Point) -> bool {
+    excitation_of(about, point).is_some() || best_output(about, &signal_of(about, point)).is_some()
+}
+
+/// Pads move up and down.
+fn is_pad(point: &Point) -> bool {
+    point.location == "pad" && point.axis == Axis::Z
+}

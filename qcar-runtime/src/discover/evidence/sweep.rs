@@ -1,0 +1,156 @@
+//! A sweep as evidence: the first, second and third harmonic of every sensor over the amplitude of the pad.
+
+use nalgebra::Complex;
+
+use super::{Evidence, Kind, Run, Series, Stimulus, is_pad};
+use crate::campaign::{Campaign, Sweep};
+use crate::error::{InputError, Place, Problem};
+use crate::model::About;
+use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Swept};
+use crate::transmissibility::{Point, points, signal};
+
+/// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
+/// proportion.
+const ORDERS: usize = 3;
+
+/// Wide enough for eight unknowns a line, and narrow enough to follow a mode.
+const AROUND: Neighbourhood = Neighbourhood {
+    lines: 10,
+    width: 0.035,
+};
+
+/// Lines closer than this share of a frequency say the same twice.
+const GROWTH: f64 = 0.05;
+
+/// Lines closer than this part of the neighbourhood say the same twice, lines of the spectrum.
+const APART: f64 = 6.0;
+
+/// Of the first harmonic: what the estimator itself may be off (see [`Estimator::LOCAL`](crate::transmissibility::Estimator)),
+/// and what differs between the sides of a car.
+const FLOOR: f64 = 0.002;
+
+impl Evidence {
+    pub(super) fn add_sweep(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+        sweep: &Sweep,
+    ) -> Result<(), InputError> {
+        let history = campaign.history(run)?;
+        let (pads, others): (Vec<_>, Vec<_>) = points(&history).into_iter().partition(is_pad);
+        let Some(reference) = pads.into_iter().next() else {
+            let remedy = "add the pad's channel to the run: it is what the responses are related to";
+            return Err(Problem::new(
+                history.file,
+                Place::Line(1),
+                "no pad",
+                "a channel at `pad` along z",
+                remedy,
+            )
+            .into());
+        };
+        let sensors = self.known(about, &run.file, others);
+        if sensors.is_empty() {
+            self.notices
+                .push(format!("{}: no sensor but the pad's; the run is left out", run.file));
+            return Ok(());
+        }
+        let excitation = signal(&history, &reference)?;
+        let band = (sweep.start_frequency, sweep.end_frequency);
+        let rate = history.sample_rate;
+        let swept = Swept::new(&excitation, rate, band, ORDERS);
+        let grid = grid(band, rate / excitation.len() as f64);
+        let passed: Vec<(f64, f64)> = grid
+            .into_iter()
+            .filter_map(|f| Some((f, swept.amplitude(f)?)))
+            .collect();
+        let (frequency, amplitude): (Vec<f64>, Vec<f64>) = passed.into_iter().unzip();
+        for sensor in sensors {
+            let samples = signal(&history, &sensor)?;
+            let (place, respond) = (self.runs.len(), |order: usize| {
+                let at: Vec<f64> = answered(&frequency, order, rate);
+                let response: Vec<f64> = at.iter().map(|f| f * order as f64).collect();
+                (at, swept.responses(&samples, &response, AROUND))
+            });
+            self.series
+                .extend((1..=ORDERS).map(|order| series(place, &sensor, order, respond(order))));
+        }
+        self.runs.push(Run {
+            name: run.file.clone(),
+            role: run.role,
+            level: sweep.peak_velocity,
+            stimulus: Stimulus::Sweep {
+                reference,
+                signal: excitation,
+                rate,
+                frequency,
+                amplitude,
+                band,
+            },
+        });
+        Ok(())
+    }
+}
+
+/// Frequencies whose neighbourhoods overlap little: evenly spaced below, by equal ratios above.
+fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
+    /// The ends of a sweep are faded in and out.
+    const INSIDE: f64 = 1.05;
+    let next = |f: &f64| Some(f + (GROWTH * f).max(APART * spacing));
+    std::iter::successors(Some(first * INSIDE), next)
+        .take_while(|f| *f < last / INSIDE)
+        .collect()
+}
+
+/// Of `frequency`, those whose multiple a record at `rate` still holds well; every other one for a multiple, whose
+/// response is asked for at wider steps.
+fn answered(frequency: &[f64], order: usize, rate: f64) -> Vec<f64> {
+    let highest = 0.2 * rate;
+    let step = if order == 1 { 1 } else { 2 };
+    frequency
+        .iter()
+        .copied()
+        .step_by(step)
+        .filter(|f| f * (order as f64) < highest)
+        .collect()
+}
+
+fn series(run: usize, sensor: &Point, order: usize, (at, lines): (Vec<f64>, Vec<HarmonicLine>)) -> Series {
+    let noise = smooth(&lines.iter().map(|line| line.variance[order - 1]).collect::<Vec<_>>());
+    let value: Vec<Complex<f64>> = lines
+        .iter()
+        .map(|line| line.value[order - 1].unwrap_or_default())
+        .collect();
+    let floor = |value: &Complex<f64>| {
+        if order == 1 {
+            (FLOOR * value.norm()).powi(2)
+        } else {
+            0.0
+        }
+    };
+    Series {
+        run,
+        sensor: sensor.clone(),
+        kind: Kind::Harmonic(order),
+        sigma: noise
+            .iter()
+            .zip(&value)
+            .map(|(noise, value)| (noise + floor(value)).sqrt())
+            .collect(),
+        at,
+        value,
+    }
+}
+
+/// The median over five neighbours: a variance from few lines is itself uncertain.
+fn smooth(variance: &[f64]) -> Vec<f64> {
+    const HALF: usize = 2;
+    (0..variance.len())
+        .map(|k| {
+            let mut around = variance[k.saturating_sub(HALF)..(k + HALF + 1).min(variance.len())].to_vec();
+            let middle = around.len() / 2;
+            *around.select_nth_unstable_by(middle, f64::total_cmp).1
+        })
+        .collect()
+}

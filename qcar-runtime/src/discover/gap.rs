@@ -1,0 +1,116 @@
+//! What is left between measurement and model, in units of uncertainty: how much, and where.
+
+use std::collections::BTreeMap;
+
+use super::evidence::{Evidence, Kind};
+use super::predict::{PredictError, predict};
+use super::refit::{Refit, scaled};
+use crate::campaign::Role;
+use crate::model::Model;
+use crate::transmissibility::Point;
+
+/// The gap of a model after its refit. 1 is the noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// RMS of (measured - modelled) over its uncertainty, on the runs that were fitted; NaN without any.
+    pub fit: f64,
+    /// The same on those that no fit has seen; NaN without any.
+    pub held_out: f64,
+    /// The same by series, in the order of the evidence.
+    pub series: Vec<f64>,
+    /// The residuals of every series, as [`Series::residuals`](super::evidence::Series::residuals) counts them.
+    pub residuals: Vec<Vec<f64>>,
+    /// Where it is, the strongest first.
+    pub tiles: Vec<Tile>,
+}
+
+/// A part of the gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// The sensor.
+    pub sensor: Point,
+    /// What its values are.
+    pub kind: Kind,
+    /// The level of the runs.
+    pub level: f64,
+    /// Their role.
+    pub role: Role,
+    /// From where to where: Hz for harmonics, a sixth of an octave wide.
+    pub band: (f64, f64),
+    /// RMS of the residuals.
+    pub strength: f64,
+    /// Number of the residuals.
+    pub count: usize,
+}
+
+impl Gap {
+    /// Holds a refitted model against all runs, with the sensor errors that the fitted runs gave.
+    ///
+    /// # Errors
+    /// Where the model lacks what was measured.
+    pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
+        let mut residuals = vec![Vec::new(); evidence.series.len()];
+        for role in [Role::Fit, Role::HeldOut] {
+            for prediction in predict(model, &refit.values, &[], evidence, role)? {
+                let series = &evidence.series[prediction.series];
+                let shown = refit.measured(evidence, &prediction);
+                let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
+                scaled(series, differences, &mut residuals[prediction.series]);
+            }
+        }
+        let of_role = |role| {
+            rms(evidence
+                .of_role(role)
+                .flat_map(|(place, _)| residuals[place].iter().copied()))
+        };
+        Ok(Self {
+            fit: of_role(Role::Fit),
+            held_out: of_role(Role::HeldOut),
+            series: residuals.iter().map(|series| rms(series.iter().copied())).collect(),
+            tiles: tiles(evidence, &residuals),
+            residuals,
+        })
+    }
+}
+
+/// Root of the mean square; NaN of nothing.
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
+    (sum / count as f64).sqrt()
+}
+
+/// Tiles of an octave.
+const PER_OCTAVE: f64 = 6.0;
+
+fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {
+    let mut sums: BTreeMap<(usize, i64), (f64, usize)> = BTreeMap::new();
+    for (place, series) in evidence.series.iter().enumerate() {
+        let parts = if series.kind.complex() { 2 } else { 1 };
+        for (at, of_value) in series.at.iter().zip(residuals[place].chunks(parts)) {
+            let sum = sums
+                .entry((place, (PER_OCTAVE * at.log2()).floor() as i64))
+                .or_default();
+            sum.0 += of_value.iter().map(|residual| residual * residual).sum::<f64>();
+            sum.1 += of_value.len();
+        }
+    }
+    let tile = |((place, octave), (sum, count)): ((usize, i64), (f64, usize))| {
+        let series = &evidence.series[place];
+        let run = &evidence.runs[series.run];
+        Tile {
+            sensor: series.sensor.clone(),
+            kind: series.kind,
+            level: run.level,
+            role: run.role,
+            band: (
+                (octave as f64 / PER_OCTAVE).exp2(),
+                ((octave + 1) as f64 / PER_OCTAVE).exp2(),
+            ),
+            strength: (sum / count as f64).sqrt(),
+            count,
+        }
+    };
+    let mut tiles: Vec<Tile> = sums.into_iter().map(tile).collect();
+    tiles.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    tiles
+}

@@ -1,0 +1,76 @@
+//! What a model says of the evidence, with its parameter Jacobian.
+
+// Swept sines by frequency response.
+mod linear;
+
+use nalgebra::Complex;
+use rayon::prelude::*;
+use thiserror::Error;
+
+use super::evidence::{Evidence, Stimulus};
+use crate::campaign::Role;
+use crate::model::Model;
+use crate::response::parameters::Values;
+use crate::response::signal::SignalError;
+
+/// What a model says of one series.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// Place in [`Evidence::series`].
+    pub series: usize,
+    /// A value for each of the series.
+    pub value: Vec<Complex<f64>>,
+    /// For each free parameter the derivatives of the values.
+    pub slopes: Vec<Vec<Complex<f64>>>,
+}
+
+/// Why a model says nothing of the evidence.
+#[derive(Clone, Debug, Error, PartialEq)]
+pub enum PredictError {
+    /// A sensor measures what the model cannot give.
+    #[error(transparent)]
+    Signal(#[from] SignalError),
+    /// What drove a run is no input of the model.
+    #[error(
+        "model `{model}` has no input `{location}`, which drives {run}; choose a model that has it, or leave the run out"
+    )]
+    NoInput {
+        /// The model's name.
+        model: String,
+        /// What drives.
+        location: String,
+        /// The run's file.
+        run: String,
+    },
+}
+
+/// Predicts all series of the runs of one role; `free` are the leading parameters along which to differentiate.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn predict(
+    model: &dyn Model,
+    values: &Values,
+    free: &[usize],
+    evidence: &Evidence,
+    role: Role,
+) -> Result<Vec<Prediction>, PredictError> {
+    let runs = (0..evidence.runs.len()).filter(|&run| evidence.runs[run].role == role);
+    let runs: Vec<usize> = runs.collect();
+    let of_runs = runs
+        .into_par_iter()
+        .map(|run| of_run(model, values, free, evidence, run));
+    Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+fn of_run(
+    model: &dyn Model,
+    values: &Values,
+    free: &[usize],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    match &evidence.runs[run].stimulus {
+        Stimulus::Sweep { reference, .. } => linear::sweep(model, values, free, evidence, run, reference),
+    }
+}

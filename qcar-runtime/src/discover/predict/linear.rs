@@ -1,0 +1,60 @@
+//! Sweeps of a linear model: its frequency response is the first harmonic, and there are no others.
+
+use nalgebra::Complex;
+
+use super::{PredictError, Prediction};
+use crate::discover::evidence::{Evidence, Kind, excitation_of, signal_of};
+use crate::model::Model;
+use crate::response::parameters::Values;
+use crate::response::ratio::ratio;
+use crate::transmissibility::Point;
+
+pub(super) fn sweep(
+    model: &dyn Model,
+    values: &Values,
+    free: &[usize],
+    evidence: &Evidence,
+    run: usize,
+    reference: &Point,
+) -> Result<Vec<Prediction>, PredictError> {
+    let about = model.about();
+    let excitation = excitation_of(about, reference).ok_or_else(|| PredictError::NoInput {
+        model: about.name.to_string(),
+        location: reference.location.clone(),
+        run: evidence.runs[run].name.clone(),
+    })?;
+    let below = signal_of(about, reference);
+    let mut predictions = Vec::new();
+    for (place, series) in evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| series.run == run)
+    {
+        if series.kind != Kind::Harmonic(1) {
+            predictions.push(silence(place, series.at.len(), free.len()));
+            continue;
+        }
+        let above = signal_of(about, &series.sensor);
+        let ratio = ratio(model, values, excitation, &above, &below, &series.at)?;
+        let slope = |parameter: &usize| {
+            let found = ratio.jacobian.iter().find(|(leader, _)| leader == parameter);
+            found.map_or_else(|| vec![Complex::ZERO; series.at.len()], |(_, slope)| slope.clone())
+        };
+        predictions.push(Prediction {
+            series: place,
+            slopes: free.iter().map(slope).collect(),
+            value: ratio.value,
+        });
+    }
+    Ok(predictions)
+}
+
+fn silence(series: usize, values: usize, free: usize) -> Prediction {
+    let zero = vec![Complex::ZERO; values];
+    Prediction {
+        series,
+        slopes: vec![zero.clone(); free],
+        value: zero,
+    }
+}

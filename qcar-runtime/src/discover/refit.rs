@@ -1,0 +1,264 @@
+//! Parameters and sensor errors that explain the evidence best: maximum a posteriori by least squares.
+//!
+//! The residuals are those of all fitted runs over their noise, and the coefficients of the sensors' errors over their
+//! prior. Held-out runs are never seen.
+
+use nalgebra::{Complex, DMatrix};
+
+use super::evidence::{Evidence, Series};
+use super::nuisance::Nuisance;
+use super::predict::{PredictError, Prediction, predict};
+use crate::campaign::Role;
+use crate::least_squares::information::Information;
+use crate::least_squares::{Bounds, Options, Problem, Stop, minimize};
+use crate::model::Model;
+use crate::response::parameters::Values;
+
+/// A parameter that may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Free {
+    /// Its place among the parameters of the model; one that leads its ties.
+    pub parameter: usize,
+    /// Lowest value.
+    pub lower: f64,
+    /// Highest value.
+    pub upper: f64,
+}
+
+/// The explanation that was found.
+#[derive(Clone, Debug)]
+pub struct Refit {
+    /// All parameters.
+    pub values: Values,
+    /// Those that moved.
+    pub free: Vec<Free>,
+    /// What they came to.
+    pub estimate: Vec<f64>,
+    /// Covariance of the free parameters, sensor errors allowed for; NaN for one at a bound or not seen.
+    pub covariance: DMatrix<f64>,
+    /// For each free parameter: -1 on its lower bound, 1 on its upper bound, 0 between.
+    pub at_bound: Vec<i8>,
+    /// The sensors.
+    pub nuisance: Nuisance,
+    /// Their errors.
+    pub coefficients: Vec<f64>,
+    /// Sum of squares of all residuals, priors included.
+    pub chi2: f64,
+    /// Number of residuals of the data.
+    pub residuals: usize,
+    /// Why the search stopped.
+    pub stop: Stop,
+}
+
+impl Refit {
+    /// Standard errors of the free parameters.
+    pub fn stderr(&self) -> Vec<f64> {
+        self.covariance
+            .diagonal()
+            .iter()
+            .map(|variance| variance.sqrt())
+            .collect()
+    }
+
+    /// What the sensors would have shown of a prediction.
+    pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
+        let factor = factor(
+            &self.nuisance,
+            &self.coefficients,
+            evidence,
+            &evidence.series[prediction.series],
+        );
+        prediction
+            .value
+            .iter()
+            .zip(factor)
+            .map(|(value, factor)| value * factor)
+            .collect()
+    }
+}
+
+/// Fits the free parameters of a model, from their `values`, and the errors of the sensors to the runs that may be
+/// fitted.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evidence) -> Result<Refit, PredictError> {
+    const OPTIONS: Options = Options {
+        gradient: 1e-5,
+        cost: 1e-6,
+        step: 1e-6,
+        evaluations: 60,
+    };
+    // What cannot be predicted at all is found before the search, in which nothing can fail.
+    predict(model, values, &[], evidence, Role::Fit)?;
+    let mut posterior = Posterior::new(model, values.clone(), free, evidence);
+    let count = posterior.nuisance.len();
+    let start: Vec<f64> = free
+        .iter()
+        .map(|free| values.as_slice()[free.parameter])
+        .chain(std::iter::repeat_n(0.0, count))
+        .collect();
+    let unbounded = |end: f64| std::iter::repeat_n(end, count);
+    let bounds = Bounds {
+        lower: free
+            .iter()
+            .map(|f| f.lower)
+            .chain(unbounded(f64::NEG_INFINITY))
+            .collect(),
+        upper: free.iter().map(|f| f.upper).chain(unbounded(f64::INFINITY)).collect(),
+    };
+    let outcome = minimize(&mut posterior, &start, &bounds, &OPTIONS);
+    let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
+    let information = Information::new(&outcome.jacobian, &inside);
+    posterior.move_to(&outcome.x);
+    Ok(Refit {
+        values: posterior.values,
+        estimate: outcome.x[..free.len()].to_vec(),
+        covariance: spread(&information, free.len()),
+        at_bound: outcome.at_bound[..free.len()].to_vec(),
+        free: free.to_vec(),
+        coefficients: outcome.x[free.len()..].to_vec(),
+        chi2: 2.0 * outcome.cost,
+        residuals: outcome.residual.len() - count,
+        nuisance: posterior.nuisance,
+        stop: outcome.stop,
+    })
+}
+
+/// The rows and columns of the first `count` variables of a covariance.
+fn spread(information: &Information, count: usize) -> DMatrix<f64> {
+    let place = |k: usize| information.seen().iter().position(|&seen| seen == k);
+    DMatrix::from_fn(count, count, |i, j| match (place(i), place(j)) {
+        (Some(i), Some(j)) => information.inverse()[(i, j)],
+        _ => f64::NAN,
+    })
+}
+
+/// The factor by which the sensors of a series are wrong.
+fn factor(nuisance: &Nuisance, coefficients: &[f64], evidence: &Evidence, series: &Series) -> Vec<Complex<f64>> {
+    let mut exponent = vec![Complex::ZERO; series.at.len()];
+    for (k, slope) in nuisance.slopes(evidence, series) {
+        exponent
+            .iter_mut()
+            .zip(slope)
+            .for_each(|(sum, slope)| *sum += slope * coefficients[k]);
+    }
+    exponent.into_iter().map(|exponent| exponent.exp()).collect()
+}
+
+/// The real residuals of a series: each complex one as its parts, in units of the standard deviation of a part.
+pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
+    let complex = series.kind.complex();
+    for (value, sigma) in values.zip(&series.sigma) {
+        if complex {
+            let scale = std::f64::consts::SQRT_2 / sigma;
+            into.extend([value.re * scale, value.im * scale]);
+        } else {
+            into.push(value.re / sigma);
+        }
+    }
+}
+
+/// The least-squares problem.
+struct Posterior<'a> {
+    model: &'a dyn Model,
+    values: Values,
+    free: Vec<usize>,
+    evidence: &'a Evidence,
+    nuisance: Nuisance,
+    sigmas: Vec<f64>,
+    residuals: usize,
+}
+
+impl<'a> Posterior<'a> {
+    fn new(model: &'a dyn Model, values: Values, free: &[Free], evidence: &'a Evidence) -> Self {
+        let nuisance = Nuisance::of(evidence);
+        Self {
+            model,
+            values,
+            free: free.iter().map(|free| free.parameter).collect(),
+            evidence,
+            sigmas: nuisance.sigmas(),
+            residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
+            nuisance,
+        }
+    }
+
+    fn move_to(&mut self, x: &[f64]) {
+        for (&parameter, &value) in self.free.iter().zip(x) {
+            self.values.set(parameter, value);
+        }
+    }
+
+    /// Adds the rows of one prediction to columns that grow together.
+    fn rows(&self, prediction: &Prediction, coefficients: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
+        let series = &self.evidence.series[prediction.series];
+        let factor = factor(&self.nuisance, coefficients, self.evidence, series);
+        let shown: Vec<_> = prediction
+            .value
+            .iter()
+            .zip(&factor)
+            .map(|(value, factor)| value * factor)
+            .collect();
+        scaled(
+            series,
+            series
+                .value
+                .iter()
+                .zip(&shown)
+                .map(|(measured, shown)| measured - shown),
+            residual,
+        );
+        for (column, slope) in columns.iter_mut().zip(&prediction.slopes) {
+            scaled(
+                series,
+                slope.iter().zip(&factor).map(|(slope, factor)| -slope * factor),
+                column,
+            );
+        }
+        for (k, slope) in self.nuisance.slopes(self.evidence, series) {
+            let column = &mut columns[self.free.len() + k];
+            scaled(
+                series,
+                slope.iter().zip(&shown).map(|(slope, shown)| -slope * shown),
+                column,
+            );
+        }
+        for column in columns {
+            column.resize(residual.len(), 0.0);
+        }
+    }
+}
+
+impl Problem for Posterior<'_> {
+    fn variables(&self) -> usize {
+        self.free.len() + self.nuisance.len()
+    }
+
+    fn residuals(&self) -> usize {
+        self.residuals + self.nuisance.len()
+    }
+
+    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
+        self.move_to(x);
+        let coefficients = &x[self.free.len()..];
+        let predictions = predict(self.model, &self.values, &self.free, self.evidence, Role::Fit);
+        let Ok(predictions) = predictions else {
+            residual.fill(f64::NAN);
+            return;
+        };
+        let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
+        for prediction in &predictions {
+            self.rows(prediction, coefficients, &mut rows, &mut columns);
+        }
+        rows.extend(coefficients.iter().zip(&self.sigmas).map(|(c, sigma)| c / sigma));
+        residual.copy_from_slice(&rows);
+        for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
+            into.fill(0.0);
+            into[..column.len()].copy_from_slice(column);
+            if let Some(k) = k.checked_sub(self.free.len()) {
+                into[self.residuals + k] = 1.0 / self.sigmas[k];
+            }
+        }
+    }
+}
