@@ -95,11 +95,11 @@ impl Evidence {
 
 /// Frequencies whose neighbourhoods overlap little: evenly spaced below, by equal ratios above.
 fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
-    /// The ends of a sweep are faded in and out.
-    const INSIDE: f64 = 1.05;
+    /// The ends of a sweep are faded in and out, and beyond them there are no lines to tell noise from response.
+    const INSIDE: f64 = 1.2;
     let next = |f: &f64| Some(f + (GROWTH * f).max(APART * spacing));
     std::iter::successors(Some(first * INSIDE), next)
-        .take_while(|f| *f < last / INSIDE)
+        .take_while(|f| *f * INSIDE.sqrt() < last)
         .collect()
 }
 
