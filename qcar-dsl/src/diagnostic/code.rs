@@ -162,4 +162,36 @@ codes! {
     SecondState = "second_state",
     /// A coefficient of a linear term that depends on the motion.
     CoefficientVaries = "coefficient_varies",
+    /// Masses that nothing holds.
+    MassNotHeld = "mass_not_held",
+    /// Masses that gravity pulls down for ever.
+    MassSinks = "mass_sinks",
+    /// A node that no link touches.
+    NodeNotAttached = "node_not_attached",
+    /// A node whose balance is a nonlinear equation.
+    NodeNonlinear = "node_nonlinear",
+    /// Nodes that are connected with each other only.
+    NodesFloat = "nodes_float",
+    /// An inertia that is zero or negative at its defaults or everywhere.
+    InertiaNotPositive = "inertia_not_positive",
+    /// An inertia that is a parameter whose range begins at zero or below.
+    InertiaCanVanish = "inertia_can_vanish",
+    /// A damper or inerter that can be negative.
+    NegativeDamping = "negative_damping",
+    /// A law that pushes along with the motion.
+    LawGivesEnergy = "law_gives_energy",
+    /// Two links that are one.
+    DuplicateLink = "duplicate_link",
+    /// A prescribed motion that no link touches.
+    MotionNotUsed = "motion_not_used",
+    /// A gravity in a direction without masses.
+    GravityPullsNothing = "gravity_pulls_nothing",
+    /// A model with nothing to see.
+    NothingToSee = "nothing_to_see",
+    /// A model that no input moves.
+    NothingMoves = "nothing_moves",
+    /// A parameter that no response depends on.
+    ParameterNotSeen = "parameter_not_seen",
+    /// Parameters of which outputs see a combination only.
+    OnlyTogether = "only_together",
 }

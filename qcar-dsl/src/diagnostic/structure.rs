@@ -1,1 +1,161 @@
-//! (next)
+//! Mistakes of the structure: what is held, what can be solved, what takes energy.
+
+use super::{Code, Diagnostic, all_of};
+use crate::source::Span;
+
+/// Things with the places of their names.
+type Named<'a> = [(Span, &'a str)];
+
+fn names(named: &Named) -> String {
+    all_of(&named.iter().map(|(_, name)| *name).collect::<Vec<_>>())
+}
+
+fn label_all(diagnostic: Diagnostic, named: &Named, text: &str) -> Diagnostic {
+    named
+        .iter()
+        .fold(diagnostic, |diagnostic, (span, _)| diagnostic.label(*span, text))
+}
+
+/// Masses that nothing holds.
+pub fn mass_not_held(masses: &Named) -> Diagnostic {
+    let message = format!("nothing holds {}: a rigid-body mode", names(masses));
+    let first = masses.first().map_or("body", |(_, name)| name);
+    label_all(
+        Diagnostic::error(Code::MassNotHeld, message),
+        masses,
+        "moves without stretching any link",
+    )
+    .hint(format!(
+        "write a link that holds it, such as `link mount: {first} - … {{ spring k; }}`"
+    ))
+}
+
+/// Masses that gravity pulls down for ever.
+pub fn mass_sinks(masses: &Named) -> Diagnostic {
+    let message = format!(
+        "gravity pulls {} down for ever: no spring carries the weight",
+        names(masses)
+    );
+    let first = masses.first().map_or("body", |(_, name)| name);
+    label_all(
+        Diagnostic::error(Code::MassSinks, message),
+        masses,
+        "held by dampers at most",
+    )
+    .hint(format!(
+        "write a spring that carries it, such as `link spring: {first} - … {{ spring k; }}`"
+    ))
+}
+
+/// A node that no link touches.
+pub fn node_not_attached(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error(
+        Code::NodeNotAttached,
+        format!("nothing holds the massless node `{name}`"),
+    )
+    .label(span, "no spring, damper or inerter")
+    .hint(format!(
+        "write links on both of its sides, such as `link mount: body - {name} {{ spring k; }}`"
+    ))
+}
+
+/// A node whose balance is a nonlinear equation.
+pub fn node_nonlinear(span: Span, name: &str, link: (Span, &str), what: &str) -> Diagnostic {
+    let beside = if what == "rate" { "its velocity" } else { "its position" };
+    Diagnostic::error(
+        Code::NodeNonlinear,
+        format!("the balance of the massless node `{name}` cannot be solved"),
+    )
+    .label(link.0, format!("this law is nonlinear in its {what}"))
+    .label(span, format!("{beside} would have to be found by iteration"))
+    .hint(format!(
+        "write `mass {name} = …;` with the mass of the real part, or put the law of `{}` elsewhere",
+        link.1
+    ))
+}
+
+/// Nodes that are connected with each other only.
+pub fn nodes_float(nodes: &Named, what: &str) -> Diagnostic {
+    let message = format!(
+        "the balance of {} cannot be solved: {what} hold the nodes at each other only",
+        names(nodes)
+    );
+    label_all(
+        Diagnostic::error(Code::NodesFloat, message),
+        nodes,
+        "moves with the others without any force",
+    )
+    .hint(format!(
+        "write {what} between one of them and a mass or road, or leave one node out"
+    ))
+}
+
+/// An inertia that is zero or negative at its defaults or everywhere.
+pub fn inertia_not_positive(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error(
+        Code::InertiaNotPositive,
+        format!("the inertia of `{name}` is not positive"),
+    )
+    .label(span, "zero or negative")
+    .hint(format!(
+        "write a positive value, or `node {name};` for a massless point"
+    ))
+}
+
+/// An inertia that is a parameter whose range begins at zero or below.
+pub fn inertia_can_vanish(span: Span, name: &str, low: f64) -> Diagnostic {
+    Diagnostic::error(
+        Code::InertiaCanVanish,
+        format!("the inertia of `{name}` can be {low} within its range"),
+    )
+    .label(span, "must stay above zero")
+    .hint("write a range that begins above zero, such as `in 0.1..50`")
+}
+
+/// A damper or inerter that can be negative.
+pub fn negative_damping(span: Span, link: &str, what: &str, lowest: f64, at: &[String]) -> Diagnostic {
+    let place = if at.is_empty() {
+        String::new()
+    } else {
+        format!(" at {}", at.join(", "))
+    };
+    Diagnostic::error(
+        Code::NegativeDamping,
+        format!("the {what} of link `{link}` can be {lowest}{place}"),
+    )
+    .label(span, "would give energy instead of taking it")
+    .hint("write ranges within which it stays at zero or above, such as `in 0..5000`")
+}
+
+/// A law that pushes along with the motion.
+pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
+    let message = format!("the law of link `{link}` gives energy at s = {s:.3}, v = {v:.3}");
+    Diagnostic::error(Code::LawGivesEnergy, message)
+        .label(span, "pushes along with the motion there")
+        .hint("write a force that grows with `v`: positive in tension is positive here, as in `force = c*v`")
+}
+
+/// Two links that are one.
+pub fn duplicate_link((span, first_span): (Span, Span), name: &str, first: &str, kind: &str) -> Diagnostic {
+    let message = format!("link `{name}` repeats the {kind} of link `{first}`");
+    Diagnostic::error(Code::DuplicateLink, message)
+        .label(span, "the same stretch")
+        .label(first_span, format!("has a {kind} already"))
+        .hint(format!(
+            "write one link with the sum, `{kind} a + b;`, or other ends for `{name}`"
+        ))
+}
+
+/// A prescribed motion that no link touches.
+pub fn motion_not_used(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error(Code::MotionNotUsed, format!("`{name}` moves nothing"))
+        .label(span, "no link touches it")
+        .hint(format!("write `link tire: wheel - {name} {{ … }}`, or remove the line"))
+}
+
+/// A gravity in a direction without masses.
+pub fn gravity_pulls_nothing(span: Span, name: &str, direction: &str) -> Diagnostic {
+    Diagnostic::warning(Code::GravityPullsNothing, format!("gravity `{name}` pulls nothing"))
+        .label(span, format!("direction {direction} has no mass"))
+        .hint("remove the line")
+}

@@ -1,0 +1,140 @@
+//! Generic values for the leaves of expressions. A property of the structure, such as a rank, shows at almost every
+//! point, so a few points that look random decide it, and the same ones every time keep the compiler deterministic.
+
+use std::cell::RefCell;
+use std::collections::HashMap;
+
+use crate::expr::{Expr, Graph, Node, Symbol};
+use crate::model::{Default, Model, Parameter};
+
+/// Where values come from.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Kind {
+    /// Numbers near 1, whatever they stand for: the best conditioned.
+    Plain,
+    /// Parameters within their declared ranges or at their defaults, motions of millimetres.
+    Declared,
+}
+
+/// A value for every leaf.
+#[derive(Clone, Copy)]
+pub struct Point<'a> {
+    model: &'a Model,
+    /// Where the values come from.
+    pub kind: Kind,
+    seed: u64,
+    /// The seed of all that is no parameter, so that one parameter set can be seen in several motions.
+    motion: u64,
+}
+
+impl<'a> Point<'a> {
+    /// One of endlessly many points.
+    pub fn new(model: &'a Model, kind: Kind, seed: u64) -> Point<'a> {
+        Point {
+            model,
+            kind,
+            seed,
+            motion: seed,
+        }
+    }
+
+    /// The same parameters in another motion.
+    pub fn moved(self, motion: u64) -> Point<'a> {
+        Point { motion, ..self }
+    }
+
+    /// The value of a leaf.
+    pub fn leaf(&self, symbol: Symbol) -> f64 {
+        match symbol {
+            Symbol::Parameter(index) => self.parameter(index),
+            _ => {
+                let scale = if self.kind == Kind::Plain { 2.0 } else { 0.1 };
+                scale * (2.0 * uniform(self.motion, tag(symbol)) - 1.0)
+            }
+        }
+    }
+
+    fn parameter(&self, index: u16) -> f64 {
+        let chance = uniform(self.seed, tag(Symbol::Parameter(index)));
+        let parameter = &self.model.parameters[usize::from(index)];
+        match (self.kind, parameter.range, parameter.default) {
+            (Kind::Declared, Some((low, high)), _) if low > 0.0 => low * (high / low).powf(chance),
+            (Kind::Declared, Some((low, high)), _) => low + (high - low) * chance,
+            (Kind::Declared, None, Default::Value(value)) => value,
+            (Kind::Declared, None, Default::Same(other)) => self.parameter(other),
+            _ => 0.5 + 1.5 * chance,
+        }
+    }
+}
+
+/// The bounds that a declaration gives to a parameter; its default alone where it has no range.
+pub fn bounds(model: &Model, parameter: &Parameter) -> Option<(f64, f64)> {
+    match (parameter.range, parameter.default) {
+        (Some(range), _) => Some(range),
+        (None, Default::Value(value)) => Some((value, value)),
+        (None, Default::Same(other)) => bounds(model, &model.parameters[usize::from(other)]),
+        (None, Default::None) => None,
+    }
+}
+
+/// Expressions at a point, each computed once.
+pub struct Values<'a> {
+    graph: &'a Graph,
+    leaf: &'a dyn Fn(Symbol) -> f64,
+    known: RefCell<HashMap<Expr, f64>>,
+}
+
+impl<'a> Values<'a> {
+    /// With a value for every leaf.
+    pub fn new(graph: &'a Graph, leaf: &'a dyn Fn(Symbol) -> f64) -> Values<'a> {
+        Values {
+            graph,
+            leaf,
+            known: RefCell::default(),
+        }
+    }
+
+    /// The value of an expression.
+    pub fn of(&self, e: Expr) -> f64 {
+        if let Some(&value) = self.known.borrow().get(&e) {
+            return value;
+        }
+        let value = match self.graph.node(e) {
+            Node::Constant(bits) => f64::from_bits(bits),
+            Node::Symbol(symbol) => (self.leaf)(symbol),
+            Node::Neg(a) => -self.of(a),
+            Node::Add(a, b) => self.of(a) + self.of(b),
+            Node::Sub(a, b) => self.of(a) - self.of(b),
+            Node::Mul(a, b) => self.of(a) * self.of(b),
+            Node::Div(a, b) => self.of(a) / self.of(b),
+            Node::Powi(a, n) => self.of(a).powi(n),
+            Node::Pow(a, b) => self.of(a).powf(self.of(b)),
+            Node::Min(a, b) => self.of(a).min(self.of(b)),
+            Node::Max(a, b) => self.of(a).max(self.of(b)),
+            Node::Call(f, a) => f.value(self.of(a)),
+            Node::Select(test, a, b) => self.of(if self.of(test) > 0.0 { a } else { b }),
+        };
+        self.known.borrow_mut().insert(e, value);
+        value
+    }
+}
+
+/// A number for a leaf, so that equal leaves have equal chances.
+fn tag(symbol: Symbol) -> u64 {
+    let (kind, first, second) = match symbol {
+        Symbol::Parameter(index) => (1, index, 0),
+        Symbol::Stretch(link) => (2, link.0, 0),
+        Symbol::Rate(link) => (3, link.0, 0),
+        Symbol::Inner(link, index) => (4, link.0, index),
+        _ => (5, 0, 0),
+    };
+    (kind << 32) | (u64::from(first) << 16) | u64::from(second)
+}
+
+/// A number between 0 and 1 (splitmix64 of Steele, Lea and Flood, 2014).
+pub fn uniform(seed: u64, tag: u64) -> f64 {
+    let mut z = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) ^ tag.wrapping_mul(0xD1B5_4A32_D192_ED03);
+    z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+    ((z ^ (z >> 31)) >> 11) as f64 / (1u64 << 53) as f64
+}

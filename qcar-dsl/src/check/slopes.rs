@@ -1,0 +1,107 @@
+//! The slopes of the laws: how the force of each link grows with its stretch, its rate and its inner states.
+
+use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
+use crate::model::{Model, Term};
+
+/// A law in its own terms.
+pub struct Slopes {
+    /// The force but for what inerters add.
+    pub force: Expr,
+    /// ∂force/∂s
+    pub stiffness: Expr,
+    /// ∂force/∂v
+    pub damping: Expr,
+    /// The factor of dv/dt.
+    pub inertance: Expr,
+    /// The inner states.
+    pub inner: Vec<InnerSlopes>,
+    /// The slopes depend on the motion: the law is not linear.
+    pub varies: bool,
+}
+
+impl Slopes {
+    /// Every expression.
+    pub fn all(&self) -> Vec<Expr> {
+        let inner = self.inner.iter().flat_map(InnerSlopes::all);
+        [self.stiffness, self.damping, self.inertance]
+            .into_iter()
+            .chain(inner)
+            .collect()
+    }
+}
+
+impl InnerSlopes {
+    fn all(&self) -> Vec<Expr> {
+        [&[self.force, self.by_stretch, self.by_rate], self.by_inner.as_slice()].concat()
+    }
+}
+
+/// An inner state in terms of its law.
+pub struct InnerSlopes {
+    /// ∂force/∂z
+    pub force: Expr,
+    /// ∂(dz/dt)/∂s
+    pub by_stretch: Expr,
+    /// ∂(dz/dt)/∂v
+    pub by_rate: Expr,
+    /// ∂(dz/dt)/∂z of each state.
+    pub by_inner: Vec<Expr>,
+}
+
+/// The slopes of every link, in the order of the model.
+pub fn slopes(model: &Model, g: &mut Graph) -> Vec<Slopes> {
+    (0..model.links.len() as u16)
+        .map(|link| of_link(model, g, LinkId(link)))
+        .collect()
+}
+
+fn of_link(model: &Model, g: &mut Graph, id: LinkId) -> Slopes {
+    let law = &model.links[usize::from(id.0)].law;
+    let (force, inertance) = summed(&law.terms, g, id);
+    let by = |g: &mut Graph, e: Expr, leaf: Symbol| Differential::by(g, leaf).of(g, e);
+    let states: Vec<Symbol> = (0..law.inner.len() as u16)
+        .map(|index| Symbol::Inner(id, index))
+        .collect();
+    let inner = law.inner.iter().zip(&states).map(|(inner, &state)| InnerSlopes {
+        force: by(g, force, state),
+        by_stretch: by(g, inner.rate, Symbol::Stretch(id)),
+        by_rate: by(g, inner.rate, Symbol::Rate(id)),
+        by_inner: states.iter().map(|&other| by(g, inner.rate, other)).collect(),
+    });
+    let inner = inner.collect();
+    let (stiffness, damping) = (by(g, force, Symbol::Stretch(id)), by(g, force, Symbol::Rate(id)));
+    let mut slopes = Slopes {
+        force,
+        stiffness,
+        damping,
+        inertance,
+        inner,
+        varies: false,
+    };
+    slopes.varies = g
+        .symbols(slopes.all())
+        .iter()
+        .any(|leaf| !matches!(leaf, Symbol::Parameter(_)));
+    slopes
+}
+
+/// The force of terms but for what inerters add, and the sum of the inerters.
+pub fn summed(terms: &[Term], g: &mut Graph, id: LinkId) -> (Expr, Expr) {
+    let (s, v) = (g.symbol(Symbol::Stretch(id)), g.symbol(Symbol::Rate(id)));
+    let (mut force, mut inertance) = (g.constant(0.0), g.constant(0.0));
+    for &term in terms {
+        match term {
+            Term::Inerter(b) => inertance = g.add(inertance, b),
+            Term::Spring(k) => {
+                let term = g.mul(k, s);
+                force = g.add(force, term);
+            }
+            Term::Damper(c) => {
+                let term = g.mul(c, v);
+                force = g.add(force, term);
+            }
+            Term::Force(law) => force = g.add(force, law),
+        }
+    }
+    (force, inertance)
+}

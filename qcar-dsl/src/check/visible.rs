@@ -1,0 +1,136 @@
+//! What an output can see: a parameter that changes no response, or only together with others, cannot be estimated
+//! from any measurement. Decided by the rank of the derivatives of all responses at points that look random.
+
+use std::collections::BTreeSet;
+
+use super::Scratch;
+use super::rank::{null_space_of_scale, support};
+use super::response::{Seen, sensitivities};
+use super::sample::{Kind, Point};
+use crate::diagnostic::{Diagnostic, visibility};
+use crate::expr::{Expr, Symbol};
+use crate::model::{Model, Term};
+
+/// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
+struct Set {
+    parameters: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+    scale: f64,
+}
+
+/// Parameters that no output sees, and groups of which it sees a combination only.
+pub fn parameters_are_seen(scratch: &Scratch) -> Vec<Diagnostic> {
+    let estimated = estimated(scratch);
+    let set = |kind, seed| set(scratch, Point::new(scratch.model, kind, seed), &estimated);
+    let first = set(Kind::Plain, 1);
+    let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
+    if hidden.is_empty() || first.rows.is_empty() {
+        return vec![];
+    }
+    // What one set does not see, the others must not see either: a law may be out of its range there.
+    let sets: Vec<Set> = [first, set(Kind::Plain, 2), set(Kind::Declared, 3)].into();
+    let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
+    let groups = groups.filter(|group| sets.iter().all(|set| is_hidden(set, group)));
+    groups
+        .map(|group| describe(scratch.model, &estimated, &group, &sets))
+        .collect()
+}
+
+/// The parameters that a measurement is to tell: not the known ones, and not those that a rolling tyre's law contains,
+/// since rolling over a profile shows more than the responses here do.
+fn estimated(scratch: &Scratch) -> Vec<u16> {
+    let model = scratch.model;
+    let rolling = model.links.iter().flat_map(|link| link.rolling.iter().flatten());
+    let value = |term: &Term| match *term {
+        Term::Spring(e) | Term::Damper(e) | Term::Inerter(e) | Term::Force(e) => e,
+    };
+    let expressions: Vec<Expr> = rolling.map(value).collect();
+    let rolls: BTreeSet<Symbol> = scratch.graph.symbols(expressions);
+    let counts = |index: &u16| {
+        let known = model.parameters[usize::from(*index)].known;
+        !known && !rolls.contains(&Symbol::Parameter(*index))
+    };
+    (0..model.parameters.len() as u16).filter(counts).collect()
+}
+
+fn set(scratch: &Scratch, point: Point, estimated: &[u16]) -> Set {
+    let parameters: Vec<f64> = estimated
+        .iter()
+        .map(|&index| point.leaf(Symbol::Parameter(index)))
+        .collect();
+    let rows: Vec<Vec<f64>> = sensitivities(scratch, point, estimated)
+        .into_iter()
+        .flat_map(|Seen { value, gradient }| {
+            let relative = |part: fn(&super::dual::Complex) -> f64| -> Vec<f64> {
+                gradient
+                    .iter()
+                    .zip(&parameters)
+                    .map(|(by, p)| part(by) * p / value)
+                    .collect()
+            };
+            [relative(|z| z.re), relative(|z| z.im)]
+        })
+        .filter(|row| row.iter().all(|entry| entry.is_finite()) && row.iter().any(|entry| *entry != 0.0))
+        .collect();
+    let scale = rows
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
+    Set {
+        parameters,
+        rows,
+        scale,
+    }
+}
+
+/// Whether the responses at a set leave some change of a group unseen.
+fn is_hidden(set: &Set, group: &[usize]) -> bool {
+    let rows: Vec<Vec<f64>> = set
+        .rows
+        .iter()
+        .map(|row| group.iter().map(|&column| row[column]).collect())
+        .collect();
+    !null_space_of_scale(rows, group.len(), set.scale).is_empty()
+}
+
+fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> Diagnostic {
+    let parameter = |column: &usize| &model.parameters[usize::from(estimated[*column])];
+    let named: Vec<_> = group
+        .iter()
+        .map(parameter)
+        .map(|p| (p.declared.span, p.name.as_str()))
+        .collect();
+    match named.as_slice() {
+        [(span, name)] => visibility::parameter_not_seen(*span, name),
+        _ => visibility::only_together(&named, combination(group, sets, &named).as_deref()),
+    }
+}
+
+/// The combination of two parameters that stays as it is along the unseen change, at every set.
+fn combination(group: &[usize], sets: &[Set], named: &[(crate::source::Span, &str)]) -> Option<String> {
+    let [(_, a), (_, b)] = named else { return None };
+    let unseen = |set: &Set| {
+        let rows = set
+            .rows
+            .iter()
+            .map(|row| group.iter().map(|&column| row[column]).collect())
+            .collect();
+        let null = null_space_of_scale(rows, 2, set.scale);
+        let change = null.first().map_or([0.0; 2], |change| [change[0], change[1]]);
+        let absolute = [
+            change[0] * set.parameters[group[0]],
+            change[1] * set.parameters[group[1]],
+        ];
+        (change[0] / change[1], absolute[0] / absolute[1])
+    };
+    let ratios: Vec<(f64, f64)> = sets.iter().map(unseen).collect();
+    let always = |of: fn(&(f64, f64)) -> f64, ratio: f64| ratios.iter().all(|pair| (of(pair) - ratio).abs() < 1e-5);
+    let (relative, absolute) = (|pair: &(f64, f64)| pair.0, |pair: &(f64, f64)| pair.1);
+    match () {
+        _ if always(relative, -1.0) => Some(format!("{a}*{b}")),
+        _ if always(relative, 1.0) => Some(format!("{a}/{b}")),
+        _ if always(absolute, -1.0) => Some(format!("{a} + {b}")),
+        _ if always(absolute, 1.0) => Some(format!("{a} - {b}")),
+        _ => None,
+    }
+}
