@@ -6,6 +6,7 @@ use nalgebra::Complex;
 use qcar_runtime::campaign::{Parameter, Role};
 use qcar_runtime::fit::observation::{Difference, Pair};
 use qcar_runtime::fit::plan::ChannelWeight;
+use qcar_runtime::fit::quality::{K_MAGNITUDE, K_PHASE, quality};
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::fit::{Fit, Level, Observation, Plan, Setup, Weighting, channels::across_links};
 use qcar_runtime::model::{Channel, Default, Model};
@@ -461,4 +462,51 @@ fn a_lever_gives_no_channel_where_simpler_elements_already_tell() {
     let measured = ["pad", "wheel", "body", "sf"].map(acceleration);
     let channels = across_links(about, &about.excitations[0], &measured);
     assert_eq!(names(&channels.fitted), ["pad_to_wheel", "sf_to_body", "wheel_to_body"]);
+}
+
+#[test]
+fn the_fit_percentage_is_that_of_its_definition() {
+    let frequency = [0.5, 1.0, 2.0, 8.0];
+    let measured = frequency.map(|f| Complex::from_polar(f, -f));
+    let model = measured.map(|value| value * Complex::from_polar(10_f64.powf(0.05), 0.1));
+    let quality = quality(&frequency, &model, &measured);
+    assert!((quality.error_magnitude - 1.0).abs() < 1e-12 && (quality.error_phase - 0.1).abs() < 1e-12);
+    assert!((quality.fit_magnitude - 100.0 * (-K_MAGNITUDE).exp()).abs() < 1e-9);
+    assert!((quality.fit_phase - 100.0 * (-0.1 * K_PHASE).exp()).abs() < 1e-9);
+    // From 0.5 to 8 Hz are four octaves; the last line stands for the nearer half of the two below it.
+    let last = [measured[0], measured[1], measured[2], model[3]];
+    assert!((self::quality(&frequency, &last, &measured).error_magnitude - 0.25).abs() < 1e-12);
+}
+
+#[test]
+fn several_starts_find_the_minimum_that_one_misses() {
+    // One channel alone, and a start from which the powertrain's resonance is taken for another.
+    let model = chain(true);
+    let only = channel("pad_to_body", "body", "pad");
+    let (frequency, truth) = (grid(60), support::truth(&CHAIN));
+    let value = frequency.iter().map(|&f| exact(&model, &truth, &only, f)).collect();
+    let levels = [Level {
+        observations: vec![observation(&only, &frequency, value, 0.0)],
+        ..clean(&model)
+    }];
+    let mut random = Random(84);
+    let mut lost = plan();
+    for (parameter, truth) in lost.parameters.iter_mut().zip(CHAIN).skip(1) {
+        parameter.value = truth.2 * 0.06 * 130_f64.powf(random.uniform());
+        parameter.range = Some((0.05 * truth.2, 8.0 * truth.2));
+    }
+    let one = run(
+        &model,
+        &Plan {
+            starts: 1,
+            ..lost.clone()
+        },
+        &levels,
+    );
+    assert!(one.converged && one.cost > 0.1, "{:?} at {}", one.stopped, one.cost);
+    let many = run(&model, &Plan { starts: 16, ..lost }, &levels);
+    assert_recovered(&many, 1e-4);
+    assert!(many.minima.len() > 1);
+    assert!(many.minima.windows(2).all(|pair| pair[0].cost < pair[1].cost));
+    assert!(many.minima.iter().map(|minimum| minimum.starts).sum::<usize>() <= 16);
 }
