@@ -115,6 +115,19 @@ fn state(model: &Checked, symbol: Symbol) -> Option<State> {
             kind: StateKind::Inner,
         });
     }
+    if let Symbol::Offset(c) = symbol {
+        let c = coordinate(model, c);
+        let name = format!("{}_{}_offset", c.direction.0, c.name);
+        let (location, axis) = (c.name.clone(), c.direction.0.clone());
+        return Some(State {
+            symbol,
+            name,
+            unit: unit(c, 0),
+            location,
+            axis,
+            kind: StateKind::Position,
+        });
+    }
     let (c, quantity) = moving(symbol)?;
     let kind = if quantity == Quantity::Position {
         StateKind::Position

@@ -26,6 +26,8 @@ pub enum Symbol {
     Parameter(u16),
     /// The position of a coordinate, m or rad.
     Position(CoordinateId),
+    /// The position of a massless node relative to the one that leads its group, see `motion`.
+    Offset(CoordinateId),
     /// The velocity of a coordinate, m/s or rad/s.
     Velocity(CoordinateId),
     /// The acceleration of a coordinate; of a prescribed motion it is an input.

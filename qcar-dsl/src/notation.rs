@@ -190,6 +190,8 @@ impl<'a> Writer<'a> {
         match symbol {
             Symbol::Parameter(i) => self.identifier(&model.parameters[i as usize].name),
             Symbol::Position(c) => self.motion(c, 0),
+            Symbol::Offset(c) if self.notation == Notation::Latex => format!(r"\Delta {}", self.motion(c, 0)),
+            Symbol::Offset(c) => format!("Δ{}", self.motion(c, 0)),
             Symbol::Velocity(c) => self.motion(c, 1),
             Symbol::Acceleration(c) => self.motion(c, 2),
             Symbol::Stretch(l) => self.of_link("s", l),

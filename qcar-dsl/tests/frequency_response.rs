@@ -124,7 +124,7 @@ proptest! {
 
     #[test]
     fn random_models_respond_as_their_matrices_say(plan in plan(), omega in 0.1..3.0f64) {
-        let (model, p) = plan.build();
+        let (model, p) = plan.build_with_groups();
         judge(model, &p, &[omega], 1e-4);
     }
 
@@ -132,7 +132,7 @@ proptest! {
     /// blind to a common rise.
     #[test]
     fn a_slow_road_lifts_everything_by_as_much(plan in plan()) {
-        let (model, p) = plan.build();
+        let (model, p) = plan.build_with_groups();
         let evaluator = Evaluator::new(&derive(model.clone()));
         let got = evaluate(&evaluator, 0, &p, &[1e-9]);
         for (y, output) in model.outputs.iter().enumerate() {

@@ -109,6 +109,15 @@ type Ends = (CoordinateId, CoordinateId, Parts, Option<CoordinateId>);
 impl Plan {
     /// The model and its parameters.
     pub fn build(&self) -> (Checked, Vec<f64>) {
+        self.build_with(hold_groups)
+    }
+
+    /// The same, where dampers may join nodes to each other and to nothing else.
+    pub fn build_with_groups(&self) -> (Checked, Vec<f64>) {
+        self.build_with(level_groups)
+    }
+
+    fn build_with(&self, hold: impl Fn(&Builder, &mut Vec<Ends>)) -> (Checked, Vec<f64>) {
         let mut b = Builder::new("random");
         let road = b.coordinate("z", "road", CoordinateKind::Road);
         b.gravity("z");
@@ -144,7 +153,8 @@ impl Plan {
                 .map(|(i, j, parts)| (*i.get(&coordinates), *j.get(&coordinates), *parts, None)),
         );
         links.retain(|(upper, lower, ..)| upper != lower);
-        hold_nodes(&b, &mut links);
+        part_nodes(&b, &mut links);
+        hold(&b, &mut links);
         for (n, &(upper, lower, parts, lever)) in links.iter().enumerate() {
             let (terms, inner) = terms(&mut b, n, parts);
             let mut stretch = b.between(upper, lower);
@@ -179,21 +189,43 @@ impl Plan {
     }
 }
 
-/// Makes random links solvable. An inerter between two nodes would give two accelerations but one balance; a damper
-/// between two nodes leaves their common motion free unless a damper holds one of them.
-fn hold_nodes(b: &Builder, links: &mut Vec<Ends>) {
+fn nodes(b: &Builder, &(upper, lower, _, lever): &Ends) -> Vec<CoordinateId> {
     let node = |c: &CoordinateId| b.model.coordinates[c.0 as usize].kind == CoordinateKind::Node;
+    [Some(upper), Some(lower), lever]
+        .into_iter()
+        .flatten()
+        .filter(node)
+        .collect()
+}
+
+/// An inerter between two nodes would give two accelerations but one balance.
+fn part_nodes(b: &Builder, links: &mut [Ends]) {
+    for link in links {
+        if link.2 == Parts::SpringDamperInerter && nodes(b, link).len() > 1 {
+            link.2 = Parts::SpringDamper;
+        }
+    }
+}
+
+/// Gives nodes that a damper joins a damper to the road as well.
+fn hold_groups(b: &Builder, links: &mut Vec<Ends>) {
     for n in 0..links.len() {
-        let (upper, lower, parts, lever) = links[n];
-        let nodes: Vec<_> = [Some(upper), Some(lower), lever]
-            .into_iter()
-            .flatten()
-            .filter(node)
-            .collect();
-        if nodes.len() > 1 && matches!(parts, Parts::SpringDamper | Parts::SpringDamperInerter) {
-            links[n].2 = Parts::SpringDamper;
-            let road = CoordinateId(0);
-            links.extend(nodes.into_iter().map(|c| (c, road, Parts::SpringDamper, None)));
+        let nodes = nodes(b, &links[n]);
+        if nodes.len() > 1 && links[n].2 == Parts::SpringDamper {
+            links.extend(
+                nodes
+                    .into_iter()
+                    .map(|c| (c, CoordinateId(0), Parts::SpringDamper, None)),
+            );
+        }
+    }
+}
+
+/// Takes the levers from dampers between nodes, so that what moves freely moves as one.
+fn level_groups(b: &Builder, links: &mut Vec<Ends>) {
+    for link in links {
+        if link.2 == Parts::SpringDamper && nodes(b, link).len() > 1 {
+            link.3 = None;
         }
     }
 }
