@@ -34,10 +34,12 @@ pub mod law;
 pub mod motion;
 // Equations to matrices and their parameter Jacobians.
 pub mod linear;
-// Frequency response by sparse elimination.
+// Complex expressions.
 pub mod complex;
-pub mod response;
+// What a link is at one frequency.
 pub mod stiffness;
+// Frequency response by sparse elimination.
+pub mod response;
 // Names for what stands at each place.
 pub mod describe;
 // Expressions to straight-line programs.
