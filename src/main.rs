@@ -1,3 +1,36 @@
 //! The command line of qcar.
 
-fn main() {}
+use std::io::{ErrorKind, Write};
+use std::process::ExitCode;
+
+use clap::Parser;
+use qcar::cli::Cli;
+use qcar::failure::Failure;
+
+fn main() -> ExitCode {
+    match Cli::parse().run() {
+        Ok(text) => print(&text, 0),
+        Err(failure) => {
+            let status = failure.exit_status();
+            match failure {
+                Failure::Finding(text) => print(&text, status),
+                Failure::Input(text) => {
+                    eprintln!("{}", text.trim_end());
+                    ExitCode::from(status)
+                }
+            }
+        }
+    }
+}
+
+/// Writes to standard output; a reader that has gone away, such as `head`, has what it wanted.
+fn print(text: &str, status: u8) -> ExitCode {
+    let mut out = std::io::stdout().lock();
+    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            eprintln!("cannot write to standard output: {error}");
+            ExitCode::from(2)
+        }
+        _ => ExitCode::from(status),
+    }
+}

@@ -1,0 +1,107 @@
+//! Models by the name of a shipped one or by the path of a file.
+
+use std::ops::Deref;
+use std::path::Path;
+
+use models::Shipped;
+use qcar_dsl::compile::compile as compile_text;
+use qcar_dsl::diagnostic::Report;
+use qcar_dsl::disk::compile_file;
+use qcar_dsl::schedule::Compiled;
+use qcar_dsl::source::Source;
+use qcar_runtime::error::{Place, Problem};
+use qcar_runtime::model::Model;
+
+use crate::evaluated::Evaluated;
+use crate::failure::{Failure, flag};
+
+/// A model that can run: compiled into this program, or interpreted.
+pub enum Loaded {
+    /// A shipped one.
+    Shipped(&'static dyn Model),
+    /// One from a file.
+    File(Box<Evaluated>),
+}
+
+impl Deref for Loaded {
+    type Target = dyn Model;
+
+    fn deref(&self) -> &Self::Target {
+        match self {
+            Loaded::Shipped(model) => *model,
+            Loaded::File(model) => &**model,
+        }
+    }
+}
+
+/// The names of the shipped models, in alphabetical order.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    models::all().iter().map(|shipped| shipped.name)
+}
+
+/// A model that can run.
+///
+/// # Errors
+/// As [`compiled`].
+pub fn load(model: &str) -> Result<Loaded, Failure> {
+    match models::find(model) {
+        Some(shipped) => Ok(Loaded::Shipped(shipped.model)),
+        None => Ok(Loaded::File(Box::new(Evaluated::new(&compiled(model)?)))),
+    }
+}
+
+/// All that the compiler derives of a model.
+///
+/// # Errors
+/// As [`compile`], and a model that the compiler refuses.
+pub fn compiled(model: &str) -> Result<Compiled, Failure> {
+    compile(model)?.map_err(|report| Failure::Input(report.to_string()))
+}
+
+/// Compiles a shipped model or a file, or gives the compiler's report.
+///
+/// # Errors
+/// A name that is not shipped and is no file, or a file that cannot be read.
+pub fn compile(model: &str) -> Result<Result<Compiled, Report>, Failure> {
+    match models::find(model) {
+        Some(shipped) => Ok(compile_shipped(shipped)),
+        None if looks_like_a_path(model) => {
+            let from_disk = compile_file(model).map_err(|reason| {
+                let remedy = "correct the path, or put the file there";
+                Problem::new(Path::new(model), Place::File, reason, "a model file", remedy)
+            })?;
+            Ok(from_disk.compiled)
+        }
+        None => Err(unknown(model).into()),
+    }
+}
+
+fn compile_shipped(shipped: &Shipped) -> Result<Compiled, Report> {
+    let source = Source {
+        name: shipped.file.into(),
+        text: shipped.text.into(),
+    };
+    compile_text(source, &|_, written| {
+        let family = shipped.families.iter().find(|(path, _)| *path == written);
+        let (path, text) = family.ok_or("it is not shipped with the model")?;
+        Ok(Source {
+            name: path.to_string(),
+            text: text.to_string(),
+        })
+    })
+}
+
+fn looks_like_a_path(model: &str) -> bool {
+    model.contains(['/', '\\', '.'])
+}
+
+fn unknown(model: &str) -> Problem {
+    let known: Vec<_> = names().map(|name| format!("`{name}`")).collect();
+    let remedy = format!("choose among {}, or give the path of a file", known.join(", "));
+    flag(
+        "MODEL",
+        format!("`{model}`"),
+        "a shipped model or a model file",
+        &remedy,
+    )
+}

@@ -1,0 +1,42 @@
+//! The flags: what each verb takes, with an example.
+
+use clap::{Parser, Subcommand};
+
+use crate::failure::Failure;
+use crate::verbs::{check, fit, frf, matrices, score, show};
+
+/// Quarter-car axle models: compile them, fit them to rig data
+///
+/// A MODEL is the name of a shipped model (`qcar show` lists them) or the path of a model file.
+/// Results go to standard output, progress and errors to standard error.
+/// The exit status is 0 when all is well, 1 for a finding, 2 for an input that cannot be used.
+#[derive(Parser)]
+#[command(name = "qcar", version, verbatim_doc_comment)]
+pub struct Cli {
+    #[command(subcommand)]
+    verb: Verb,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Check(check::Arguments),
+    Show(show::Arguments),
+    Matrices(matrices::Arguments),
+    Frf(frf::Arguments),
+    Fit(fit::Arguments),
+    Score(score::Arguments),
+}
+
+impl Cli {
+    /// Does what the flags say and gives the text for standard output.
+    pub fn run(self) -> Result<String, Failure> {
+        match self.verb {
+            Verb::Check(arguments) => check::run(&arguments),
+            Verb::Show(arguments) => show::run(&arguments),
+            Verb::Matrices(arguments) => matrices::run(&arguments),
+            Verb::Frf(arguments) => frf::run(&arguments),
+            Verb::Fit(arguments) => fit::run(&arguments),
+            Verb::Score(arguments) => score::run(&arguments),
+        }
+    }
+}

@@ -1,0 +1,55 @@
+//! Why a verb stops, and the exit status that says so.
+
+use std::fmt;
+use std::path::Path;
+
+use qcar_runtime::error::{InputError, Place, Problem};
+
+/// Why a verb stops.
+#[derive(Debug)]
+pub enum Failure {
+    /// The work is done and something is wrong with what was looked at: the text for standard output. Exit status 1.
+    Finding(String),
+    /// What was given cannot be used: the text for standard error. Exit status 2.
+    Input(String),
+}
+
+impl Failure {
+    /// What the shell sees.
+    pub fn exit_status(&self) -> u8 {
+        match self {
+            Failure::Finding(_) => 1,
+            Failure::Input(_) => 2,
+        }
+    }
+}
+
+impl From<InputError> for Failure {
+    fn from(error: InputError) -> Self {
+        Failure::Input(error.to_string())
+    }
+}
+
+impl From<Problem> for Failure {
+    fn from(problem: Problem) -> Self {
+        InputError::from(problem).into()
+    }
+}
+
+/// A problem with a flag.
+pub fn flag(name: &str, found: impl fmt::Display, expected: &str, remedy: &str) -> Problem {
+    Problem::new(
+        "command line",
+        Place::Name(name.into()),
+        found.to_string(),
+        expected,
+        remedy,
+    )
+}
+
+/// Reads a text file, or says why it cannot.
+pub fn read_text(file: &Path) -> Result<String, Problem> {
+    let remedy = "correct the path, or put the file there";
+    std::fs::read_to_string(file)
+        .map_err(|e| Problem::new(file, Place::File, e.to_string(), "a readable text file", remedy))
+}

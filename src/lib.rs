@@ -1,0 +1,25 @@
+//! The command line of qcar as a library, so that tests and benchmarks can reach its parts.
+//!
+//! The modules stand in the order of the data; a file uses only what is declared above it.
+
+pub mod failure;
+// Results for people, programs and eyes.
+pub mod table;
+// The same for other programs.
+pub mod json;
+// And drawn.
+pub mod figure;
+// Signs of life meanwhile.
+pub mod progress;
+// Parameter values from files and flags.
+pub mod parameters;
+// A model, compiled in or read at run time.
+pub mod evaluated;
+// Models by name or path.
+pub mod catalogue;
+// Dense and named matrices.
+pub mod state_space;
+// What the user can ask for.
+pub mod verbs;
+// The list of it.
+pub mod cli;

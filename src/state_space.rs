@@ -1,0 +1,276 @@
+//! The state-space form of a model for one parameter set, dense and named, for people and for JSON.
+//!
+//! A nonlinear model is linearised at rest: all states and inputs zero.
+
+use std::collections::BTreeMap;
+
+use qcar_runtime::model::{
+    About, Input, InputKind, Matrix, Model, Output, Quantity, Signal, SignalKind, State, StateKind,
+};
+use qcar_runtime::response::parameters::Values;
+use serde::Serialize;
+
+/// Rows of numbers.
+pub type Rows = Vec<Vec<f64>>;
+
+/// A, B, C and D with their parameter Jacobians, and the names of rows and columns.
+#[derive(Debug, Serialize)]
+pub struct StateSpace {
+    /// The model's name.
+    pub model: String,
+    /// True where the matrices hold for any state, false where they are a linearisation at rest.
+    pub linear: bool,
+    /// Rows and columns of A, rows of B, columns of C.
+    pub states: Vec<StateName>,
+    /// Columns of B and D.
+    pub inputs: Vec<InputName>,
+    /// Rows of C and D.
+    pub outputs: Vec<OutputName>,
+    /// Every parameter but those that take their value from another one, in the order of the model.
+    pub parameters: Vec<String>,
+    /// The value of every parameter, SI.
+    pub values: BTreeMap<String, f64>,
+    /// A, B, C, D.
+    #[serde(flatten)]
+    pub matrices: BTreeMap<String, Rows>,
+    /// dA, dB, dC, dD: the matrix of derivatives for each parameter.
+    #[serde(flatten)]
+    pub sensitivities: BTreeMap<String, BTreeMap<String, Rows>>,
+}
+
+/// A state: `mass` for what moves, `link` for an inner state.
+#[derive(Debug, Serialize)]
+pub struct StateName {
+    /// As in equations.
+    pub name: String,
+    /// The mass or node that moves.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass: Option<String>,
+    /// The link whose inner state it is.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub link: Option<String>,
+    /// `z`, `x`.
+    pub axis: String,
+    /// `position`, `velocity` or `inner`.
+    pub kind: &'static str,
+    /// Unit.
+    pub unit: String,
+}
+
+/// An input.
+#[derive(Debug, Serialize)]
+pub struct InputName {
+    /// The road, motion, force or gravity.
+    pub name: String,
+    /// As in equations.
+    pub variable: String,
+    /// `z`, `x`.
+    pub axis: String,
+    /// `road`, `road_rate`, `road_acceleration`, the same of `motion`, `force` or `gravity`.
+    pub kind: &'static str,
+    /// Unit.
+    pub unit: String,
+}
+
+/// An output.
+#[derive(Debug, Serialize)]
+pub struct OutputName {
+    /// As declared.
+    pub name: String,
+    /// The mass, node or link that is measured.
+    pub location: String,
+    /// `z`, `x`.
+    pub axis: String,
+    /// `position`, `velocity`, `acceleration`, `force` or `stretch`.
+    pub kind: &'static str,
+    /// Unit.
+    pub unit: String,
+}
+
+/// Evaluates a model, along one axis or along all.
+pub fn state_space(model: &dyn Model, values: &Values, axis: Option<&str>) -> StateSpace {
+    let about = model.about();
+    let p = values.as_slice();
+    let keep = Kept::new(about, axis);
+    let names = about.parameters.iter().map(|parameter| parameter.name.to_string());
+    let leaders = (0..p.len()).filter(|&k| values.leader(k) == k);
+    StateSpace {
+        model: about.name.to_string(),
+        linear: about.linear,
+        states: keep.states.iter().map(|&at| state_name(&about.states[at])).collect(),
+        inputs: keep
+            .inputs
+            .iter()
+            .map(|&at| input_name(about, &about.inputs[at]))
+            .collect(),
+        outputs: keep.outputs.iter().map(|&at| output_name(&about.outputs[at])).collect(),
+        parameters: leaders.map(|k| about.parameters[k].name.to_string()).collect(),
+        values: names.zip(p.iter().copied()).collect(),
+        matrices: matrices(model, p, &keep),
+        sensitivities: sensitivities(model, values, &keep),
+    }
+}
+
+/// The places of the states, inputs and outputs that are shown.
+struct Kept {
+    states: Vec<usize>,
+    inputs: Vec<usize>,
+    outputs: Vec<usize>,
+}
+
+impl Kept {
+    fn new(about: &About, axis: Option<&str>) -> Self {
+        let wanted = |of: &str| axis.is_none_or(|axis| axis == of);
+        Kept {
+            states: (0..about.states.len())
+                .filter(|&i| wanted(&about.states[i].axis))
+                .collect(),
+            inputs: (0..about.inputs.len())
+                .filter(|&i| wanted(&about.inputs[i].axis))
+                .collect(),
+            outputs: (0..about.outputs.len())
+                .filter(|&i| wanted(&about.outputs[i].signal.axis))
+                .collect(),
+        }
+    }
+
+    fn rows_and_columns(&self, matrix: Matrix) -> (&[usize], &[usize]) {
+        match matrix {
+            Matrix::A => (&self.states, &self.states),
+            Matrix::B => (&self.states, &self.inputs),
+            Matrix::C => (&self.outputs, &self.states),
+            Matrix::D => (&self.outputs, &self.inputs),
+        }
+    }
+
+    fn zeros(&self, matrix: Matrix) -> Rows {
+        let (rows, columns) = self.rows_and_columns(matrix);
+        vec![vec![0.0; columns.len()]; rows.len()]
+    }
+
+    /// Where an entry of the whole matrix is among what is shown.
+    fn place(&self, matrix: Matrix, row: u16, column: u16) -> Option<(usize, usize)> {
+        let (rows, columns) = self.rows_and_columns(matrix);
+        Some((
+            rows.binary_search(&row.into()).ok()?,
+            columns.binary_search(&column.into()).ok()?,
+        ))
+    }
+}
+
+const ALL: [(Matrix, &str); 4] = [(Matrix::A, "A"), (Matrix::B, "B"), (Matrix::C, "C"), (Matrix::D, "D")];
+
+fn matrices(model: &dyn Model, p: &[f64], keep: &Kept) -> BTreeMap<String, Rows> {
+    let about = model.about();
+    let (x, u) = at_rest(about);
+    let mut nonzeros = vec![0.0; about.matrices.len()];
+    model.matrices(p, &x, &u, &mut nonzeros);
+    let dense = ALL.map(|(matrix, name)| {
+        let mut rows = keep.zeros(matrix);
+        for (entry, value) in about
+            .matrices
+            .iter()
+            .zip(&nonzeros)
+            .filter(|(entry, _)| entry.matrix == matrix)
+        {
+            if let Some((row, column)) = keep.place(matrix, entry.row, entry.column) {
+                rows[row][column] = *value;
+            }
+        }
+        (name.to_string(), rows)
+    });
+    BTreeMap::from(dense)
+}
+
+/// The derivative by a parameter includes what it moves through those that take their value from it.
+fn sensitivities(model: &dyn Model, values: &Values, keep: &Kept) -> BTreeMap<String, BTreeMap<String, Rows>> {
+    let about = model.about();
+    let (x, u) = at_rest(about);
+    let mut nonzeros = vec![0.0; about.sensitivities.len()];
+    model.sensitivities(values.as_slice(), &x, &u, &mut nonzeros);
+    let leaders = (0..about.parameters.len()).filter(|&k| values.leader(k) == k);
+    let dense = ALL.map(|(matrix, name)| {
+        let mut of: BTreeMap<usize, Rows> = leaders.clone().map(|k| (k, keep.zeros(matrix))).collect();
+        let entries = about.sensitivities.iter().zip(&nonzeros);
+        for ((entry, parameter), value) in entries.filter(|((entry, _), _)| entry.matrix == matrix) {
+            let rows = of.get_mut(&values.leader(usize::from(*parameter)));
+            if let (Some(rows), Some((row, column))) = (rows, keep.place(matrix, entry.row, entry.column)) {
+                rows[row][column] += *value;
+            }
+        }
+        let named = of
+            .into_iter()
+            .map(|(k, rows)| (about.parameters[k].name.to_string(), rows));
+        (format!("d{name}"), named.collect())
+    });
+    BTreeMap::from(dense)
+}
+
+fn at_rest(about: &About) -> (Vec<f64>, Vec<f64>) {
+    (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()])
+}
+
+fn state_name(state: &State) -> StateName {
+    let location = Some(state.location.to_string());
+    let (mass, link, kind) = match state.kind {
+        StateKind::Position => (location, None, "position"),
+        StateKind::Velocity => (location, None, "velocity"),
+        StateKind::Inner => (None, location, "inner"),
+    };
+    StateName {
+        name: state.name.to_string(),
+        mass,
+        link,
+        axis: state.axis.to_string(),
+        kind,
+        unit: state.unit.to_string(),
+    }
+}
+
+fn input_name(about: &About, input: &Input) -> InputName {
+    let (name, kind) = match input.kind {
+        InputKind::Gravity => (&input.name, "gravity"),
+        InputKind::Force(at) => (&about.excitations[usize::from(at)].name, "force"),
+        InputKind::Motion(at, quantity) => {
+            let motion = &about.excitations[usize::from(at)];
+            (&motion.name, motion_kind(motion.road, quantity))
+        }
+    };
+    InputName {
+        name: name.to_string(),
+        variable: input.name.to_string(),
+        axis: input.axis.to_string(),
+        kind,
+        unit: input.unit.to_string(),
+    }
+}
+
+fn motion_kind(road: bool, quantity: Quantity) -> &'static str {
+    match (road, quantity) {
+        (true, Quantity::Position) => "road",
+        (true, Quantity::Velocity) => "road_rate",
+        (true, Quantity::Acceleration) => "road_acceleration",
+        (false, Quantity::Position) => "motion",
+        (false, Quantity::Velocity) => "motion_rate",
+        (false, Quantity::Acceleration) => "motion_acceleration",
+    }
+}
+
+fn output_name(output: &Output) -> OutputName {
+    let Signal { location, axis, kind } = &output.signal;
+    let kind = match kind {
+        SignalKind::Motion(Quantity::Position) => "position",
+        SignalKind::Motion(Quantity::Velocity) => "velocity",
+        SignalKind::Motion(Quantity::Acceleration) => "acceleration",
+        SignalKind::Force => "force",
+        SignalKind::Stretch => "stretch",
+    };
+    let [name, location, axis, unit] = [&output.name, location, axis, &output.unit].map(|text| text.to_string());
+    OutputName {
+        name,
+        location,
+        axis,
+        kind,
+        unit,
+    }
+}

@@ -1,0 +1,111 @@
+//! Tables and numbers as text for people.
+
+/// Rows under a heading, columns aligned: text to the left, numbers to the right.
+pub struct Table {
+    rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// A table with these headings.
+    pub fn new<const N: usize>(headings: [&str; N]) -> Self {
+        Table {
+            rows: vec![headings.map(String::from).into()],
+        }
+    }
+
+    /// A table with any number of headings.
+    pub fn with_headings(headings: Vec<String>) -> Self {
+        Table { rows: vec![headings] }
+    }
+
+    /// Adds a row, with as many cells as there are headings.
+    pub fn row(&mut self, cells: Vec<String>) {
+        debug_assert_eq!(cells.len(), self.rows[0].len());
+        self.rows.push(cells);
+    }
+
+    /// The text, each line ended.
+    pub fn text(&self) -> String {
+        let columns = 0..self.rows[0].len();
+        let shapes: Vec<_> = columns.map(|at| (self.width(at), self.is_numeric(at))).collect();
+        self.rows.iter().map(|row| line(row, &shapes)).collect()
+    }
+
+    fn width(&self, column: usize) -> usize {
+        self.rows
+            .iter()
+            .map(|row| row[column].chars().count())
+            .max()
+            .unwrap_or(0)
+    }
+
+    fn is_numeric(&self, column: usize) -> bool {
+        let mut cells = self.rows[1..]
+            .iter()
+            .map(|row| row[column].as_str())
+            .filter(|cell| !matches!(*cell, "" | "-"));
+        cells.all(|cell| cell.parse::<f64>().is_ok())
+    }
+}
+
+fn line(row: &[String], shapes: &[(usize, bool)]) -> String {
+    let cells = row.iter().zip(shapes).map(|(cell, &(width, numeric))| match numeric {
+        true => format!("{cell:>width$}"),
+        false => format!("{cell:<width$}"),
+    });
+    format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+}
+
+/// A number with so many significant digits, plain where that is short, and without trailing zeros.
+pub fn number(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value.abs());
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let (mantissa, exponent) = scientific.split_once('e').expect("`{:e}` writes an exponent");
+    let exponent: i32 = exponent.parse().expect("`{:e}` writes a whole exponent");
+    if (-4..7).contains(&exponent) {
+        let decimals = usize::try_from(digits as i32 - 1 - exponent).unwrap_or(0);
+        trimmed(&format!("{:.decimals$}", scientific.parse::<f64>().unwrap_or(value)))
+    } else {
+        format!("{}e{exponent}", trimmed(mantissa))
+    }
+}
+
+fn trimmed(text: &str) -> String {
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => text.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Table, number};
+
+    #[test]
+    fn numbers_keep_their_significant_digits() {
+        let cases = [
+            (0.0, "0"),
+            (-0.0, "0"),
+            (28110.0, "28110"),
+            (1234567.0, "1234570"),
+            (-0.0123456789, "-0.0123457"),
+            (1.0, "1"),
+            (6e-7, "6e-7"),
+            (2.43e9, "2.43e9"),
+            (0.99999999, "1"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(number(value, 6), text);
+        }
+    }
+
+    #[test]
+    fn columns_line_up() {
+        let mut table = Table::new(["name", "value"]);
+        table.row(vec!["k".into(), "1".into()]);
+        table.row(vec!["long".into(), "-12.5".into()]);
+        assert_eq!(table.text(), "name  value\nk         1\nlong  -12.5\n");
+    }
+}

@@ -1,0 +1,27 @@
+//! One file a verb: its flags, and what it does with them. A verb gives the text for standard output.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::parameters::Setting;
+
+pub mod check;
+pub mod fit;
+pub mod frf;
+pub mod matrices;
+pub mod score;
+pub mod show;
+
+/// A model and the values of its parameters.
+#[derive(Args)]
+pub struct ModelArguments {
+    /// Name of a shipped model, or path of a model file
+    model: String,
+    /// Parameter values: a TOML file with [parameters], or a campaign folder
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// One value, in place of that of the file; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Setting>,
+}

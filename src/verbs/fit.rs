@@ -1,0 +1,136 @@
+//! `qcar fit`: the parameters of a model from the rig runs of a campaign.
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::error::InputError;
+use qcar_runtime::fit::measure::levels;
+use qcar_runtime::fit::{Fit, Level, Plan, Setup};
+use qcar_runtime::transmissibility::Options;
+
+use crate::catalogue::{self, Loaded};
+use crate::failure::{Failure, flag};
+use crate::progress::while_showing;
+
+// The result as text and JSON.
+mod render;
+// The result as files.
+mod files;
+
+/// Fit a model to the sweeps and time histories of a campaign
+///
+/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar fit models/campaigns/axle_a_rig --out results")]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    #[command(flatten)]
+    choices: Choices,
+    /// Write parameters.toml, fit.json, transmissibility.csv and transmissibility.svg into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// What may differ from the campaign's own plan.
+#[derive(Args, Default)]
+pub struct Choices {
+    /// Fit this model, by name or path, in place of the campaign's
+    #[arg(long)]
+    model: Option<String>,
+    /// Searches: the first from the campaign's start values, the others from all over its ranges
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    starts: Option<u16>,
+    /// Fit to these channels, such as pad_to_wheel, in place of those over the model's force elements
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    channels: Vec<String>,
+    /// Fit these parameters too
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    free: Vec<String>,
+    /// Keep these parameters at their start values
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    fix: Vec<String>,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let fitted = fit(&arguments.campaign, &arguments.choices)?;
+    if let Some(folder) = &arguments.out {
+        files::write(&fitted, folder)?;
+    }
+    Ok(match arguments.format {
+        Format::Text => render::text(&fitted),
+        Format::Json => render::json(&fitted),
+    })
+}
+
+/// A campaign, the model that was fitted to it, and what came out.
+pub struct Fitted {
+    /// What was measured.
+    pub campaign: Campaign,
+    /// What was fitted.
+    pub model: Loaded,
+    /// The measured ratios.
+    pub levels: Vec<Level>,
+    /// The result.
+    pub fit: Fit,
+    /// Time for reading, estimating and fitting.
+    pub seconds: f64,
+}
+
+/// Reads a campaign and fits a model to it.
+pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
+    let begun = Instant::now();
+    let campaign = Campaign::open(folder)?;
+    let model = catalogue::load(choices.model.as_deref().unwrap_or(&campaign.model))?;
+    let plan = plan(&campaign, choices)?;
+    let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
+    let measure = || levels(&campaign, model.about(), wanted, &Options::default());
+    let levels = while_showing(format!("{}: estimating transmissibilities", campaign.name), measure)?;
+    let setup = Setup::new(&*model, &plan, &levels)?;
+    let fit = while_showing(format!("{}: fitting {}", campaign.name, model.about().name), || {
+        setup.fit()
+    });
+    Ok(Fitted {
+        seconds: begun.elapsed().as_secs_f64(),
+        campaign,
+        model,
+        levels,
+        fit,
+    })
+}
+
+/// The campaign's plan with the user's choices.
+fn plan(campaign: &Campaign, choices: &Choices) -> Result<Plan, InputError> {
+    let mut plan = Plan::new(campaign);
+    plan.starts = choices.starts.map_or(plan.starts, usize::from);
+    let mut problems = Vec::new();
+    for (name, fit) in choices
+        .free
+        .iter()
+        .map(|name| (name, true))
+        .chain(choices.fix.iter().map(|name| (name, false)))
+    {
+        match plan.parameters.iter_mut().find(|parameter| parameter.name == *name) {
+            Some(parameter) => parameter.fit = fit,
+            None => {
+                let names: Vec<_> = campaign.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
+                let (found, remedy) = (format!("`{name}`"), format!("choose among {}", names.join(", ")));
+                let name = if fit { "--free" } else { "--fix" };
+                problems.push(flag(name, found, "a parameter of the campaign", &remedy));
+            }
+        }
+    }
+    InputError::unless_empty(problems, Some(plan))
+}

@@ -1,0 +1,149 @@
+//! A fit as files. Each is written whole under another name first, so that nothing half-written looks complete.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use nalgebra::Complex;
+use qcar_runtime::error::{Place, Problem};
+use qcar_runtime::fit::Level;
+use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::ratio::ratio;
+
+use super::{Fitted, render};
+use crate::figure::{Curve, Figure, Panel, Style};
+
+pub(super) fn write(of: &Fitted, folder: &Path) -> Result<(), Problem> {
+    fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
+    let compared = compare(of);
+    put(folder, "parameters.toml", &parameters(of))?;
+    put(folder, "fit.json", &render::json(of))?;
+    put(folder, "transmissibility.csv", &csv(&compared))?;
+    put(folder, "transmissibility.svg", &figure(of, &compared).svg())
+}
+
+fn put(folder: &Path, name: &str, content: &str) -> Result<(), Problem> {
+    let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
+    let written = fs::write(&unfinished, content).and_then(|()| fs::rename(&unfinished, &path));
+    written.map_err(|error| unwritable(&path, &error))
+}
+
+fn unwritable(path: &Path, error: &std::io::Error) -> Problem {
+    let remedy = "choose another folder with --out, or make room there";
+    Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy)
+}
+
+/// A parameter file as `--params` takes it.
+fn parameters(of: &Fitted) -> String {
+    let mut out = format!("# {} fitted to {}\n\n[parameters]\n", of.fit.model, of.campaign.name);
+    for parameter in of.fit.parameters.iter().filter(|parameter| parameter.tied_to.is_none()) {
+        let error = parameter
+            .stderr
+            .map_or(String::new(), |error| format!(", standard error {error:.2e}"));
+        let _ = writeln!(
+            out,
+            "{} = {:?} # {}{error}",
+            parameter.name, parameter.value, parameter.unit
+        );
+    }
+    out
+}
+
+/// A measured ratio with the model's before and after the fit, line by line.
+struct Compared<'a> {
+    level: &'a Level,
+    observation: &'a Observation,
+    before: Vec<Complex<f64>>,
+    after: Vec<Complex<f64>>,
+}
+
+fn compare(of: &Fitted) -> Vec<Compared<'_>> {
+    let values = |value: fn(&qcar_runtime::fit::report::ParameterFit) -> f64| {
+        let stated = of.fit.parameters.iter().filter(|parameter| parameter.tied_to.is_none());
+        let given: BTreeMap<_, _> = stated
+            .map(|parameter| (parameter.name.clone(), value(parameter)))
+            .collect();
+        Values::resolve(of.model.about(), &given, &BTreeMap::new()).expect("the fit has given every parameter a value")
+    };
+    let (before, after) = (values(|parameter| parameter.start), values(|parameter| parameter.value));
+    let modelled = |level: &Level, observation: &Observation, values: &Values| {
+        let (above, below) = (&observation.channel.numerator, &observation.channel.denominator);
+        let ratio = ratio(
+            &*of.model,
+            values,
+            level.excitation,
+            above,
+            below,
+            &observation.frequency,
+        );
+        ratio.expect("the fit has found both signals").value
+    };
+    let all = of
+        .levels
+        .iter()
+        .flat_map(|level| level.observations.iter().map(move |observation| (level, observation)));
+    all.map(|(level, observation)| Compared {
+        level,
+        observation,
+        before: modelled(level, observation, &before),
+        after: modelled(level, observation, &after),
+    })
+    .collect()
+}
+
+fn csv(of: &[Compared]) -> String {
+    let mut out = "run,channel,frequency,measured_re,measured_im,before_re,before_im,after_re,after_im\n".to_string();
+    for Compared {
+        level,
+        observation,
+        before,
+        after,
+    } in of
+    {
+        for (line, frequency) in observation.frequency.iter().enumerate() {
+            let _ = write!(out, "{},{},{frequency}", level.name, observation.channel.name);
+            for value in [observation.value[line], before[line], after[line]] {
+                let _ = write!(out, ",{},{}", value.re, value.im);
+            }
+            out.push('\n');
+        }
+    }
+    out
+}
+
+/// Magnitudes of the first run, a panel for each channel.
+fn figure(of: &Fitted, compared: &[Compared]) -> Figure {
+    let first = of.levels.first().map_or("", |level| level.name.as_str());
+    let shown = compared.iter().filter(|compared| compared.level.name == first);
+    Figure {
+        title: format!("{} fitted to {}, {first}", of.fit.model, of.campaign.name),
+        panels: shown.map(panel).collect(),
+    }
+}
+
+fn panel(of: &Compared) -> Panel {
+    let curve = |label, style, values: &[Complex<f64>]| {
+        let points = of
+            .observation
+            .frequency
+            .iter()
+            .zip(values)
+            .map(|(f, value)| (*f, 20.0 * value.norm().log10()));
+        Curve {
+            label,
+            style,
+            points: points.collect(),
+        }
+    };
+    Panel {
+        title: of.observation.channel.name.to_string(),
+        vertical: "dB".into(),
+        curves: vec![
+            curve("measured", Style::Measured, &of.observation.value),
+            curve("before", Style::Before, &of.before),
+            curve("after", Style::After, &of.after),
+        ],
+    }
+}

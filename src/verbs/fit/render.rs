@@ -1,0 +1,143 @@
+//! A fit as text for people and as JSON for programs.
+
+use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, ParameterFit};
+use serde::Serialize;
+
+use super::Fitted;
+use crate::json::{self, Ordered};
+use crate::table::{Table, number};
+
+/// Parameters by name, channels run by run.
+#[derive(Serialize)]
+struct Result<'a> {
+    campaign: &'a str,
+    model: &'a str,
+    parameters: Ordered<&'a ParameterFit>,
+    correlations: &'a [Correlation],
+    channels: &'a [ChannelFit],
+    cost: f64,
+    start_cost: f64,
+    stopped: &'a str,
+    converged: bool,
+    evaluations: usize,
+    starts: usize,
+    minima: &'a [LocalMinimum],
+    notices: &'a [String],
+    seconds: f64,
+}
+
+pub(super) fn json(of: &Fitted) -> String {
+    let fit = &of.fit;
+    json::line(&Result {
+        campaign: &of.campaign.name,
+        model: &fit.model,
+        parameters: fit
+            .parameters
+            .iter()
+            .map(|parameter| (parameter.name.clone(), parameter))
+            .collect(),
+        correlations: &fit.correlations,
+        channels: &fit.channels,
+        cost: fit.cost,
+        start_cost: fit.start_cost,
+        stopped: fit.stopped_because,
+        converged: fit.converged,
+        evaluations: fit.evaluations,
+        starts: fit.starts,
+        minima: &fit.minima,
+        notices: &of.campaign.notices,
+        seconds: of.seconds,
+    })
+}
+
+pub(super) fn text(of: &Fitted) -> String {
+    let sections = [
+        summary(of),
+        parameters(&of.fit.parameters),
+        correlations(&of.fit.correlations),
+        channels(of),
+    ];
+    sections
+        .into_iter()
+        .filter(|section| !section.is_empty())
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+fn summary(of: &Fitted) -> String {
+    let fit = &of.fit;
+    let ended = if fit.converged { "converged" } else { "did not converge" };
+    let agree = fit.minima.first().map_or(0, |minimum| minimum.starts);
+    let mut out = format!(
+        "{} fitted to {}: {ended}, {}\ncost {} (at the start values {}), {agree} of {} starts found it, {} evaluations\n",
+        fit.model,
+        of.campaign.name,
+        fit.stopped_because,
+        number(fit.cost, 4),
+        number(fit.start_cost, 4),
+        fit.starts,
+        fit.evaluations,
+    );
+    out.extend(of.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
+    out
+}
+
+fn parameters(of: &[ParameterFit]) -> String {
+    let mut table = Table::new(["parameter", "unit", "start", "value", "stderr", "stderr_%", "remark"]);
+    for parameter in of {
+        let or_dash = |value: Option<f64>, digits| value.map_or("-".to_string(), |value| number(value, digits));
+        table.row(vec![
+            parameter.name.clone(),
+            parameter.unit.clone(),
+            number(parameter.start, 5),
+            number(parameter.value, 5),
+            or_dash(parameter.stderr, 2),
+            or_dash(parameter.relative_stderr.map(|part| 100.0 * part), 2),
+            remark(parameter),
+        ]);
+    }
+    table.text()
+}
+
+fn remark(of: &ParameterFit) -> String {
+    let bound = of.at_bound.map(|bound| match bound {
+        Bound::Lower => "at the lower end of its range",
+        Bound::Upper => "at the upper end of its range",
+    });
+    match (bound, &of.tied_to, &of.why_no_stderr) {
+        (Some(bound), ..) => bound.into(),
+        (None, Some(other), _) => format!("as {other}"),
+        (None, None, Some(why)) => why.sentence(),
+        (None, None, None) => String::new(),
+    }
+}
+
+fn correlations(of: &[Correlation]) -> String {
+    let line = |c: &Correlation| format!("{} and {}: {}\n", c.between.0, c.between.1, number(c.value, 3));
+    match of {
+        [] => String::new(),
+        some => format!("correlations above 0.9\n{}", some.iter().map(line).collect::<String>()),
+    }
+}
+
+fn channels(of: &Fitted) -> String {
+    let mut table = Table::new([
+        "channel",
+        "run",
+        "role",
+        "in_the_cost",
+        "fit_magnitude_%",
+        "fit_phase_%",
+    ]);
+    for channel in &of.fit.channels {
+        table.row(vec![
+            channel.name.clone(),
+            channel.run.clone(),
+            channel.role.into(),
+            if channel.fitted { "yes" } else { "no" }.into(),
+            format!("{:.1}", channel.quality.fit_magnitude),
+            format!("{:.1}", channel.quality.fit_phase),
+        ]);
+    }
+    table.text()
+}

@@ -1,0 +1,256 @@
+//! `qcar frf`: the frequency response of every channel and its parameter Jacobian.
+
+use std::str::FromStr;
+
+use clap::{Args, ValueEnum};
+use nalgebra::Complex;
+use qcar_runtime::error::InputError;
+use qcar_runtime::model::{About, Channel, Model, Signal};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::ratio::ratio;
+use serde::Serialize;
+
+use crate::catalogue;
+use crate::failure::{Failure, flag};
+use crate::json::{self, Ordered};
+use crate::parameters;
+use crate::table::{Table, number};
+use crate::verbs::ModelArguments;
+
+/// Print the frequency response of the channels of a model
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar frf quarter_car --channels pad_to_body --frequencies 0.5:30:60")]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+    /// Only these channels
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    channels: Vec<String>,
+    /// First and last frequency in Hz and the number of lines, spaced logarithmically
+    #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:30:300")]
+    frequencies: Frequencies,
+    /// How to print; JSON holds the parameter Jacobian too
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Csv,
+}
+
+/// Logarithmically spaced frequencies.
+#[derive(Clone, Debug, PartialEq)]
+struct Frequencies {
+    from: f64,
+    to: f64,
+    lines: usize,
+}
+
+impl FromStr for Frequencies {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(':').collect();
+        let &[from, to, lines] = parts.as_slice() else {
+            return Err("expected FROM:TO:LINES, such as 0.5:30:300".into());
+        };
+        let hertz = |text: &str| {
+            let value = text.parse::<f64>().ok().filter(|f| f.is_finite() && *f > 0.0);
+            value.ok_or_else(|| format!("expected a frequency above 0 Hz, found `{text}`"))
+        };
+        let lines = lines.parse().ok().filter(|n| (1..=1_000_000).contains(n));
+        let lines = lines.ok_or("expected 1 to 1000000 lines after the second `:`")?;
+        let (from, to) = (hertz(from)?, hertz(to)?);
+        if from < to || (from == to && lines == 1) {
+            Ok(Frequencies { from, to, lines })
+        } else {
+            Err(format!("expected a last frequency above the first, found {from}:{to}"))
+        }
+    }
+}
+
+impl Frequencies {
+    /// In Hz; the first and the last are exact.
+    fn values(&self) -> Vec<f64> {
+        let last = self.lines - 1;
+        let ratio = self.to / self.from;
+        let at = |i: usize| match i {
+            0 => self.from,
+            i if i == last => self.to,
+            i => self.from * ratio.powf(i as f64 / last as f64),
+        };
+        (0..self.lines).map(at).collect()
+    }
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let model = catalogue::load(&arguments.model.model)?;
+    let values = parameters::resolve(model.about(), arguments.model.params.as_deref(), &arguments.model.set)?;
+    let frequency = arguments.frequencies.values();
+    let channels = chosen(model.about(), &arguments.channels)?;
+    let responses = channels
+        .into_iter()
+        .map(|channel| respond(&*model, &values, channel, &frequency));
+    let response = FrequencyResponse {
+        model: model.about().name.to_string(),
+        channels: responses.collect::<Result<_, Failure>>()?,
+    };
+    Ok(match arguments.format {
+        Format::Text => text(&response, &frequency),
+        Format::Json => json::line(&response),
+        Format::Csv => csv(&response, &frequency),
+    })
+}
+
+/// The response of the channels of a model, in its order.
+#[derive(Serialize)]
+struct FrequencyResponse {
+    model: String,
+    channels: Ordered<ChannelResponse>,
+}
+
+/// The ratio of a channel's two signals, and its derivatives by the parameters that it sees.
+#[derive(Serialize)]
+struct ChannelResponse {
+    /// Hz.
+    frequency: Vec<f64>,
+    re: Vec<f64>,
+    im: Vec<f64>,
+    d_re: Ordered<Vec<f64>>,
+    d_im: Ordered<Vec<f64>>,
+}
+
+fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Failure> {
+    let find = |name: &String| about.channels.iter().find(|channel| channel.name == **name);
+    let known: Vec<_> = about
+        .channels
+        .iter()
+        .map(|channel| format!("`{}`", channel.name))
+        .collect();
+    if known.is_empty() {
+        let remedy =
+            "declare one in the model file, such as `channel pad_to_body = body.acceleration / pad.acceleration;`";
+        return Err(flag(
+            "MODEL",
+            format!("`{}` has no channel", about.name),
+            "a model with channels",
+            remedy,
+        )
+        .into());
+    }
+    let unknown = names.iter().filter(|name| find(name).is_none());
+    let expected = format!("channels of `{}`", about.name);
+    let remedy = format!("choose among {}", known.join(", "));
+    let problems: Vec<_> = unknown
+        .map(|name| flag("--channels", format!("`{name}`"), &expected, &remedy))
+        .collect();
+    let chosen = match names {
+        [] => about.channels.iter().collect(),
+        names => names.iter().filter_map(find).collect(),
+    };
+    Ok(InputError::unless_empty(problems, Some(chosen))?)
+}
+
+fn respond(
+    model: &dyn Model,
+    values: &Values,
+    channel: &Channel,
+    frequency: &[f64],
+) -> Result<(String, ChannelResponse), Failure> {
+    let about = model.about();
+    let ratio = ratio(
+        model,
+        values,
+        excitation(about, channel)?,
+        &channel.numerator,
+        &channel.denominator,
+        frequency,
+    )
+    .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
+    let derivatives = |part: fn(&Complex<f64>) -> f64| {
+        let rows = ratio.jacobian.iter();
+        rows.map(|(k, row)| (about.parameters[*k].name.to_string(), row.iter().map(part).collect()))
+            .collect()
+    };
+    let response = ChannelResponse {
+        frequency: frequency.into(),
+        re: ratio.value.iter().map(|value| value.re).collect(),
+        im: ratio.value.iter().map(|value| value.im).collect(),
+        d_re: derivatives(|value| value.re),
+        d_im: derivatives(|value| value.im),
+    };
+    Ok((channel.name.to_string(), response))
+}
+
+/// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.
+fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
+    let Signal { location, axis, .. } = &channel.denominator;
+    let along = || about.excitations.iter().enumerate().filter(|(_, of)| of.axis == *axis);
+    let found = along()
+        .find(|(_, of)| of.name == *location)
+        .or_else(|| along().find(|(_, of)| of.road))
+        .or_else(|| along().next());
+    found.map(|(at, _)| at).ok_or_else(|| {
+        let found = format!("nothing drives `{}` along {axis}", channel.name);
+        let remedy = "add `road pad;` or `force f on …;` to that direction of the model file";
+        flag("MODEL", found, "a road, a prescribed motion or a force", remedy).into()
+    })
+}
+
+fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
+    let mut headings = vec!["frequency_Hz".to_string()];
+    headings.extend(
+        of.channels
+            .0
+            .iter()
+            .flat_map(|(name, _)| [format!("{name}_dB"), format!("{name}_deg")]),
+    );
+    let mut table = Table::with_headings(headings);
+    for (line, frequency) in frequency.iter().enumerate() {
+        let polar = of.channels.0.iter().flat_map(|(_, channel)| {
+            let value = Complex::new(channel.re[line], channel.im[line]);
+            [
+                number(20.0 * value.norm().log10(), 5),
+                number(value.arg().to_degrees(), 5),
+            ]
+        });
+        table.row(std::iter::once(number(*frequency, 5)).chain(polar).collect());
+    }
+    table.text()
+}
+
+fn csv(of: &FrequencyResponse, frequency: &[f64]) -> String {
+    let names = of.channels.0.iter().map(|(name, _)| format!(",{name}_re,{name}_im"));
+    let mut out = format!("frequency{}\n", names.collect::<String>());
+    for (line, frequency) in frequency.iter().enumerate() {
+        let cells = of
+            .channels
+            .0
+            .iter()
+            .map(|(_, channel)| format!(",{},{}", channel.re[line], channel.im[line]));
+        out.push_str(&format!("{frequency}{}\n", cells.collect::<String>()));
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Frequencies;
+
+    #[test]
+    fn lines_are_spaced_evenly_on_a_logarithmic_scale() {
+        let frequencies: Frequencies = "1:100:3".parse().unwrap();
+        assert_eq!(frequencies.values(), [1.0, 10.0, 100.0]);
+    }
+
+    #[test]
+    fn nonsense_is_refused() {
+        for text in ["", "1:2", "0:10:5", "10:1:5", "1:2:0", "a:2:3", "1:inf:3", "1:2:-1"] {
+            assert!(text.parse::<Frequencies>().is_err(), "{text}");
+        }
+    }
+}

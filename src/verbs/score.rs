@@ -1,0 +1,153 @@
+//! `qcar score`: fits campaigns that are published with their answer, and compares.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use qcar_runtime::campaign::Truth;
+use qcar_runtime::error::{Place, Problem};
+use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
+
+use crate::failure::Failure;
+use crate::table::{Table, number};
+use crate::verbs::fit::{self, Choices, Fitted};
+
+/// A standard error below this part of the value means that the data determine it well.
+const WELL_DETERMINED: f64 = 0.02;
+
+/// Fit campaigns that have a truth.toml beside them, and compare
+///
+/// The exit status is 1 where a parameter that the fit calls well determined (standard error below 2 %) is off.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar score models/campaigns")]
+pub struct Arguments {
+    /// Campaign folders, or folders of campaigns
+    #[arg(required = true)]
+    folders: Vec<PathBuf>,
+    /// How far a well determined parameter may be off, in percent
+    #[arg(long, value_name = "PERCENT", default_value_t = 3.0)]
+    within: f64,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let mut reports = Vec::new();
+    let mut all_well = true;
+    for folder in campaigns(&arguments.folders)? {
+        let truth = Truth::read(&folder.join("truth.toml"))?;
+        let fitted = fit::fit(&folder, &Choices::default())?;
+        let (text, well) = compare(&fitted, &truth, arguments.within);
+        reports.push(text);
+        all_well &= well;
+    }
+    let text = reports.join("\n");
+    if all_well {
+        Ok(text)
+    } else {
+        Err(Failure::Finding(text))
+    }
+}
+
+/// The folders with an answer: those that were named, or their subfolders in alphabetical order.
+fn campaigns(named: &[PathBuf]) -> Result<Vec<PathBuf>, Problem> {
+    let mut found = Vec::new();
+    for folder in named {
+        let before = found.len();
+        let entries = fs::read_dir(folder).map_err(|error| nothing_in(folder, &error.to_string()))?;
+        let mut below: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+        below.sort();
+        below.insert(0, folder.clone());
+        found.extend(below.into_iter().filter(|folder| has_answer(folder)));
+        if found.len() == before {
+            return Err(nothing_in(folder, "no campaign with a truth.toml"));
+        }
+    }
+    Ok(found)
+}
+
+fn has_answer(folder: &Path) -> bool {
+    folder.join("campaign.toml").is_file() && folder.join("truth.toml").is_file()
+}
+
+fn nothing_in(folder: &Path, found: &str) -> Problem {
+    Problem::new(
+        folder,
+        Place::File,
+        found,
+        "a campaign with a truth.toml, or a folder of such",
+        "name another folder",
+    )
+}
+
+fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
+    let mut table = Table::new(["parameter", "truth", "value", "error_%", "stderr_%", "verdict"]);
+    let mut well = true;
+    for parameter in of.fit.parameters.iter().filter(|parameter| parameter.fitted) {
+        let Some((_, true_value)) = truth.parameters.iter().find(|(name, _)| *name == parameter.name) else {
+            continue;
+        };
+        let error = 100.0 * (parameter.value / true_value - 1.0);
+        let verdict = verdict(parameter, error, within);
+        well &= verdict != "off";
+        let stderr = parameter
+            .relative_stderr
+            .map_or("-".into(), |part| number(100.0 * part, 2));
+        let numbers = [
+            number(*true_value, 5),
+            number(parameter.value, 5),
+            format!("{error:.2}"),
+            stderr,
+        ];
+        table.row(
+            [parameter.name.clone()]
+                .into_iter()
+                .chain(numbers)
+                .chain([verdict.to_string()])
+                .collect(),
+        );
+    }
+    (
+        format!(
+            "{}\n{}\n{}",
+            heading(of, truth),
+            table.text(),
+            channels(&of.fit.channels)
+        ),
+        well,
+    )
+}
+
+fn verdict(parameter: &ParameterFit, error: f64, within: f64) -> &'static str {
+    match parameter.relative_stderr {
+        Some(part) if part < WELL_DETERMINED && error.abs() <= within => "well",
+        Some(part) if part < WELL_DETERMINED => "off",
+        _ => "not determined",
+    }
+}
+
+fn heading(of: &Fitted, truth: &Truth) -> String {
+    let effects: Vec<_> = truth
+        .effects
+        .iter()
+        .map(|effect| format!("{} at {}", effect.name, effect.at))
+        .collect();
+    let effects = if effects.is_empty() {
+        "nothing".into()
+    } else {
+        effects.join(", ")
+    };
+    format!(
+        "{}: {} lacks {effects}; {:.1} s\n",
+        of.campaign.name, of.fit.model, of.seconds
+    )
+}
+
+fn channels(of: &[ChannelFit]) -> String {
+    let mut table = Table::new(["channel", "role", "run", "fit_magnitude_%", "fit_phase_%"]);
+    for channel in of {
+        let quality = [channel.quality.fit_magnitude, channel.quality.fit_phase].map(|percent| format!("{percent:.1}"));
+        let place = [channel.name.to_string(), channel.role.to_string(), channel.run.clone()];
+        table.row(place.into_iter().chain(quality).collect());
+    }
+    table.text()
+}

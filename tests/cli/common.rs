@@ -1,0 +1,48 @@
+//! What the tests of the command line share: running it as a user would.
+
+use std::path::Path;
+use std::process::Command;
+
+/// What a command printed, and how it ended.
+pub struct Ran {
+    /// Exit status.
+    pub status: i32,
+    /// Standard output.
+    pub stdout: String,
+    /// Standard error.
+    pub stderr: String,
+}
+
+/// Runs `qcar` with these arguments in the root of the repository.
+pub fn qcar(arguments: &[&str]) -> Ran {
+    qcar_in(Path::new(env!("CARGO_MANIFEST_DIR")), arguments)
+}
+
+/// Runs `qcar` with these arguments in a folder.
+pub fn qcar_in(folder: &Path, arguments: &[&str]) -> Ran {
+    let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .args(arguments)
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
+    Ran {
+        status: output.status.code().unwrap(),
+        stdout: text(output.stdout),
+        stderr: text(output.stderr),
+    }
+}
+
+/// Runs `qcar`, which must succeed, and gives its standard output.
+pub fn succeeds(arguments: &[&str]) -> String {
+    let ran = qcar(arguments);
+    assert_eq!(
+        ran.status,
+        0,
+        "qcar {}\n{}{}",
+        arguments.join(" "),
+        ran.stdout,
+        ran.stderr
+    );
+    ran.stdout
+}

@@ -1,0 +1,131 @@
+//! Fits of the campaigns in the repository, as a user runs them.
+
+use std::f64::consts::TAU;
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::{qcar, succeeds};
+
+const AXLE: &str = "models/campaigns/axle_a_rig";
+
+fn fitted(arguments: &[&str]) -> Value {
+    serde_json::from_str(&succeeds(&[&["fit"], arguments, &["--format", "json"]].concat())).unwrap()
+}
+
+#[test]
+fn the_simulated_axle_is_found_again() {
+    let report = succeeds(&["score", AXLE]);
+    assert!(report.matches(" well\n").count() >= 6, "{report}");
+}
+
+#[test]
+fn the_silverbox_has_its_published_resonance() {
+    let fit = fitted(&["models/campaigns/silverbox"]);
+    let value = |name: &str| fit["parameters"][name]["value"].as_f64().unwrap();
+    let (m, c, k) = (value("m_body"), value("c_body"), value("k_body"));
+    assert!(((k / m).sqrt() / TAU - 69.5).abs() < 1.0);
+    assert!((c / (2.0 * (k * m).sqrt()) - 0.05).abs() < 0.01);
+}
+
+#[test]
+fn what_is_kept_stays_and_says_so() {
+    let fit = fitted(&[AXLE, "--fix", "k_tire,m_wheel", "--starts", "2"]);
+    for (name, kept) in [("k_tire", 187000.0), ("m_wheel", 42.2)] {
+        let parameter = &fit["parameters"][name];
+        assert_eq!(
+            (&parameter["fitted"], &parameter["value"]),
+            (&Value::Bool(false), &kept.into())
+        );
+        assert_eq!(parameter["stderr"], Value::Null);
+    }
+    assert_eq!(fit["starts"], 2);
+    assert_eq!(fit["parameters"]["k_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+}
+
+#[test]
+fn both_roles_are_reported_and_held_out_runs_are_not_in_the_cost() {
+    let fit = fitted(&[AXLE]);
+    let channels = fit["channels"].as_array().unwrap();
+    let held_out: Vec<_> = channels
+        .iter()
+        .filter(|channel| channel["role"] == "held_out")
+        .collect();
+    assert!(!held_out.is_empty() && held_out.len() < channels.len());
+    assert!(held_out.iter().all(|channel| channel["fitted"] == false));
+    assert!(
+        held_out
+            .iter()
+            .all(|channel| channel["fit_magnitude"].as_f64().unwrap() > 95.0)
+    );
+}
+
+#[test]
+fn another_model_can_be_fitted_by_its_file() {
+    let fit = fitted(&[
+        AXLE,
+        "--model",
+        "models/axles/axle_a.axle",
+        "--channels",
+        "pad_to_wheel,pad_to_body",
+    ]);
+    assert_eq!(fit["model"], "axle_a");
+    let in_cost = |channel: &&Value| channel["fitted"] == true;
+    let names = fit["channels"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter(in_cost)
+        .map(|channel| channel["name"].as_str().unwrap());
+    assert!(
+        names.clone().count() > 0
+            && names
+                .into_iter()
+                .all(|name| ["pad_to_wheel", "pad_to_body"].contains(&name))
+    );
+}
+
+#[test]
+fn results_are_written_whole_and_can_be_used_again() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("deep/results");
+    let out = out.to_str().unwrap();
+    for _ in 0..2 {
+        succeeds(&["fit", AXLE, "--out", out]);
+    }
+    let mut names: Vec<_> = fs::read_dir(out)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name())
+        .collect();
+    names.sort();
+    assert_eq!(
+        names,
+        [
+            "fit.json",
+            "parameters.toml",
+            "transmissibility.csv",
+            "transmissibility.svg"
+        ]
+    );
+    succeeds(&["frf", "axle_a", "--params", &format!("{out}/parameters.toml")]);
+}
+
+#[test]
+fn wishes_that_cannot_be_met_are_refused() {
+    let cases: [(&[&str], &[&str]); 5] = [
+        (&["--fix", "k_tyre"], &["--fix", "`k_tyre`", "`k_tire`"]),
+        (&["--free", "r_tire"], &["--free", "`r_tire`"]),
+        (&["--channels", "pad_to_roof"], &["pad_to_roof"]),
+        (&["--model", "quarter_car"], &["quarter_car", "k_tm"]),
+        (&["--starts", "0"], &["--starts"]),
+    ];
+    for (wish, said) in cases {
+        let ran = qcar(&[&["fit", AXLE], wish].concat());
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{wish:?}");
+        assert!(
+            said.iter().all(|fragment| ran.stderr.contains(fragment)),
+            "{wish:?}\n{}",
+            ran.stderr
+        );
+    }
+}
