@@ -30,10 +30,10 @@ pub fn parameters_are_seen(scratch: &Scratch) -> Vec<Diagnostic> {
     // What one set does not see, the others must not see either: a law may be out of its range there.
     let sets: Vec<Set> = [first, set(Kind::Plain, 2), set(Kind::Declared, 3)].into();
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
-    let groups = groups.filter(|group| sets.iter().all(|set| is_hidden(set, group)));
-    groups
-        .map(|group| describe(scratch.model, &estimated, &group, &sets))
-        .collect()
+    let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
+    let groups = merged(groups.collect());
+    let describe = |group: &Vec<usize>| describe(scratch.model, &estimated, group, &sets);
+    groups.iter().map(describe).collect()
 }
 
 /// The parameters that a measurement is to tell: not the known ones, and not those that a rolling tyre's law contains,
@@ -83,14 +83,28 @@ fn set(scratch: &Scratch, point: Point, estimated: &[u16]) -> Set {
     }
 }
 
-/// Whether the responses at a set leave some change of a group unseen.
-fn is_hidden(set: &Set, group: &[usize]) -> bool {
+/// Groups that share a parameter are one.
+fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    let mut merged: Vec<Vec<usize>> = Vec::new();
+    for group in groups {
+        let shares = |other: &Vec<usize>| other.iter().any(|column| group.contains(column));
+        let (mut one, others): (Vec<_>, Vec<_>) = merged.into_iter().partition(shares);
+        one.push(group);
+        let columns: BTreeSet<usize> = one.into_iter().flatten().collect();
+        merged = others;
+        merged.push(columns.into_iter().collect());
+    }
+    merged
+}
+
+/// How many independent changes of a group the responses at a set leave unseen.
+fn hidden_changes(set: &Set, group: &[usize]) -> usize {
     let rows: Vec<Vec<f64>> = set
         .rows
         .iter()
         .map(|row| group.iter().map(|&column| row[column]).collect())
         .collect();
-    !null_space_of_scale(rows, group.len(), set.scale).is_empty()
+    null_space_of_scale(rows, group.len(), set.scale).len()
 }
 
 fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> Diagnostic {
@@ -102,7 +116,15 @@ fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> 
         .collect();
     match named.as_slice() {
         [(span, name)] => visibility::parameter_not_seen(*span, name),
-        _ => visibility::only_together(&named, combination(group, sets, &named).as_deref()),
+        _ => {
+            let seen = group.len()
+                - sets
+                    .iter()
+                    .map(|set| hidden_changes(set, group))
+                    .min()
+                    .unwrap_or_default();
+            visibility::only_together(&named, seen, combination(group, sets, &named).as_deref())
+        }
     }
 }
 

@@ -30,6 +30,8 @@ codes! {
     UnterminatedText = "unterminated_text",
     /// An opening bracket without its closing one.
     UnclosedBracket = "unclosed_bracket",
+    /// A comment that goes on to the end of the file.
+    UnclosedComment = "unclosed_comment",
     /// A closing bracket that closes nothing.
     StrayBracket = "stray_bracket",
     /// Brackets or expressions nested beyond reason.

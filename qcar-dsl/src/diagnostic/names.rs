@@ -157,16 +157,13 @@ pub fn ambiguous_direction(span: Span, name: &str, directions: &[String]) -> Dia
 
 /// A direction that the model does not have.
 pub fn unknown_direction(span: Span, name: &str, known: &[String]) -> Diagnostic {
-    Diagnostic::error(
-        Code::UnknownDirection,
-        format!("the model has no direction or point `{name}`"),
-    )
-    .label(span, "unknown")
-    .hint(if known.is_empty() {
-        format!("write `direction {name} {{ … }}`")
-    } else {
-        format!("write one of {}", one_of(known))
-    })
+    Diagnostic::error(Code::UnknownDirection, format!("the model has no direction `{name}`"))
+        .label(span, "unknown")
+        .hint(if known.is_empty() {
+            format!("write `direction {name} {{ … }}`")
+        } else {
+            format!("write one of {}", one_of(known))
+        })
 }
 
 /// A function that the language does not have.

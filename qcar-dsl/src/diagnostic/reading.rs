@@ -12,7 +12,7 @@ pub fn foreign_characters(found: &[(Span, char)], line: &str) -> Diagnostic {
     );
     let diagnostic = Diagnostic::error(Code::ForeignCharacter, message).hint(format!("write `{}`", line.trim()));
     found.iter().fold(diagnostic, |diagnostic, (span, _)| {
-        diagnostic.label(*span, "only plain ASCII here")
+        diagnostic.label(*span, "not a part of the language")
     })
 }
 
@@ -28,6 +28,13 @@ pub fn unclosed_bracket(span: Span, open: char, close: char) -> Diagnostic {
     Diagnostic::error(Code::UnclosedBracket, format!("`{open}` is never closed"))
         .label(span, "opens here")
         .hint(format!("write `{close}` where it ends"))
+}
+
+/// A comment that goes on to the end of the file.
+pub fn unclosed_comment(span: Span) -> Diagnostic {
+    Diagnostic::error(Code::UnclosedComment, "a comment is never closed")
+        .label(span, "begins here")
+        .hint("write `*/` where it ends, or `//` for a comment of one line")
 }
 
 /// A closing bracket that closes nothing, or something else.
@@ -55,7 +62,7 @@ pub fn nested_too_deep(span: Span) -> Diagnostic {
 pub fn unreadable(span: Span, reason: &str) -> Diagnostic {
     Diagnostic::error(Code::Unreadable, format!("this cannot be read: {reason}"))
         .label(span, "near here")
-        .hint("write numbers like `25.4` or `50e3`, names in letters, digits and `_`, sentences in double quotes")
+        .hint("write sentences without `\\`, and numbers like `25.4` or `50e3`")
 }
 
 /// A number beyond what fits into 64 bits of floating point.
@@ -132,7 +139,7 @@ pub fn reserved_name(span: Span, name: &str, owner: &str) -> Diagnostic {
         format!("`{name}` cannot name anything: it is {owner}"),
     )
     .label(span, "taken")
-    .hint(format!("write a longer name, such as `{name}_0`"))
+    .hint(format!("write a name that says more, such as `{name}_tire`"))
 }
 
 /// A name that is not in lower case.

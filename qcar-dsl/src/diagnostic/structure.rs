@@ -132,7 +132,7 @@ pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
     let message = format!("the law of link `{link}` gives energy at s = {s:.3}, v = {v:.3}");
     Diagnostic::error(Code::LawGivesEnergy, message)
         .label(span, "pushes along with the motion there")
-        .hint("write a force that grows with `v`: positive in tension is positive here, as in `force = c*v`")
+        .hint("write the force that resists, `force = c*v` with a positive `c`")
 }
 
 /// Two links that are one.

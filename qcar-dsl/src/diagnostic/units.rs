@@ -125,7 +125,7 @@ pub fn state_without_rate(span: Span, name: &str) -> Diagnostic {
 }
 
 /// A state of a name that the law has already.
-pub fn second_state(span: Span, name: &str, element: Option<&String>) -> Diagnostic {
+pub fn second_state(span: Span, name: &str, element: Option<&str>) -> Diagnostic {
     let hint = match element {
         Some(element) => format!("write `second: {element}(…);` to tell the two uses apart"),
         None => "write another name for one of them".to_string(),

@@ -26,16 +26,18 @@ pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
         ))
 }
 
-/// Parameters of which outputs see a combination only.
-pub fn only_together(parameters: &[(Span, &str)], combination: Option<&str>) -> Diagnostic {
+/// Parameters of which outputs see fewer combinations than there are parameters.
+pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Option<&str>) -> Diagnostic {
     let names: Vec<&str> = parameters.iter().map(|(_, name)| *name).collect();
-    let what = combination.map_or("a combination of them".to_string(), |combination| {
-        format!("`{combination}`")
-    });
-    let last = names.last().copied().unwrap_or_default();
+    let what = match (combination, seen) {
+        (Some(combination), _) => format!("`{combination}`"),
+        (None, 1) => "one combination of them".to_string(),
+        (None, _) => format!("{seen} combinations of them"),
+    };
+    let given = all_of(&names[seen.min(names.len())..]);
     let message = format!("no output can tell {} apart: it sees {what} only", all_of(&names));
     let diagnostic = Diagnostic::error(Code::OnlyTogether, message).hint(format!(
-        "write one parameter instead, or declare one as given: `known param {last}: …`"
+        "write `known param …` for {given} if given elsewhere, or one parameter for what is seen"
     ));
     parameters.iter().fold(diagnostic, |diagnostic, (span, _)| {
         diagnostic.label(*span, "not to be told from the others")

@@ -85,6 +85,7 @@ fn atom(tokens: &mut Tokens) -> Parsed<Expression> {
     match tokens.group(Delimiter::Parenthesis) {
         Some(inside) => {
             let kind = ExpressionKind::Call(name, arguments(inside)?);
+            let span = tokens.span_from(span);
             Ok(Expression { kind, span })
         }
         None => {
@@ -161,6 +162,7 @@ fn choice(tokens: &mut Tokens) -> Parsed<Expression> {
     } else {
         last_branch(tokens, EXAMPLE)?
     };
+    let span = tokens.span_from(span);
     Ok(Expression {
         kind: ExpressionKind::If(Box::new(condition), Box::new(then), Box::new(otherwise)),
         span,

@@ -1,7 +1,7 @@
 //! A first look at the text, before the Rust lexer sees it: that lexer refuses a whole file at one place for a foreign
 //! character or bracket, so these get diagnostics of their own.
 
-use crate::diagnostic::{Diagnostic, reading};
+use crate::diagnostic::{Code, Diagnostic, reading};
 use crate::source::{Source, Span};
 
 /// Brackets nested deeper than this are refused, since the lexer and all that follow recurse.
@@ -37,15 +37,16 @@ impl Scan<'_> {
             let rest = &text[at..];
             at += match character {
                 '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
-                '/' if rest.starts_with("/*") => block_comment(rest),
+                '/' if rest.starts_with("/*") => self.comment(at, rest),
                 '"' => self.sentence(at, rest),
                 _ => self.character(at, character),
             };
         }
         self.end_line();
-        for (at, open) in std::mem::take(&mut self.open) {
-            self.found
-                .push(reading::unclosed_bracket(self.span(at, 1), open, closing(open)));
+        let commented_out = self.found.iter().any(|found| found.code == Code::UnclosedComment);
+        if !commented_out {
+            let open = std::mem::take(&mut self.open);
+            open.into_iter().for_each(|bracket| self.unclosed(bracket));
         }
     }
 
@@ -73,6 +74,14 @@ impl Scan<'_> {
         line.len().max(1)
     }
 
+    /// Returns the length of a comment with its marks.
+    fn comment(&mut self, at: usize, rest: &str) -> usize {
+        block_comment(rest).unwrap_or_else(|| {
+            self.found.push(reading::unclosed_comment(self.span(at as u32, 2)));
+            rest.len()
+        })
+    }
+
     fn character(&mut self, at: usize, character: char) -> usize {
         let length = character.len_utf8();
         match character {
@@ -97,19 +106,28 @@ impl Scan<'_> {
             Some((_, open)) if closing(open) == character => {
                 self.open.pop();
             }
-            Some((place, open)) => {
-                let expected = Some((self.span(place, 1), closing(open)));
-                self.found
-                    .push(reading::stray_bracket(self.span(at, 1), character, expected));
+            Some((place, open)) => match self.open.iter().rposition(|(_, open)| closing(*open) == character) {
                 // Where the bracket closes an outer one, the inner ones are what is missing.
-                if let Some(outer) = self.open.iter().rposition(|(_, open)| closing(*open) == character) {
-                    self.open.truncate(outer);
+                Some(outer) => {
+                    let inner = self.open.split_off(outer + 1);
+                    self.open.pop();
+                    inner.into_iter().for_each(|bracket| self.unclosed(bracket));
                 }
-            }
+                None => {
+                    let expected = Some((self.span(place, 1), closing(open)));
+                    self.found
+                        .push(reading::stray_bracket(self.span(at, 1), character, expected));
+                }
+            },
             None => self
                 .found
                 .push(reading::stray_bracket(self.span(at, 1), character, None)),
         }
+    }
+
+    fn unclosed(&mut self, (at, open): (u32, char)) {
+        self.found
+            .push(reading::unclosed_bracket(self.span(at, 1), open, closing(open)));
     }
 
     fn end_line(&mut self) {
@@ -121,8 +139,8 @@ impl Scan<'_> {
     }
 }
 
-/// The length of a comment that may hold others.
-fn block_comment(rest: &str) -> usize {
+/// The length of a comment that may hold others; `None` for one that does not end.
+fn block_comment(rest: &str) -> Option<usize> {
     let mut depth = 0;
     let mut at = 0;
     while at < rest.len() {
@@ -134,13 +152,13 @@ fn block_comment(rest: &str) -> usize {
             depth -= 1;
             at += 2;
             if depth == 0 {
-                return at;
+                return Some(at);
             }
         } else {
             at += 1;
         }
     }
-    rest.len()
+    None
 }
 
 fn closing(open: char) -> char {

@@ -93,11 +93,14 @@ fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
         Some("link") => link(tokens),
         Some("output") => output(tokens),
         Some("channel") => channel(tokens),
-        _ => Err(Box::new(reading::unknown_statement(
-            tokens.span(),
-            &tokens.found(),
-            &WORDS,
-        ))),
+        Some(word @ ("spring" | "damper" | "inerter" | "state" | "rate" | "rolling")) => {
+            let home = "a `link name: a - b { … }`";
+            Err(Box::new(reading::misplaced_statement(tokens.span(), word, home)))
+        }
+        _ => {
+            let mistake = reading::unknown_statement(tokens.span(), &tokens.found(), &WORDS);
+            Err(Box::new(mistake))
+        }
     }
 }
 

@@ -89,6 +89,11 @@ impl<'a> Tokens<'a> {
         }
     }
 
+    /// From a place to the end of the last token that was taken.
+    pub fn span_from(&self, start: Span) -> Span {
+        start.join(self.context.place(self.cursor.prev_span()))
+    }
+
     /// The next token in words, for messages.
     pub fn found(&self) -> String {
         match self.cursor.token_tree() {
@@ -273,6 +278,7 @@ impl<'a> Tokens<'a> {
             let is_block = matches!(&token, TokenTree::Group(group) if group.delimiter() == Delimiter::Brace);
             let is_semicolon = matches!(&token, TokenTree::Punct(punct) if punct.as_char() == ';');
             if is_semicolon || (is_block && self.peek().as_deref() != Some("else")) {
+                self.take(";");
                 return;
             }
         }

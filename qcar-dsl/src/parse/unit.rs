@@ -12,7 +12,10 @@ pub fn declared_unit(tokens: &mut Tokens) -> Parsed<UnitText> {
     let span = tokens.span();
     let mut factors = product(tokens)?;
     factors.sort_by_key(|factor| factor.numerator < 0);
-    Ok(UnitText { factors, span })
+    Ok(UnitText {
+        factors,
+        span: tokens.span_from(span),
+    })
 }
 
 fn product(tokens: &mut Tokens) -> Parsed<Vec<UnitFactor>> {
@@ -138,6 +141,7 @@ pub fn number(tokens: &mut Tokens) -> Parsed<Number> {
     }
     let unit = unit_of_number(tokens, Name { text: suffix, span })?;
     let sign = if negative { "-" } else { "" };
+    let span = tokens.span_from(span);
     Ok(Number {
         digits: format!("{sign}{digits}"),
         value: if negative { -value } else { value },

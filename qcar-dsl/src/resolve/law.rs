@@ -188,7 +188,7 @@ impl Resolver<'_> {
         let index = match (writing.state(&full), writing.rolling) {
             (Some(index), true) if !place.inside.is_empty() => index,
             (_, true) => return Err(self.report(mistakes::rolling_changes_states(name.span))),
-            (Some(_), false) => return Err(self.report(mistakes::second_state(name.span, &full, place.inside.last()))),
+            (Some(_), false) => return Err(self.report(mistakes::second_state(name.span, &full, None))),
             (None, false) => {
                 let rate = self.model.graph.constant(0.0);
                 writing.inner.push(Inner { name: full, unit, rate });
@@ -251,9 +251,17 @@ impl Resolver<'_> {
             inside.reverse();
             return Err(self.report(names::recursive_element(name.span, &inside)));
         }
+        let prefix = format!("{}{}.", place.prefix, used.label().text);
+        if let Some(state) = writing
+            .inner
+            .iter()
+            .find(|inner| inner.name.starts_with(&prefix) && !writing.rolling)
+        {
+            let mistake = mistakes::second_state(used.label().span, &state.name, Some(&name.text));
+            return Err(self.report(mistake));
+        }
         let mut locals = self.element_arguments(element, used, place)?;
         self.add_stretch(&mut locals, writing);
-        let prefix = format!("{}{}.", place.prefix, used.label().text);
         self.write(&element.body, &mut Place { locals, prefix, inside }, writing);
         Ok(())
     }

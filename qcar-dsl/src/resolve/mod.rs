@@ -137,6 +137,10 @@ impl<'a> Resolver<'a> {
 
     /// What nothing uses. A member of a family may leave derived quantities to others.
     fn unused(&mut self, plain: bool) {
+        // What is mistaken may be what would have used them.
+        if !self.found.is_empty() {
+            return;
+        }
         let unused = |name: &str| !self.names.used.contains(name);
         let elements = self.elements.values().filter(|element| unused(&element.name.text));
         let elements = elements.map(|element| mistakes::unused_element(element.name.span, &element.name.text));

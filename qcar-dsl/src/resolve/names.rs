@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use super::value::{Locals, Value};
 use super::{Known, Reported, Resolver};
-use crate::diagnostic::names as mistakes;
+use crate::diagnostic::{Diagnostic, names as mistakes};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::source::Span;
 use crate::syntax::{Dotted, Name};
@@ -223,22 +223,28 @@ impl Resolver<'_> {
             Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
             None => match self.names.off.get(&last) {
                 Some(options) => mistakes::switched_off(span, &last, options),
-                None => {
-                    let home = if name.names.len() > 1 {
-                        &name.names[0].text
-                    } else {
-                        direction
-                    };
-                    let place = if home.is_empty() {
-                        "the model".to_string()
-                    } else {
-                        format!("direction {home}")
-                    };
-                    mistakes::unknown_name(span, &last, &place, &self.names.known_things(home))
-                }
+                None => self.unknown(name, direction),
             },
         };
         self.report(mistake)
+    }
+
+    fn unknown(&self, name: &Dotted, direction: &str) -> Diagnostic {
+        let (home, last) = match name.names.as_slice() {
+            [home, last, ..] if self.names.direction(&home.text).is_none() => {
+                let known: Vec<String> = self.names.directions.iter().map(|(known, _)| known.clone()).collect();
+                return mistakes::unknown_direction(home.span.join(last.span), &home.text, &known);
+            }
+            [home, last, ..] => (home.text.as_str(), last),
+            [last] => (direction, last),
+            [] => (direction, &Name::default()),
+        };
+        let place = if home.is_empty() {
+            "the model".to_string()
+        } else {
+            format!("direction {home}")
+        };
+        mistakes::unknown_name(last.span, &last.text, &place, &self.names.known_things(home))
     }
 
     /// The one direction that has a name which is said outside of all directions.

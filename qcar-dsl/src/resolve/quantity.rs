@@ -36,7 +36,12 @@ impl Resolver<'_> {
     pub fn coherent(&mut self, text: &UnitText, span: Span, example: impl Fn(&str) -> String) -> Known<Unit> {
         let symbol = self.unit(text)?;
         if symbol.multiply != symbol.divide {
-            let coherent = symbol.unit.to_string();
+            let is_angle = text.factors.iter().any(|factor| factor.symbol.text == "deg");
+            let coherent = if is_angle {
+                "rad".to_string()
+            } else {
+                symbol.unit.to_string()
+            };
             let mistake = mistakes::not_coherent(span, &text.to_string(), &coherent, &example(&coherent));
             return Err(self.report(mistake));
         }
