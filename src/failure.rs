@@ -48,8 +48,12 @@ pub fn flag(name: &str, found: impl fmt::Display, expected: &str, remedy: &str) 
 }
 
 /// Reads a text file, or says why it cannot.
-pub fn read_text(file: &Path) -> Result<String, Problem> {
-    let remedy = "correct the path, or put the file there";
-    std::fs::read_to_string(file)
-        .map_err(|e| Problem::new(file, Place::File, e.to_string(), "a readable text file", remedy))
+///
+/// # Errors
+/// A file that is missing, a folder, or not UTF-8.
+pub fn read_text(file: &Path) -> Result<String, InputError> {
+    std::fs::read_to_string(file).map_err(|error| {
+        let remedy = "correct the path, or put the file there";
+        Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into()
+    })
 }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use qcar_runtime::campaign::Truth;
-use qcar_runtime::error::{Place, Problem};
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 
 use crate::failure::Failure;
@@ -49,7 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 /// The folders with an answer: those that were named, or their subfolders in alphabetical order.
-fn campaigns(named: &[PathBuf]) -> Result<Vec<PathBuf>, Problem> {
+fn campaigns(named: &[PathBuf]) -> Result<Vec<PathBuf>, InputError> {
     let mut found = Vec::new();
     for folder in named {
         let before = found.len();
@@ -69,7 +69,7 @@ fn has_answer(folder: &Path) -> bool {
     folder.join("campaign.toml").is_file() && folder.join("truth.toml").is_file()
 }
 
-fn nothing_in(folder: &Path, found: &str) -> Problem {
+fn nothing_in(folder: &Path, found: &str) -> InputError {
     Problem::new(
         folder,
         Place::File,
@@ -77,6 +77,7 @@ fn nothing_in(folder: &Path, found: &str) -> Problem {
         "a campaign with a truth.toml, or a folder of such",
         "name another folder",
     )
+    .into()
 }
 
 fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {

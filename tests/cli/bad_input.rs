@@ -42,7 +42,7 @@ fn parameter_files_are_read_with_care() {
     params("[parameters\n", &["given.toml", "line 1"]);
     params(
         "[parameters]\nk_tyre = 2e5\n",
-        &["line 2, column 1", "`k_tyre`", "did you mean `k_tire`?"],
+        &["line 2, column 1", "parameters.k_tyre", "did you mean `k_tire`?"],
     );
     params("[parameters]\nk_tire = \"2e5\"\n", &["line 2", "string", "a number"]);
     params("[parameters]\nk_tire = inf\n", &["line 2", "a number"]);
@@ -59,7 +59,7 @@ fn parameter_files_are_read_with_care() {
 fn all_problems_of_a_file_come_together() {
     params(
         "[parameters]\nk_tyre = 2e5\nfriction = 3.0\n",
-        &["`k_tyre`", "`friction`"],
+        &["parameters.k_tyre", "parameters.friction"],
     );
 }
 
@@ -89,7 +89,7 @@ fn parameters_without_a_value_are_all_named() {
     refused(
         content,
         &["matrices", "axle_c", "--params", "FILE"],
-        &["given.toml", "no `m_wheel`", "no `k_wheel_z`"],
+        &["given.toml", "`m_wheel`: found no value", "`k_wheel_z`: found no value"],
     );
 }
 
