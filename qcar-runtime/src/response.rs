@@ -6,6 +6,8 @@ pub mod parameters;
 pub mod signal;
 // The response of a nonlinear model about an operating point.
 mod linearized;
+// The periodic response of a nonlinear model to a sine.
+pub mod periodic;
 // Ratios as complex numbers, for people and for other programs.
 pub mod ratio;
 // Ratios as logarithms, for the fit.

@@ -12,7 +12,7 @@ use nalgebra::Complex;
 use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Signal, SignalKind};
-use crate::response::signal::best_output;
+use crate::response::signal::output_of;
 use crate::transmissibility::Point;
 
 /// What a campaign holds.
@@ -57,6 +57,15 @@ pub enum Stimulus {
         /// First and last frequency of the sweep, Hz.
         band: (f64, f64),
     },
+}
+
+impl Stimulus {
+    /// The sensor of what drove the run.
+    pub fn reference(&self) -> &Point {
+        match self {
+            Stimulus::Sweep { reference, .. } => reference,
+        }
+    }
 }
 
 /// Values of one kind that one sensor gave in one run.
@@ -209,7 +218,7 @@ pub fn excitation_of(about: &About, point: &Point) -> Option<usize> {
 }
 
 fn has(about: &About, point: &Point) -> bool {
-    excitation_of(about, point).is_some() || best_output(about, &signal_of(about, point)).is_some()
+    excitation_of(about, point).is_some() || output_of(about, &signal_of(about, point)).is_ok()
 }
 
 /// Pads move up and down.

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Series, Stimulus};
+use super::evidence::{Evidence, Series};
 use crate::transmissibility::Point;
 
 /// A way in which a sensor may be wrong.
@@ -75,7 +75,7 @@ pub struct Nuisance {
 impl Nuisance {
     /// One set of errors for each sensor of the evidence.
     pub fn of(evidence: &Evidence) -> Self {
-        let references = evidence.runs.iter().filter_map(|run| reference(&run.stimulus));
+        let references = evidence.runs.iter().map(|run| run.stimulus.reference());
         let mut sensors: Vec<Point> = references
             .chain(evidence.series.iter().map(|s| &s.sensor))
             .cloned()
@@ -120,9 +120,8 @@ impl Nuisance {
     /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
     pub fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
         let mut slopes = self.of_sensor(&series.sensor, series, 1.0, |at| series.kind.frequency(at));
-        if let Some(reference) = reference(&evidence.runs[series.run].stimulus) {
-            slopes.extend(self.of_sensor(reference, series, -1.0, Some));
-        }
+        let reference = evidence.runs[series.run].stimulus.reference();
+        slopes.extend(self.of_sensor(reference, series, -1.0, Some));
         slopes
     }
 
@@ -159,11 +158,5 @@ impl Nuisance {
         let (first, last) = self.band;
         let u = (2.0 * (f / first).ln() / (last / first).ln().max(f64::MIN_POSITIVE) - 1.0).clamp(-1.0, 1.0);
         (degree as f64 * u.acos()).cos()
-    }
-}
-
-fn reference(stimulus: &Stimulus) -> Option<&Point> {
-    match stimulus {
-        Stimulus::Sweep { reference, .. } => Some(reference),
     }
 }

@@ -2,12 +2,14 @@
 
 // Swept sines by frequency response.
 mod linear;
+// Swept sines by harmonic balance, where laws bend.
+mod nonlinear;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::evidence::{Evidence, Stimulus};
+use super::evidence::{Evidence, Stimulus, excitation_of};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -63,6 +65,17 @@ pub fn predict(
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
+/// The excitation of the model that drove a run.
+fn excitation(model: &dyn Model, evidence: &Evidence, run: usize) -> Result<usize, PredictError> {
+    let run = &evidence.runs[run];
+    let reference = run.stimulus.reference();
+    excitation_of(model.about(), reference).ok_or_else(|| PredictError::NoInput {
+        model: model.about().name.to_string(),
+        location: reference.location.clone(),
+        run: run.name.clone(),
+    })
+}
+
 fn of_run(
     model: &dyn Model,
     values: &Values,
@@ -71,6 +84,7 @@ fn of_run(
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
     match &evidence.runs[run].stimulus {
-        Stimulus::Sweep { reference, .. } => linear::sweep(model, values, free, evidence, run, reference),
+        Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
+        Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
     }
 }

@@ -106,7 +106,7 @@ pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal:
     if let Some(power) = power_of_excitation(source, signal) {
         return Ok(Term { row: None, power });
     }
-    let (output, power) = best_output(about, signal).ok_or_else(|| missing(about, signal))?;
+    let (output, power) = output_of(about, signal)?;
     match layout.outputs.iter().position(|&row| usize::from(row) == output) {
         Some(row) => Ok(Term { row: Some(row), power }),
         None => Err(SignalError::Silent {
@@ -116,6 +116,14 @@ pub fn locate(about: &About, layout: &ResponseLayout, excitation: usize, signal:
             model: about.name.to_string(),
         }),
     }
+}
+
+/// The output that tells of `signal`, and the power of jω from it.
+///
+/// # Errors
+/// Where the model has no such place, or no such output.
+pub fn output_of(about: &About, signal: &Signal) -> Result<(usize, i32), SignalError> {
+    best_output(about, signal).ok_or_else(|| missing(about, signal))
 }
 
 fn power_of_excitation(source: &Excitation, signal: &Signal) -> Option<i32> {
@@ -128,7 +136,7 @@ fn power_of_excitation(source: &Excitation, signal: &Signal) -> Option<i32> {
 }
 
 /// The output with this signal, or that of another derivative of the same motion, and the power of jω from it.
-pub(crate) fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
+fn best_output(about: &About, signal: &Signal) -> Option<(usize, i32)> {
     let powers = about.outputs.iter().enumerate().filter_map(|(place, output)| {
         let here = output.signal.location == signal.location && output.signal.axis == signal.axis;
         let power = match (signal.kind, output.signal.kind) {

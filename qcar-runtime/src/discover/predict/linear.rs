@@ -2,12 +2,11 @@
 
 use nalgebra::Complex;
 
-use super::{PredictError, Prediction};
-use crate::discover::evidence::{Evidence, Kind, excitation_of, signal_of};
+use super::{PredictError, Prediction, excitation};
+use crate::discover::evidence::{Evidence, Kind, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
-use crate::transmissibility::Point;
 
 pub(super) fn sweep(
     model: &dyn Model,
@@ -15,15 +14,10 @@ pub(super) fn sweep(
     free: &[usize],
     evidence: &Evidence,
     run: usize,
-    reference: &Point,
 ) -> Result<Vec<Prediction>, PredictError> {
     let about = model.about();
-    let excitation = excitation_of(about, reference).ok_or_else(|| PredictError::NoInput {
-        model: about.name.to_string(),
-        location: reference.location.clone(),
-        run: evidence.runs[run].name.clone(),
-    })?;
-    let below = signal_of(about, reference);
+    let excitation = excitation(model, evidence, run)?;
+    let below = signal_of(about, evidence.runs[run].stimulus.reference());
     let mut predictions = Vec::new();
     for (place, series) in evidence
         .series

@@ -1,0 +1,109 @@
+//! Sweeps of a nonlinear model: at every frequency the harmonics of its periodic response at the measured amplitude.
+
+use nalgebra::Complex;
+
+use super::{PredictError, Prediction, excitation};
+use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, signal_of};
+use crate::model::{About, Model, Quantity, SignalKind};
+use crate::response::parameters::Values;
+use crate::response::periodic::{Cycle, Drive, Periodic};
+use crate::response::signal::output_of;
+
+/// Harmonics of the balance: those that are measured and enough above for their laws to settle.
+const HARMONICS: usize = 5;
+
+pub(super) fn sweep(
+    model: &dyn Model,
+    values: &Values,
+    free: &[usize],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let about = model.about();
+    let Stimulus::Sweep {
+        reference,
+        frequency,
+        amplitude,
+        ..
+    } = &evidence.runs[run].stimulus;
+    let excitation = excitation(model, evidence, run)?;
+    let power = order(signal_of(about, reference).kind);
+    let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
+        frequency,
+        amplitude,
+        power,
+    });
+    let drives: Vec<Drive> = drives.collect();
+    let mut readings = Vec::new();
+    for (place, series) in evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| series.run == run)
+    {
+        let (output, power) = output_of(about, &signal_of(about, &series.sensor))?;
+        readings.push(Reading {
+            place,
+            series,
+            output,
+            power,
+        });
+    }
+    let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
+    let groups = groups(about, values, free);
+    let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
+    let predict = |(column, reading): (usize, &Reading)| reading.prediction(column, &drives, &cycles, free.len());
+    Ok(readings.iter().enumerate().map(predict).collect())
+}
+
+/// For each free parameter those that move with it.
+fn groups(about: &About, values: &Values, free: &[usize]) -> Vec<Vec<usize>> {
+    let with = |&leader: &usize| {
+        (0..about.parameters.len())
+            .filter(|&k| values.leader(k) == leader)
+            .collect()
+    };
+    free.iter().map(with).collect()
+}
+
+fn order(kind: SignalKind) -> i32 {
+    match kind {
+        SignalKind::Motion(Quantity::Acceleration) => 2,
+        SignalKind::Motion(Quantity::Velocity) => 1,
+        SignalKind::Motion(Quantity::Position) | SignalKind::Force | SignalKind::Stretch => 0,
+    }
+}
+
+/// How a series is read from the cycles.
+struct Reading<'a> {
+    place: usize,
+    series: &'a Series,
+    /// Place in `y`.
+    output: usize,
+    /// Of jω, from the output to the sensor.
+    power: i32,
+}
+
+impl Reading<'_> {
+    /// From cycles that have its output at `column`.
+    fn prediction(&self, column: usize, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
+        let Kind::Harmonic(harmonic) = self.series.kind;
+        let at = |f: &f64| drives.iter().position(|drive| drive.frequency == *f).unwrap_or(0);
+        let places: Vec<usize> = self.series.at.iter().map(at).collect();
+        let scale = |place: usize| {
+            let drive = drives[place];
+            let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
+            Complex::new(0.0, omega).powi(self.power) / drive.amplitude
+        };
+        let value = |&place: &usize| cycles[place].outputs[column][harmonic] * scale(place);
+        let slope = |k: usize| {
+            let along = |&place: &usize| cycles[place].slopes[k][column][harmonic] * scale(place);
+            places.iter().map(along).collect()
+        };
+        Prediction {
+            series: self.place,
+            value: places.iter().map(value).collect(),
+            slopes: (0..free).map(slope).collect(),
+        }
+    }
+}

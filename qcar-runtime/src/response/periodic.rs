@@ -1,0 +1,181 @@
+//! The periodic response of a nonlinear model to a sine: harmonic balance.
+//!
+//! Every state that the excitation reaches is a Fourier series; the equations of motion hold in their first harmonics,
+//! found by sampling the laws over a period (T. M. Cameron and J. H. Griffin, "An alternating frequency/time domain
+//! method", J. Appl. Mech. 56, 1989). Newton's method solves them with the model's own matrices, and the same
+//! factorisation gives every parameter derivative.
+
+// Fourier series by their samples.
+mod basis;
+// The balance at one excitation, and its solution.
+mod balance;
+
+use std::f64::consts::TAU;
+
+use nalgebra::Complex;
+
+use crate::model::{InputKind, Matrix, Model, Quantity};
+use balance::Balance;
+use basis::Basis;
+
+/// The periodic responses of a model to one excitation.
+pub struct Periodic<'m> {
+    model: &'m dyn Model,
+    excitation: usize,
+    /// The states that move at all.
+    states: Vec<usize>,
+    basis: Basis,
+}
+
+/// A sine: `Re A exp(jωt)` of the excitation itself or one of its derivatives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drive {
+    /// Hz.
+    pub frequency: f64,
+    /// Amplitude of what is measured of the excitation.
+    pub amplitude: f64,
+    /// How many times the excitation has been differentiated where it is measured: 2 for an acceleration.
+    pub power: i32,
+}
+
+/// A periodic response.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cycle {
+    /// Fourier coefficients of the states, where the next search may start.
+    pub coefficients: Vec<f64>,
+    /// For each output asked for: amplitudes of its harmonics from 0, relative in phase to the excitation.
+    pub outputs: Vec<Vec<Complex<f64>>>,
+    /// For each parameter asked for the derivatives of `outputs`.
+    pub slopes: Vec<Vec<Vec<Complex<f64>>>>,
+    /// False where the search gave up; the response is then that of its best point.
+    pub converged: bool,
+}
+
+impl<'m> Periodic<'m> {
+    /// Prepares for responses in which states have `harmonics` harmonics.
+    pub fn new(model: &'m dyn Model, excitation: usize, harmonics: usize) -> Self {
+        Self {
+            model,
+            excitation,
+            states: moved(model, excitation),
+            basis: Basis::new(harmonics),
+        }
+    }
+
+    /// The response of `outputs` (places in `y`) for the parameters `p`; `groups` are the parameters that move
+    /// together, along each of which to differentiate.
+    ///
+    /// Searches from `start`, or from rest; where that fails, by way of smaller amplitudes.
+    pub fn cycle(
+        &self,
+        p: &[f64],
+        drive: &Drive,
+        outputs: &[usize],
+        groups: &[Vec<usize>],
+        start: Option<&[f64]>,
+    ) -> Cycle {
+        let rest = vec![0.0; self.states.len() * self.basis.terms()];
+        let mut balance = self.balance(p, drive);
+        let (mut x, mut converged) = balance.solve(start.unwrap_or(&rest));
+        if !converged {
+            (x, converged) = self.climb(p, drive, &rest);
+        }
+        balance.sample(&x);
+        let slopes = balance.slopes(groups);
+        Cycle {
+            outputs: outputs.iter().map(|&output| balance.output(output)).collect(),
+            slopes: groups
+                .iter()
+                .zip(&slopes)
+                .map(|(group, dx)| {
+                    outputs
+                        .iter()
+                        .map(|&output| balance.output_slope(output, group, dx))
+                        .collect()
+                })
+                .collect(),
+            coefficients: x,
+            converged,
+        }
+    }
+
+    /// The responses to drives of increasing frequency, each searched for from that above it.
+    ///
+    /// At high frequencies masses hold still and laws hardly bend; from there the search keeps its footing all the way
+    /// down, where it would often fail from rest.
+    pub fn walk(&self, p: &[f64], drives: &[Drive], outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Cycle> {
+        let mut cycles: Vec<Cycle> = Vec::with_capacity(drives.len());
+        for drive in drives.iter().rev() {
+            let start = cycles.last().map(|cycle| cycle.coefficients.as_slice());
+            let cycle = self.cycle(p, drive, outputs, groups, start);
+            cycles.push(cycle);
+        }
+        cycles.reverse();
+        cycles
+    }
+
+    /// From a small amplitude, where every smooth law is linear, up to the one that is wanted.
+    fn climb(&self, p: &[f64], drive: &Drive, rest: &[f64]) -> (Vec<f64>, bool) {
+        const STEPS: i32 = 12;
+        const RATIO: f64 = 2.0;
+        let mut x = rest.to_vec();
+        let mut converged = false;
+        for step in (0..=STEPS).rev() {
+            let amplitude = drive.amplitude * RATIO.powi(-step);
+            // A larger response is more of the same, to first order.
+            x.iter_mut().for_each(|x| *x *= RATIO);
+            let smaller = Drive { amplitude, ..*drive };
+            (x, converged) = self.balance(p, &smaller).solve(&x);
+        }
+        (x, converged)
+    }
+
+    fn balance(&self, p: &[f64], drive: &Drive) -> Balance<'_> {
+        let omega = TAU * drive.frequency;
+        let phasor = drive.amplitude / Complex::new(0.0, omega).powi(drive.power);
+        let inputs = (0..self.basis.samples()).map(|k| self.inputs(phasor, omega, self.basis.angle(k)));
+        Balance::new(self.model, p, &self.states, &self.basis, omega, inputs.collect())
+    }
+
+    fn inputs(&self, phasor: Complex<f64>, omega: f64, angle: f64) -> Vec<f64> {
+        let turn = phasor * Complex::cis(angle);
+        let rate = Complex::new(0.0, omega);
+        let value = |kind| match kind {
+            InputKind::Force(place) if usize::from(place) == self.excitation => turn.re,
+            InputKind::Motion(place, quantity) if usize::from(place) == self.excitation => match quantity {
+                Quantity::Position => turn.re,
+                Quantity::Velocity => (turn * rate).re,
+                Quantity::Acceleration => (turn * rate * rate).re,
+            },
+            _ => 0.0,
+        };
+        self.model
+            .about()
+            .inputs
+            .iter()
+            .map(|input| value(input.kind))
+            .collect()
+    }
+}
+
+/// The states that depend on the excitation, by the nonzeros of A and B.
+fn moved(model: &dyn Model, excitation: usize) -> Vec<usize> {
+    let about = model.about();
+    let drives = |column: u16| match about.inputs[usize::from(column)].kind {
+        InputKind::Force(place) | InputKind::Motion(place, _) => usize::from(place) == excitation,
+        InputKind::Gravity => false,
+    };
+    let mut moves = vec![false; about.states.len()];
+    // As many rounds as there are states reach whatever can be reached.
+    for _ in 0..=about.states.len() {
+        for entry in about.matrices.iter() {
+            let from = match entry.matrix {
+                Matrix::A => moves[usize::from(entry.column)],
+                Matrix::B => drives(entry.column),
+                Matrix::C | Matrix::D => continue,
+            };
+            moves[usize::from(entry.row)] |= from;
+        }
+    }
+    (0..moves.len()).filter(|&state| moves[state]).collect()
+}

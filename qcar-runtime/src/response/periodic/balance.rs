@@ -1,0 +1,276 @@
+//! `ω dx/dθ = f(x, u)` in Fourier coefficients, and Newton's method for it.
+
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+
+use super::basis::Basis;
+use crate::model::{Matrix, Model};
+
+/// The balance of a model at one drive.
+pub struct Balance<'a> {
+    model: &'a dyn Model,
+    p: Vec<f64>,
+    constants: Vec<f64>,
+    states: &'a [usize],
+    /// For each state of the model its place in `states`.
+    places: Vec<Option<usize>>,
+    basis: &'a Basis,
+    omega: f64,
+    /// The inputs at each sample.
+    inputs: Vec<Vec<f64>>,
+    /// The states at each sample of the present point.
+    samples: Vec<Vec<f64>>,
+    /// The nonzeros of A, B, C and D at each sample of the present point.
+    matrices: Vec<Vec<f64>>,
+    /// The nonzeros of ∂f/∂p and ∂h/∂p there.
+    by_parameter: Vec<Vec<f64>>,
+    /// The factorised Jacobian of the present point.
+    factors: Option<LU<f64, Dyn, Dyn>>,
+}
+
+/// Newton steps before the search gives up.
+const ITERATIONS: usize = 30;
+/// A step this small relative to the largest coefficient of its state ends the search.
+const SETTLED: f64 = 1e-7;
+/// A constant that nothing returns, as the force of a friction that sticks, would make the matrix singular: this share
+/// of ω returns it slowly. It bends the way of the search by as little, and not its end.
+const RETURN: f64 = 1e-6;
+/// The shortest share of a Newton step that is tried.
+const SHORTEST: f64 = 1e-3;
+
+impl<'a> Balance<'a> {
+    pub fn new(
+        model: &'a dyn Model,
+        p: &[f64],
+        states: &'a [usize],
+        basis: &'a Basis,
+        omega: f64,
+        inputs: Vec<Vec<f64>>,
+    ) -> Self {
+        let about = model.about();
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
+        let place = |state| states.iter().position(|&s| s == state);
+        Self {
+            model,
+            p: p.to_vec(),
+            constants,
+            states,
+            places: (0..about.states.len()).map(place).collect(),
+            basis,
+            omega,
+            inputs,
+            samples: Vec::new(),
+            matrices: Vec::new(),
+            by_parameter: Vec::new(),
+            factors: None,
+        }
+    }
+
+    /// Searches from `start`: the coefficients, and whether they settled.
+    ///
+    /// A step is shortened until the next one, with the same matrix, would be shorter (P. Deuflhard, "Newton Methods
+    /// for Nonlinear Problems", section 3.3): it needs no scale of the residuals, whose units differ.
+    pub fn solve(&mut self, start: &[f64]) -> (Vec<f64>, bool) {
+        let mut x = DVector::from_column_slice(start);
+        let mut residual = self.residual(&x);
+        for _ in 0..ITERATIONS {
+            let factors = self.jacobian().lu();
+            let Some(step) = factors.solve(&residual) else {
+                return (x.as_slice().to_vec(), false);
+            };
+            let (mut share, length) = (1.0, self.length(&step, &(&x - &step)));
+            let accepted = loop {
+                let trial = &x - &step * share;
+                let trial_residual = self.residual(&trial);
+                let next = factors.solve(&trial_residual).map(|next| self.length(&next, &trial));
+                // At a kink of a law no step is monotonic: a short one that is finite is better than none.
+                if next.is_some_and(|next| next <= (1.0 - 0.25 * share) * length) {
+                    break Some((trial, trial_residual));
+                }
+                share *= 0.5;
+                if share < SHORTEST {
+                    break None;
+                }
+            };
+            let Some((trial, trial_residual)) = accepted else {
+                return (x.as_slice().to_vec(), length < SETTLED.sqrt());
+            };
+            (x, residual) = (trial, trial_residual);
+            if length * share < SETTLED {
+                return (x.as_slice().to_vec(), true);
+            }
+        }
+        (x.as_slice().to_vec(), false)
+    }
+
+    /// Takes a point as the present one, ready for derivatives there.
+    pub fn sample(&mut self, x: &[f64]) {
+        self.residual(&DVector::from_column_slice(x));
+        self.factors = Some(self.jacobian().lu());
+        let points = self.samples.iter().zip(&self.inputs);
+        let by_parameter = points.map(|(x, u)| {
+            let mut nonzeros = vec![0.0; self.model.about().parameter_jacobian.len()];
+            self.model.parameter_jacobian(&self.p, x, u, &mut nonzeros);
+            nonzeros
+        });
+        self.by_parameter = by_parameter.collect();
+    }
+
+    /// Harmonics of an output at the present point.
+    pub fn output(&self, output: usize) -> Vec<Complex<f64>> {
+        let mut y = vec![0.0; self.model.about().outputs.len()];
+        let samples = self.samples.iter().zip(&self.inputs).map(|(x, u)| {
+            self.model.outputs(&self.constants, x, u, &mut y);
+            y[output]
+        });
+        let samples = DVector::from_iterator(self.inputs.len(), samples);
+        self.basis.harmonics((&self.basis.analysis * samples).as_slice())
+    }
+
+    /// How the coefficients of the present point move along each group of parameters; zero where they cannot be told.
+    pub fn slopes(&self, groups: &[Vec<usize>]) -> Vec<DVector<f64>> {
+        let unknowns = self.states.len() * self.basis.terms();
+        groups
+            .iter()
+            .map(|group| {
+                let push = self.by_parameter(group, false, |row| self.places[row]);
+                let mut stacked = DVector::zeros(unknowns);
+                for (place, samples) in push {
+                    let mut block = stacked.rows_mut(place * self.basis.terms(), self.basis.terms());
+                    block += &self.basis.analysis * samples;
+                }
+                let solved = self.factors.as_ref().and_then(|factors| factors.solve(&stacked));
+                solved.unwrap_or_else(|| DVector::zeros(unknowns))
+            })
+            .collect()
+    }
+
+    /// How the harmonics of an output move along a group of parameters, `dx` being the move of the coefficients.
+    pub fn output_slope(&self, output: usize, group: &[usize], dx: &DVector<f64>) -> Vec<Complex<f64>> {
+        let mut samples = DVector::zeros(self.inputs.len());
+        for (_, direct) in self.by_parameter(group, true, |row| (row == output).then_some(0)) {
+            samples += direct;
+        }
+        let moves = self.synthesis(dx);
+        let entries = self.model.about().matrices.iter().enumerate();
+        for (entry, at) in entries.filter(|(_, e)| e.matrix == Matrix::C && usize::from(e.row) == output) {
+            let Some(place) = self.places[usize::from(at.column)] else {
+                continue;
+            };
+            for k in 0..samples.len() {
+                samples[k] += self.matrices[k][entry] * moves[(k, place)];
+            }
+        }
+        self.basis.harmonics((&self.basis.analysis * samples).as_slice())
+    }
+
+    /// Samples of ∂f/∂p (or ∂h/∂p) along a group, by what `place` makes of a row.
+    fn by_parameter(
+        &self,
+        group: &[usize],
+        of_outputs: bool,
+        place: impl Fn(usize) -> Option<usize>,
+    ) -> Vec<(usize, DVector<f64>)> {
+        let entries = self.model.about().parameter_jacobian.iter().enumerate();
+        let along = entries.filter(|(_, (is_output, _, parameter))| {
+            *is_output == of_outputs && group.contains(&usize::from(*parameter))
+        });
+        let samples =
+            |entry: usize| DVector::from_iterator(self.inputs.len(), self.by_parameter.iter().map(|at| at[entry]));
+        along
+            .filter_map(|(entry, (_, row, _))| Some((place(usize::from(*row))?, samples(entry))))
+            .collect()
+    }
+
+    /// Samples of all series, a column for each state.
+    fn synthesis(&self, x: &DVector<f64>) -> DMatrix<f64> {
+        &self.basis.synthesis * DMatrix::from_column_slice(self.basis.terms(), self.states.len(), x.as_slice())
+    }
+
+    /// `ω dx/dθ - f` in coefficients, and the samples of the point as the present ones.
+    fn residual(&mut self, x: &DVector<f64>) -> DVector<f64> {
+        let series = self.synthesis(x);
+        let (terms, count) = (self.basis.terms(), self.model.about().states.len());
+        let mut rates = DMatrix::zeros(self.inputs.len(), self.states.len());
+        let mut dx = vec![0.0; count];
+        self.samples.resize(self.inputs.len(), vec![0.0; count]);
+        for k in 0..self.inputs.len() {
+            for (place, &state) in self.states.iter().enumerate() {
+                self.samples[k][state] = series[(k, place)];
+            }
+            self.model
+                .derivative(&self.constants, &self.samples[k], &self.inputs[k], &mut dx);
+            self.states
+                .iter()
+                .enumerate()
+                .for_each(|(place, &state)| rates[(k, place)] = dx[state]);
+        }
+        let forced = &self.basis.analysis * rates;
+        DVector::from_fn(x.len(), |row, _| {
+            let (place, term) = (row / terms, row % terms);
+            let turned = self
+                .basis
+                .derivative(term)
+                .map(|(partner, factor)| -factor * x[place * terms + partner]);
+            -self.omega * turned.unwrap_or(0.0) - forced[(term, place)]
+        })
+    }
+
+    /// The Jacobian of [`Self::residual`] at the present point.
+    fn jacobian(&mut self) -> DMatrix<f64> {
+        let terms = self.basis.terms();
+        let unknowns = self.states.len() * terms;
+        let mut jacobian = DMatrix::zeros(unknowns, unknowns);
+        for row in 0..unknowns {
+            match self.basis.derivative(row % terms) {
+                Some((partner, factor)) => jacobian[(row, row / terms * terms + partner)] = self.omega * factor,
+                None => jacobian[(row, row)] = self.omega * RETURN,
+            }
+        }
+        let count = self.model.about().matrices.len();
+        self.matrices.resize(self.inputs.len(), vec![0.0; count]);
+        for ((x, u), nonzeros) in self.samples.iter().zip(&self.inputs).zip(&mut self.matrices) {
+            self.model.matrices(&self.p, x, u, nonzeros);
+        }
+        for (entry, at) in self
+            .model
+            .about()
+            .matrices
+            .iter()
+            .enumerate()
+            .filter(|(_, e)| e.matrix == Matrix::A)
+        {
+            let places = (self.places[usize::from(at.row)], self.places[usize::from(at.column)]);
+            let (Some(row), Some(column)) = places else { continue };
+            let mut block = jacobian.view_mut((row * terms, column * terms), (terms, terms));
+            let first = self.matrices[0][entry];
+            if self.matrices.iter().all(|at| at[entry] == first) {
+                (0..terms).for_each(|term| block[(term, term)] -= first);
+                continue;
+            }
+            let mut weighted = self.basis.synthesis.clone();
+            weighted
+                .row_iter_mut()
+                .zip(&self.matrices)
+                .for_each(|(mut row, at)| row *= at[entry]);
+            block -= &self.basis.analysis * weighted;
+        }
+        jacobian
+    }
+
+    /// The largest of the states' steps, each relative to the largest coefficient of its state.
+    fn length(&self, step: &DVector<f64>, x: &DVector<f64>) -> f64 {
+        let terms = self.basis.terms();
+        let lengths = (0..self.states.len()).map(|place| {
+            let (step, x) = (step.rows(place * terms, terms), x.rows(place * terms, terms));
+            step.amax() / x.amax().max(f64::MIN_POSITIVE)
+        });
+        lengths.fold(0.0, |longest, length| {
+            if length > longest || length.is_nan() {
+                length
+            } else {
+                longest
+            }
+        })
+    }
+}

@@ -1,0 +1,123 @@
+//! Harmonic balance against closed forms, time integration and differences.
+
+#[path = "support/strut.rs"]
+mod strut;
+
+use qcar_runtime::model::Model;
+use qcar_runtime::response::periodic::{Drive, Periodic};
+use std::f64::consts::TAU;
+use strut::{Parts, Strut};
+
+const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 95.0, 9e5];
+const DRY: Parts = Parts {
+    powertrain: false,
+    friction: true,
+};
+
+fn drive(frequency: f64, velocity: f64) -> Drive {
+    Drive {
+        frequency,
+        amplitude: velocity * TAU * frequency,
+        power: 2,
+    }
+}
+
+/// Fourier coefficients of the accelerations over the last of many periods of classical Runge-Kutta, relative in phase
+/// to the pad's acceleration `A cos θ`.
+fn integrated(model: &Strut, p: &[f64], drive: &Drive, periods: usize) -> Vec<[(f64, f64); 3]> {
+    let omega = TAU * drive.frequency;
+    let steps = (1.0 / (drive.frequency * 2e-4)).ceil() as usize;
+    let h = 1.0 / (drive.frequency * steps as f64);
+    let pad = |t: f64| {
+        let a = drive.amplitude / (omega * omega);
+        [-a * (omega * t).cos(), a * omega * (omega * t).sin(), 0.0]
+    };
+    let n = model.about().states.len();
+    let f = |t: f64, x: &[f64]| {
+        let mut dx = vec![0.0; n];
+        model.derivative(p, x, &pad(t), &mut dx);
+        dx
+    };
+    let add = |x: &[f64], k: &[f64], h: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + h * k).collect() };
+    let mut x = vec![0.0; n];
+    let mut sums = vec![[(0.0, 0.0); 3]; 3];
+    for step in 0..periods * steps {
+        let t = step as f64 * h;
+        if step >= (periods - 1) * steps {
+            let mut y = vec![0.0; 3];
+            model.outputs(p, &x, &pad(t), &mut y);
+            for (sums, y) in sums.iter_mut().zip(y) {
+                for (order, sum) in sums.iter_mut().enumerate() {
+                    let angle = omega * t * (order + 1) as f64;
+                    sum.0 += 2.0 / steps as f64 * y * angle.cos();
+                    sum.1 -= 2.0 / steps as f64 * y * angle.sin();
+                }
+            }
+        }
+        let k1 = f(t, &x);
+        let k2 = f(t + 0.5 * h, &add(&x, &k1, 0.5 * h));
+        let k3 = f(t + 0.5 * h, &add(&x, &k2, 0.5 * h));
+        let k4 = f(t + h, &add(&x, &k3, h));
+        let slope: Vec<f64> = (0..n)
+            .map(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0)
+            .collect();
+        x = add(&x, &slope, h);
+    }
+    sums
+}
+
+#[test]
+fn dry_friction_shows_the_harmonics_that_integration_finds() {
+    let model = Strut::new(DRY);
+    let periodic = Periodic::new(&model, 0, 15);
+    let drives: Vec<Drive> = (0..60).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
+    for (drive, cycle) in drives.iter().zip(periodic.walk(&P, &drives, &[0, 1], &[])).step_by(20) {
+        assert!(cycle.converged);
+        let expected = integrated(&model, &P, drive, 30);
+        for (found, expected) in cycle.outputs.iter().zip(expected) {
+            let scale = expected[0].0.hypot(expected[0].1);
+            for (order, (re, im)) in expected.into_iter().enumerate() {
+                let error = (found[order + 1].re - re).hypot(found[order + 1].im - im) / scale;
+                assert!(error < 4e-3, "{} Hz, harmonic {}: {error}", drive.frequency, order + 1);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_slopes_are_those_of_differences() {
+    let model = Strut::new(DRY);
+    let periodic = Periodic::new(&model, 0, 5);
+    let drive = drive(3.0, 0.1);
+    let groups: Vec<Vec<usize>> = (0..P.len()).map(|k| vec![k]).collect();
+    let cycle = periodic.cycle(&P, &drive, &[0, 1], &groups, None);
+    for k in 0..P.len() {
+        let at = |by: f64| {
+            let mut p = P;
+            p[k] *= 1.0 + by;
+            periodic
+                .cycle(&p, &drive, &[0, 1], &[], Some(&cycle.coefficients))
+                .outputs
+        };
+        let (up, down) = (at(1e-4), at(-1e-4));
+        for output in 0..2 {
+            let expected = (up[output][1] - down[output][1]) / (2e-4 * P[k]);
+            let found = cycle.slopes[k][output][1];
+            let scale = expected.norm().max(1e-4 * cycle.outputs[output][1].norm() / P[k]);
+            assert!(
+                (found - expected).norm() < 0.02 * scale,
+                "parameter {k}: {found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn a_linear_model_answers_in_its_first_harmonic_alone() {
+    let model = Strut::new(Parts { friction: false, ..DRY });
+    let cycle = Periodic::new(&model, 0, 3).cycle(&P[..9], &drive(5.0, 0.1), &[0], &[], None);
+    let expected = integrated(&model, &P[..9], &drive(5.0, 0.1), 60)[0][0];
+    let found = cycle.outputs[0][1];
+    assert!((found.re - expected.0).hypot(found.im - expected.1) < 1e-6 * found.norm());
+    assert!(cycle.outputs[0][2].norm() < 1e-9 * found.norm());
+}
