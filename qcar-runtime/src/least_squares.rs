@@ -232,31 +232,38 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     /// Shrinks the trust region until a step lowers the cost, and takes that step.
     fn iterate(&mut self, interior: &Interior, optimality: f64, options: &Options) -> Option<Stop> {
         let model = Model::new(interior, &self.normal);
-        let mut finite = true;
         loop {
             if self.evaluations >= options.evaluations {
                 return Some(Stop::Evaluations);
             }
             let step = model.step(&self.here.x, self.bounds, self.radius, optimality);
             self.try_step(&step);
-            let usable = self.trial.cost.is_finite() && self.trial.jacobian.iter().all(|value| value.is_finite());
-            let reduction = if usable {
-                self.here.cost - self.trial.cost
-            } else {
-                f64::NEG_INFINITY
-            };
-            let settled = self.settled(&step, interior, reduction, options);
+            let cost = self.here.cost;
+            let reduction = cost - self.trial.cost;
+            let lower = reduction > 0.0;
+            let accepted = lower && self.accept();
+            let usable = accepted || (!lower && reduction.is_finite());
+            let reduction = if usable { reduction } else { f64::NEG_INFINITY };
+            let settled = self.settled(&step, interior, cost, reduction, options);
             self.adapt_radius(&step, reduction);
-            finite &= usable || !settled.is_some_and(|stop| stop == Stop::Step);
-            if reduction > 0.0 {
-                std::mem::swap(&mut self.here, &mut self.trial);
-                self.normal.assemble(&self.here.jacobian, &self.here.residual);
+            if accepted {
                 return settled;
             }
             if let Some(stop) = settled {
-                return Some(if finite { stop } else { Stop::NotFinite });
+                return Some(if usable { stop } else { Stop::NotFinite });
             }
         }
+    }
+
+    /// Moves to the trial point, unless its linearisation holds a value that is not finite.
+    fn accept(&mut self) -> bool {
+        std::mem::swap(&mut self.here, &mut self.trial);
+        let finite = self.normal.assemble(&self.here.jacobian, &self.here.residual);
+        if !finite {
+            std::mem::swap(&mut self.here, &mut self.trial);
+            self.normal.assemble(&self.here.jacobian, &self.here.residual);
+        }
+        finite
     }
 
     fn try_step(&mut self, step: &Step) {
@@ -266,8 +273,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     }
 
     /// The tests of Moré (1978), section 8, on what the step promised and what it did.
-    fn settled(&self, step: &Step, interior: &Interior, reduction: f64, options: &Options) -> Option<Stop> {
-        let cost = self.here.cost;
+    fn settled(&self, step: &Step, interior: &Interior, cost: f64, reduction: f64, options: &Options) -> Option<Stop> {
         let ratio = reduction / step.predicted;
         if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {
             return Some(Stop::Cost);
