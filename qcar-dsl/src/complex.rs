@@ -29,14 +29,6 @@ impl Complex {
         }
     }
 
-    /// `factor self`
-    pub fn scale(self, g: &mut Graph, factor: Expr) -> Self {
-        Complex {
-            re: g.mul(factor, self.re),
-            im: g.mul(factor, self.im),
-        }
-    }
-
     /// The derivative of both parts.
     pub fn derivative(self, g: &mut Graph, by: &mut Differential) -> Self {
         Complex {
@@ -91,5 +83,12 @@ impl Scalar for Complex {
         let (re, im) = (g.div(other.re, square), g.div(other.im, square));
         let reciprocal = Complex { re, im: g.neg(im) };
         self.mul(g, reciprocal)
+    }
+
+    fn scale(self, g: &mut Graph, factor: Expr) -> Self {
+        Complex {
+            re: g.mul(factor, self.re),
+            im: g.mul(factor, self.im),
+        }
     }
 }

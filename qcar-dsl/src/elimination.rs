@@ -1,6 +1,7 @@
 //! Sparse symmetric systems solved symbolically: L D Lᵀ at compile time, over real or complex expressions.
 //!
-//! The unknown with the fewest neighbours goes first, so that chains and trees of masses eliminate without fill.
+//! The unknown with the fewest neighbours goes first, so that chains and trees of masses eliminate without fill; of
+//! several the last, since what is excited and seen most comes first in a model.
 //! Zeros are structural: what is not there costs nothing.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -23,6 +24,8 @@ pub trait Scalar: Copy {
     fn mul(self, g: &mut Graph, other: Self) -> Self;
     /// `self / other`
     fn div(self, g: &mut Graph, other: Self) -> Self;
+    /// `factor self` for a real factor
+    fn scale(self, g: &mut Graph, factor: Expr) -> Self;
 }
 
 impl Scalar for Expr {
@@ -52,6 +55,10 @@ impl Scalar for Expr {
 
     fn div(self, g: &mut Graph, other: Self) -> Self {
         g.div(self, other)
+    }
+
+    fn scale(self, g: &mut Graph, factor: Expr) -> Self {
+        g.mul(factor, self)
     }
 }
 
@@ -148,7 +155,7 @@ impl<S: Scalar> Factors<S> {
     pub fn of(g: &mut Graph, mut matrix: Symmetric<S>) -> Self {
         let mut left: BTreeSet<usize> = (0..matrix.size).collect();
         let mut steps = Vec::with_capacity(matrix.size);
-        while let Some(&unknown) = left.iter().min_by_key(|&&k| neighbours(&matrix, &left, k).len()) {
+        while let Some(&unknown) = left.iter().rev().min_by_key(|&&k| neighbours(&matrix, &left, k).len()) {
             left.remove(&unknown);
             let row = neighbours(&matrix, &left, unknown);
             let pivot = matrix.get(unknown, unknown).unwrap_or_else(|| S::zero(g));

@@ -10,8 +10,9 @@ use crate::expr::Symbol;
 use crate::program::{Op, Program, Value};
 use crate::schedule::Compiled;
 
-/// Lines of a frequency response that are computed together.
-const BLOCK: usize = 32;
+/// Lines of a frequency response that are computed together: enough to hide the interpretation of an operation, and few
+/// enough that the values of a whole program stay close to the processor.
+const BLOCK: usize = 16;
 
 thread_local! {
     static SCRATCH: RefCell<Vec<f64>> = const { RefCell::new(Vec::new()) };

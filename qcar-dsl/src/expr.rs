@@ -165,6 +165,14 @@ impl Graph {
             _ if self.is(b, 0.0) => a,
             (_, Node::Neg(c)) => self.sub(a, c),
             (Node::Neg(c), _) => self.sub(b, c),
+            (Node::Constant(x), _) if f64::from_bits(x) < 0.0 => {
+                let less = self.constant(-f64::from_bits(x));
+                self.sub(b, less)
+            }
+            (_, Node::Constant(x)) if f64::from_bits(x) < 0.0 => {
+                let less = self.constant(-f64::from_bits(x));
+                self.sub(a, less)
+            }
             _ => self.intern(Node::Add(a.min(b), a.max(b))),
         }
     }

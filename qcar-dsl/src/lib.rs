@@ -28,6 +28,8 @@ pub mod front;
 pub mod about;
 // Sparse symmetric systems solved symbolically.
 pub mod elimination;
+// Sums with common factors taken out.
+pub mod combination;
 // The force of a link in its own terms.
 pub mod law;
 // Graph to equations.

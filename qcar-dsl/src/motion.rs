@@ -13,6 +13,7 @@ mod tyre;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::check::Checked;
+use crate::combination::combine;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Substitution, Symbol};
 use crate::law::{self, Law};
 use crate::model::{CoordinateKind, Direction, Quantity, Signal};
@@ -178,14 +179,10 @@ impl<'a> Derivation<'a> {
 
     /// `Σ coefficient value(coordinate)` over the stretch of a link, where there is a value.
     fn along(&mut self, l: LinkId, value: impl Fn(&mut Graph, CoordinateId) -> Option<Expr>) -> Expr {
-        let mut sum = self.g.constant(0.0);
-        for &(c, coefficient) in self.stretch_of(l) {
-            if let Some(value) = value(self.g, c) {
-                let term = self.g.mul(coefficient, value);
-                sum = self.g.add(sum, term);
-            }
-        }
-        sum
+        let held = self.stretch_of(l).iter();
+        let terms = held.filter_map(|&(c, coefficient)| Some((coefficient, value(self.g, c)?)));
+        let terms: Vec<(Expr, Expr)> = terms.collect();
+        combine(self.g, terms)
     }
 
     // Definitions, each in terms of earlier ones

@@ -7,6 +7,7 @@
 
 use crate::about::Source;
 use crate::check::Checked;
+use crate::combination::combine;
 use crate::complex::Complex;
 use crate::elimination::{Factors, Scalar, Symmetric, outer};
 use crate::expr::{CoordinateId, Differential, Expr, Graph, LinkId, Symbol};
@@ -269,10 +270,10 @@ fn order(g: &mut Graph, quantity: Quantity) -> Complex {
 
 /// `Σ coefficient value(coordinate)`
 fn along(g: &mut Graph, combination: &[(CoordinateId, Expr)], values: &[Complex]) -> Complex {
-    combination.iter().fold(Complex::zero(g), |sum, &(c, coefficient)| {
-        let term = values[c.0 as usize].scale(g, coefficient);
-        sum.add(g, term)
-    })
+    let terms = combination
+        .iter()
+        .map(|&(c, coefficient)| (coefficient, values[c.0 as usize]));
+    combine(g, terms)
 }
 
 fn inertia(model: &Checked, c: usize) -> Option<Expr> {

@@ -289,3 +289,14 @@ fn a_rolling_tyre_says_where_its_wheel_is() {
         .collect();
     assert_eq!(axes, [("z", 1, 5), ("x", 3, 7)]);
 }
+
+#[test]
+fn a_tyre_has_a_force_though_nobody_sees_it() {
+    let p = [
+        586.1, 33.1, 5.1, 24.1, 53.4, 55300.0, 4140.0, 0.625, 0.672, 535e3, 843.0, 644e3, 842.0, 390e3, 561.0, 250e3,
+        200.0,
+    ];
+    let evaluator = Evaluator::new(&derive(common::axle_d()));
+    let force = evaluator.contact_force(&constants(&evaluator, &p), &[0.0; 10], -0.02, 0.3);
+    assert_close("contact force", &[force], &[-0.02 * 250e3 + 0.3 * 200.0], 1e-14, 0.0);
+}

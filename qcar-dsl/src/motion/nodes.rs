@@ -5,6 +5,7 @@
 //! of the whole group places its leader, and the others are placed by their offsets from the leader.
 
 use super::{Derivation, Role};
+use crate::combination::combine;
 use crate::elimination::{Factors, Symmetric};
 use crate::expr::{CoordinateId, Differential, Expr, Leaves, LinkId, Substitution, Symbol};
 use crate::law::Law;
@@ -178,15 +179,13 @@ impl Derivation<'_> {
 
     /// The part of a stretch, or of its rate, that the coordinates of other roles give.
     fn along_others(&mut self, l: LinkId, role: Role, value: fn(&mut Self, CoordinateId) -> Expr) -> Expr {
-        let mut sum = self.g.constant(0.0);
-        for (c, coefficient) in self.reduced[l.0 as usize].clone() {
-            if self.roles[c.0 as usize] != role {
-                let value = value(self, c);
-                let term = self.g.mul(coefficient, value);
-                sum = self.g.add(sum, term);
-            }
-        }
-        sum
+        let mut terms = self.reduced[l.0 as usize].clone();
+        terms.retain(|&(c, _)| self.roles[c.0 as usize] != role);
+        let terms: Vec<(Expr, Expr)> = terms
+            .into_iter()
+            .map(|(c, coefficient)| (coefficient, value(self, c)))
+            .collect();
+        combine(self.g, terms)
     }
 
     /// Solves the balances of the nodes of one role. `law` gives for a link how its force grows with what is solved
