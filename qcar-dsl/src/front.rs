@@ -40,11 +40,14 @@ pub fn check_tokens(tokens: TokenStream, load: Load) -> Result<Checked, TokenStr
     front.finish(checked).map_err(|report| compile_errors(&report, &places))
 }
 
+/// One member of a family: its options, and what its check gave.
+pub type Member = (Choices, Result<Checked, Report>);
+
 /// Checks every valid member of a family, in the order in which its options list their values.
 ///
 /// # Errors
 /// The report of a file that is no family, or cannot be read; a refused member has a report of its own.
-pub fn check_members(source: Source, load: Load) -> Result<Vec<(Choices, Result<Checked, Report>)>, Report> {
+pub fn check_members(source: Source, load: Load) -> Result<Vec<Member>, Report> {
     let mut front = Front::new(source, load);
     let file = front.file();
     let Some((file, family)) = file.as_ref().and_then(|file| Some((file, front.one_axle(file)?))) else {
@@ -195,11 +198,14 @@ impl<'a> Front<'a> {
 }
 
 fn elements(file: &File) -> Vec<&Element> {
-    let element = |item| match item {
-        &Item::Element(ref element) => Some(element),
+    file.items.iter().filter_map(as_element).collect()
+}
+
+fn as_element(item: &Item) -> Option<&Element> {
+    match item {
+        Item::Element(element) => Some(element),
         Item::Axle(_) => None,
-    };
-    file.items.iter().filter_map(element).collect()
+    }
 }
 
 /// The mistakes of an inline macro at the compiler's own places.

@@ -168,8 +168,9 @@ pub fn solve(mut matrix: Vec<Vec<Dual>>, mut columns: Vec<Vec<Dual>>) -> Vec<Vec
                 continue;
             }
             let factor = matrix[row][at].over(&matrix[at][at]);
-            for place in at..size {
-                matrix[row][place] = matrix[row][place].minus(&factor.times(&matrix[at][place]));
+            let pivot_row = matrix[at].clone();
+            for (entry, own) in matrix[row].iter_mut().zip(&pivot_row).skip(at) {
+                *entry = entry.minus(&factor.times(own));
             }
             for column in &mut columns {
                 column[row] = column[row].minus(&factor.times(&column[at]));

@@ -9,14 +9,17 @@ use crate::model::{CoordinateKind, Model};
 use crate::source::Span;
 
 // Numbers to try a model with.
-mod dual;
-mod extremes;
-mod rank;
 mod sample;
+// What parameters can make of an expression.
+mod extremes;
+// Small dense matrices.
+mod dual;
+mod rank;
 // Laws about a point.
-mod response;
 mod slopes;
 mod stiffness;
+// The model about a point.
+mod response;
 // The rules.
 mod duplicates;
 mod held;
@@ -178,9 +181,7 @@ impl<'a> Scratch<'a> {
 
 /// Everything that a response depends on.
 fn expressions(model: &Model, slopes: &[Slopes]) -> Vec<Expr> {
-    let laws = slopes
-        .iter()
-        .flat_map(|slopes| slopes.all().into_iter().chain([slopes.force]));
+    let laws = slopes.iter().flat_map(Slopes::all);
     let rates = model
         .links
         .iter()

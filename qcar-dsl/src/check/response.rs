@@ -28,10 +28,19 @@ pub struct Seen {
     pub gradient: Vec<Complex>,
 }
 
+impl Seen {
+    fn new(dual: Dual) -> Seen {
+        Seen {
+            value: dual.value.abs().max(f64::MIN_POSITIVE),
+            gradient: dual.gradient,
+        }
+    }
+}
+
 /// Everything that can be seen of a model at one parameter set: responses of outputs and channels to each input, and
 /// for laws that are not linear the change of the force itself, in several motions.
 pub fn sensitivities(scratch: &Scratch, point: Point, estimated: &[u16]) -> Vec<Seen> {
-    let motions = if scratch.slopes.iter().any(|slopes| slopes.varies) {
+    let motions = if scratch.slopes.iter().any(|slopes| slopes.nonlinear) {
         MOTIONS
     } else {
         1
@@ -110,32 +119,30 @@ impl At<'_> {
         }
     }
 
-    /// A law that is not linear is also seen by its force: a parameter of it need not change a slope.
+    /// A law that is not linear is also seen by its force: a parameter of it need not change a slope. What only
+    /// shifts the place of rest is seen by nothing but the force itself.
     fn look_at_law(&self, link: usize, excited: &Excited, frequency: f64, seen: &mut Vec<Seen>) {
         let slopes = &self.scratch.slopes[link];
-        let mut force = self.dual(slopes.force);
-        for (inner, slopes) in self.scratch.model.links[link].law.inner.iter().zip(&slopes.inner) {
-            let change = self.dual(inner.rate).scaled(self.dual(slopes.force).value);
-            force
-                .gradient
-                .iter_mut()
-                .zip(change.gradient)
-                .for_each(|(own, more)| *own = *own + more);
+        let outputs = &self.scratch.model.outputs;
+        let reached = |signal: &Signal| excited.response(signal, frequency).value.abs() > ROUNDOFF;
+        let force = self.with_rates(link, self.dual(slopes.force));
+        if outputs.iter().any(|output| is_force_of(&output.signal, link)) {
+            seen.push(Seen::new(force));
+        } else if slopes.nonlinear && outputs.iter().any(|output| reached(&output.signal)) {
+            seen.push(Seen::new(force.minus(&self.dual(slopes.rest))));
         }
-        let reaches = |signal: &Signal| slopes.varies && excited.response(signal, frequency).value.abs() > ROUNDOFF;
-        if self
-            .scratch
-            .model
-            .outputs
+    }
+
+    /// A force with what the rates of the inner states do to it.
+    fn with_rates(&self, link: usize, force: Dual) -> Dual {
+        let inner = &self.scratch.model.links[link].law.inner;
+        inner
             .iter()
-            .any(|o| is_force_of(&o.signal, link) || reaches(&o.signal))
-        {
-            let value = force.value.abs().max(f64::MIN_POSITIVE);
-            seen.push(Seen {
-                value,
-                gradient: force.gradient,
-            });
-        }
+            .zip(&self.scratch.slopes[link].inner)
+            .fold(force, |force, (inner, slopes)| {
+                let change = self.dual(inner.rate).scaled(self.dual(slopes.force).value);
+                force.plus(&change)
+            })
     }
 
     /// The answers to a unit of each input, and to a unit of force inside each link that asks for it.
@@ -201,7 +208,7 @@ impl At<'_> {
             .map(Drive::Motion);
         let forces = (0..model.forces.len()).map(Drive::Force);
         let is_seen = |link: &usize| model.outputs.iter().any(|output| is_force_of(&output.signal, *link));
-        let looked_at = |link: &usize| self.scratch.slopes[*link].varies || is_seen(link);
+        let looked_at = |link: &usize| self.scratch.slopes[*link].nonlinear || is_seen(link);
         motions
             .chain(forces)
             .chain((0..model.links.len()).filter(looked_at).map(Drive::Inside))
@@ -323,13 +330,8 @@ fn add_relative(responses: Vec<Dual>, seen: &mut Vec<Seen>) {
     let largest = responses
         .iter()
         .fold(0.0_f64, |largest, response| largest.max(response.value.abs()));
-    for response in responses {
-        let value = response.value.abs();
-        if value > ROUNDOFF * largest {
-            seen.push(Seen {
-                value,
-                gradient: response.gradient,
-            });
-        }
-    }
+    let heard = responses
+        .into_iter()
+        .filter(|response| response.value.abs() > ROUNDOFF * largest);
+    seen.extend(heard.map(Seen::new));
 }

@@ -120,7 +120,7 @@ impl<'a> Values<'a> {
 }
 
 /// A number for a leaf, so that equal leaves have equal chances.
-fn tag(symbol: Symbol) -> u64 {
+pub fn tag(symbol: Symbol) -> u64 {
     let (kind, first, second) = match symbol {
         Symbol::Parameter(index) => (1, index, 0),
         Symbol::Stretch(link) => (2, link.0, 0),

@@ -1,6 +1,7 @@
 //! The slopes of the laws: how the force of each link grows with its stretch, its rate and its inner states.
 
-use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
+use super::sample::{Values, tag, uniform};
+use crate::expr::{Differential, Expr, Graph, LinkId, Substitution, Symbol};
 use crate::model::{Model, Term};
 
 /// A law in its own terms.
@@ -15,15 +16,17 @@ pub struct Slopes {
     pub inertance: Expr,
     /// The inner states.
     pub inner: Vec<InnerSlopes>,
-    /// The slopes depend on the motion: the law is not linear.
-    pub varies: bool,
+    /// The force at rest: a preload.
+    pub rest: Expr,
+    /// Neither the force nor a rate is linear in the motion.
+    pub nonlinear: bool,
 }
 
 impl Slopes {
     /// Every expression.
     pub fn all(&self) -> Vec<Expr> {
         let inner = self.inner.iter().flat_map(InnerSlopes::all);
-        [self.stiffness, self.damping, self.inertance]
+        [self.force, self.rest, self.stiffness, self.damping, self.inertance]
             .into_iter()
             .chain(inner)
             .collect()
@@ -76,13 +79,45 @@ fn of_link(model: &Model, g: &mut Graph, id: LinkId) -> Slopes {
         damping,
         inertance,
         inner,
-        varies: false,
+        rest: at_rest(g, force),
+        nonlinear: false,
     };
-    slopes.varies = g
-        .symbols(slopes.all())
-        .iter()
-        .any(|leaf| !matches!(leaf, Symbol::Parameter(_)));
+    let laws: Vec<Expr> = [force]
+        .into_iter()
+        .chain(law.inner.iter().map(|inner| inner.rate))
+        .collect();
+    slopes.nonlinear = laws.into_iter().any(|law| is_nonlinear(g, law));
     slopes
+}
+
+/// An expression with nothing moved.
+fn at_rest(g: &mut Graph, e: Expr) -> Expr {
+    let zero = g.constant(0.0);
+    let moves = g
+        .symbols([e])
+        .into_iter()
+        .filter(|leaf| !matches!(leaf, Symbol::Parameter(_)));
+    Substitution::new(moves.map(|leaf| (leaf, zero)).collect()).apply(g, e)
+}
+
+/// Twice the motion does not give twice the change.
+fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
+    let rest = at_rest(g, e);
+    let change = g.sub(e, rest);
+    let value = |seed: u64, size: f64| {
+        let leaf = |symbol| match symbol {
+            Symbol::Parameter(_) => 0.5 + uniform(1, tag(symbol)),
+            _ => size * (2.0 * uniform(seed, tag(symbol)) - 1.0),
+        };
+        Values::new(g, &leaf).of(change)
+    };
+    // Small motions too: a stop may be out of reach of none, or of all, of the large ones.
+    let sizes = [1.0, 0.1, 0.01, 0.001];
+    let mut points = sizes.into_iter().flat_map(|size| (1..=4).map(move |seed| (seed, size)));
+    points.any(|(seed, size)| {
+        let (once, twice) = (value(seed, size), value(seed, 2.0 * size));
+        (twice - 2.0 * once).abs() > 1e-9 * twice.abs()
+    })
 }
 
 /// The force of terms but for what inerters add, and the sum of the inerters.

@@ -4,6 +4,7 @@ use proc_macro2::Delimiter;
 
 use super::tokens::{Parsed, Tokens};
 use crate::diagnostic::reading;
+use crate::diagnostic::units::unknown_unit;
 use crate::syntax::{Name, Number, UnitFactor, UnitText};
 use crate::units;
 
@@ -158,6 +159,9 @@ fn unit_of_number(tokens: &mut Tokens, suffix: Name) -> Parsed<UnitText> {
         suffix.span
     };
     if !suffix.text.is_empty() {
+        if units::symbol(&suffix.text).is_none() {
+            return Err(Box::new(unknown_unit(suffix.span, &suffix.text)));
+        }
         factors = raised(
             tokens,
             vec![UnitFactor {

@@ -47,13 +47,16 @@ impl Thing {
     }
 }
 
+/// The names of a direction, with where they are declared.
+pub type Things = BTreeMap<String, (Span, Thing)>;
+
 /// The names of a model.
 #[derive(Debug, Default)]
 pub struct Names {
     /// Parameters and derived quantities, with where they are declared.
     pub globals: BTreeMap<String, (Span, Global)>,
     /// In the order of the text.
-    pub directions: Vec<(String, BTreeMap<String, (Span, Thing)>)>,
+    pub directions: Vec<(String, Things)>,
     /// What options have switched off, with the options.
     pub off: BTreeMap<String, String>,
     /// Parameters, derived quantities and elements that something uses.
@@ -71,7 +74,7 @@ impl Names {
         }
     }
 
-    fn direction(&self, name: &str) -> Option<&BTreeMap<String, (Span, Thing)>> {
+    fn direction(&self, name: &str) -> Option<&Things> {
         self.directions
             .iter()
             .find(|(known, _)| known == name)
@@ -128,11 +131,10 @@ impl Resolver<'_> {
                 "the model".to_string()
             };
             self.report(mistakes::duplicate_name(name.span, first, &name.text, &place));
-            return;
         }
         let home = self.names.directions.iter_mut().find(|(known, _)| known == direction);
         if let Some((_, names)) = home {
-            names.insert(name.text.clone(), (name.span, thing));
+            names.entry(name.text.clone()).or_insert((name.span, thing));
         }
     }
 

@@ -1,0 +1,187 @@
+//! What the rules of structure and visibility accept and refuse, case by case.
+
+use qcar_dsl::diagnostic::Code::{self, *};
+use qcar_dsl::front::check_text;
+use qcar_dsl::source::Source;
+
+/// The codes that a model earns, in the order of the text; none where it is accepted without a word.
+fn codes(text: &str) -> Vec<Code> {
+    let source = Source {
+        name: "case.axle".to_string(),
+        text: text.to_string(),
+    };
+    let report = match check_text(source, &|_, _| Err("no files".to_string())) {
+        Ok(checked) => checked.warnings().clone(),
+        Err(report) => report,
+    };
+    report.diagnostics.iter().map(|diagnostic| diagnostic.code).collect()
+}
+
+#[track_caller]
+fn earns(direction: &str, expected: &[Code]) {
+    let parameters = "known param m: kg = 1; known param k: N/m = 1; known param c: N s/m = 1; known param r: 1 = 1;";
+    let used = "let used = m*k*c*r;";
+    let text = format!("axle case {{ {parameters} {used} direction z {{ {direction} }} output z.a.position; }}");
+    let found: Vec<Code> = codes(&text).into_iter().filter(|code| *code != UnusedLet).collect();
+    assert_eq!(found, expected, "{direction}");
+}
+
+#[test]
+fn masses_are_held_or_float_as_a_whole() {
+    let held = "road p; mass a = m; link l: a - p { spring k; }";
+    earns(held, &[]);
+    earns("mass a = m; force f on a; link ground: a { spring k; }", &[]);
+    earns("mass a = m; mass b = m; force f on a; link l: a - b { spring k; }", &[]);
+    earns(
+        "gravity g; mass a = m; mass b = m; force f on a; link l: a - b { spring k; }",
+        &[MassNotHeld],
+    );
+    earns(
+        "road p; mass a = m; mass b = m; link l: a - p { spring k; }",
+        &[MassNotHeld],
+    );
+    earns(
+        "road p; mass a = m; mass b = m; link l: a - p { spring k; } link n: a - b { damper c; }",
+        &[],
+    );
+    earns(
+        "mass a = m; mass b = m; mass d = m; force f on a; link l: a - b { spring k; }",
+        &[MassNotHeld],
+    );
+    earns("mass a = m; force f on a;", &[]);
+}
+
+#[test]
+fn gravity_needs_a_spring() {
+    let on = |law: &str| format!("road p; gravity g; mass a = m; link l: a - p {{ {law} }}");
+    earns(&on("spring k;"), &[]);
+    earns(&on("damper c;"), &[MassSinks]);
+    earns(&on("force = k*max(s + 1 m, 0);"), &[]);
+    earns(&on("state f: N; rate f = k*v - k/c*f; force = f;"), &[MassSinks]);
+    earns(&on("state f: N; rate f = k*v; force = f;"), &[]);
+    earns(
+        &format!(
+            "road p; gravity g; mass a = m; node n; {}",
+            "link l: a - n { spring k; } link q: n - p { damper c; }"
+        ),
+        &[MassSinks],
+    );
+}
+
+#[test]
+fn levers_hold_as_far_as_they_reach() {
+    earns(
+        "road p; mass a = m; mass b = m; link l: a - p { spring k; } link arm: a - r*b { spring k; }",
+        &[],
+    );
+    earns(
+        "road p; mass a = m; inertia t = 1 kg m^2; link l: a + 1 m*t - p { spring k; }",
+        &[MassNotHeld],
+    );
+    let two = "link l: a + 1 m*t - p { spring k; } link n: a - 1 m*t - p { spring k; }";
+    earns(&format!("road p; mass a = m; inertia t = 1 kg m^2; {two}"), &[]);
+}
+
+#[test]
+fn nodes_are_solved_where_they_can_be() {
+    let chain = |upper: &str, lower: &str| {
+        let links = format!("link u: a - n {{ {upper} }} link l: n - p {{ {lower} }}");
+        format!("road p; mass a = m; node n; link rest: a - p {{ spring k; damper c; }} {links}")
+    };
+    earns(&chain("spring k;", "spring k;"), &[]);
+    earns(&chain("damper c;", "spring k;"), &[]);
+    earns(&chain("damper c;", "damper c;"), &[]);
+    earns(&chain("inerter m;", "spring k;"), &[]);
+    earns(&chain("damper c;", "force = k*s*abs(s)/1 m;"), &[]);
+    earns(&chain("spring k;", "force = k*s*abs(s)/1 m;"), &[NodeNonlinear]);
+    earns(&chain("spring k;", "force = c*v*abs(v)/1 m/s;"), &[NodeNonlinear]);
+    earns(
+        "road p; mass a = m; node n; link l: a - p { spring k; }",
+        &[NodeNotAttached],
+    );
+    let floating = "link x: a - p { spring k; } link y: n - q { spring k; }";
+    earns(
+        &format!("road p; mass a = m; node n; node q; {floating}"),
+        &[NodesFloat],
+    );
+}
+
+#[test]
+fn dampers_take_energy() {
+    let law = |law: &str| format!("road p; mass a = m; link l: a - p {{ spring k; {law} }}");
+    earns(&law("damper c;"), &[]);
+    earns(&law("damper -c;"), &[NegativeDamping]);
+    earns(&law("inerter -m;"), &[NegativeDamping]);
+    earns(&law("force = c*v*(1 + (v/1 m/s)^2);"), &[]);
+    earns(&law("force = c*v*(1 - (v/1 m/s)^2);"), &[LawGivesEnergy]);
+    earns(&law("force = if v > 0 { 2*c*v } else { c*v };"), &[]);
+    earns(&law("force = 10 N*sign(v);"), &[]);
+    earns(&law("force = 10 N;"), &[]);
+    earns(&law("force = k*s - c*v;"), &[LawGivesEnergy]);
+}
+
+#[test]
+fn a_spring_beside_a_spring_is_one_spring() {
+    let second = |link: &str| format!("road p; mass a = m; link l: a - p {{ spring k; }} link n: {link}");
+    earns(&second("a - p { damper c; }"), &[]);
+    earns(&second("a - p { spring k; }"), &[DuplicateLink]);
+    earns(&second("p - a { damper c; spring k; }"), &[DuplicateLink]);
+    earns(&second("r*a - p { spring k; }"), &[]);
+}
+
+/// A body on a wheel on a tyre, its law and its parameters to be estimated.
+fn sees(parameters: &str, law: &str, expected: &[Code]) {
+    let known = "known param m: kg = 5; param m_w: kg = 1; param k_t: N/m = 1;";
+    let links = format!("link t: wheel - p {{ spring k_t; }} link l: body - wheel {{ {law} }}");
+    let masses = "road p; mass body = m - m_w; mass wheel = m_w;";
+    assert_eq!(
+        codes(&format!(
+            "axle case {{ {known} {parameters} direction z {{ {masses} {links} }} }}"
+        )),
+        expected,
+        "{law}"
+    );
+}
+
+#[test]
+fn parameters_are_told_apart_where_the_outputs_can() {
+    let two = "param a: N/m = 1; param b: N/m = 2;";
+    let law = "param a: N/m = 1; param f: N = 1;";
+    sees("param k: N/m = 1; param c: N s/m = 1;", "spring k; damper c;", &[]);
+    sees(two, "spring a + b;", &[OnlyTogether]);
+    sees(two, "spring sqrt(a*b);", &[OnlyTogether]);
+    sees(two, "spring a; force = b*s*(s/1 m)^2;", &[]);
+    sees("param k: N/m = 1; known param q: N/m = 1;", "spring k + q;", &[]);
+    // A stop, friction and a preload: none of their parameters needs to change a slope.
+    sees(
+        "param k: N/m = 1; param gap: m = 0.02 in 0.01..0.05;",
+        "spring k; force = 9*k*min(s + gap, 0);",
+        &[],
+    );
+    sees(law, "spring a; force = f*sign(v);", &[]);
+    sees(law, "spring a; force = f*tanh(v/1 mm/s);", &[]);
+    // A relaxing branch: its stiffness and damping, but not the size of its inner state.
+    let maxwell = "state z: N; rate z = a*v - g*z; force = z;";
+    sees("param a: N/m = 1; param g: 1/s = 1;", maxwell, &[]);
+}
+
+#[test]
+fn the_size_of_an_inner_state_is_seen_by_nobody() {
+    let parameters = "param a: 1 = 1; param b: 1/s = 1; param e: N/m = 1;";
+    sees(
+        parameters,
+        "state z: m; rate z = a*v - b*z; force = e*z;",
+        &[OnlyTogether],
+    );
+}
+
+#[test]
+fn a_dyno_sees_its_own_law() {
+    let dyno = |law: &str| {
+        format!(
+            "axle case {{ param c: N s/m = 1; param w: m/s = 1; direction z {{ motion r; link d: r {{ {law} }} output d.force; }} }}"
+        )
+    };
+    assert_eq!(codes(&dyno("force = c*v/(1 + abs(v)/w);")), []);
+    assert_eq!(codes(&dyno("force = c*w*(v/w);")), [ParameterNotSeen]);
+}
