@@ -3,8 +3,10 @@
 //! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
 //! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.
 
-mod calculus;
+// Leaves found, and replaced.
 mod rewrite;
+// Values and derivatives.
+mod calculus;
 
 use std::collections::HashMap;
 

@@ -6,9 +6,12 @@
 //! Massless nodes are no stiff penalty masses. The balance of a node that a damper holds is solved for its velocity,
 //! and its position is a state; the balance of a node that only springs hold is solved for its position.
 
-mod newton;
-mod nodes;
+// What can roll.
 mod tyre;
+// Balances without mass.
+mod nodes;
+// Balances with mass.
+mod newton;
 
 use std::collections::{BTreeMap, BTreeSet};
 
