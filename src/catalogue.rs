@@ -39,6 +39,16 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     models::all().iter().map(|shipped| shipped.name)
 }
 
+/// The same as a list to choose from.
+pub fn listed() -> String {
+    names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// True for the name of a shipped model and for what looks like the path of a file.
+pub fn is_known(model: &str) -> bool {
+    models::find(model).is_some() || looks_like_a_path(model)
+}
+
 /// A model that can run.
 ///
 /// # Errors
@@ -96,8 +106,7 @@ fn looks_like_a_path(model: &str) -> bool {
 }
 
 fn unknown(model: &str) -> Problem {
-    let known: Vec<_> = names().map(|name| format!("`{name}`")).collect();
-    let remedy = format!("choose among {}, or give the path of a file", known.join(", "));
+    let remedy = format!("choose among {}, or give the path of a file", listed());
     flag(
         "MODEL",
         format!("`{model}`"),

@@ -39,6 +39,13 @@ pub struct Point {
     pub quantity: Quantity,
 }
 
+impl Point {
+    /// True where a sensor is one of the point's.
+    pub fn has(&self, sensor: &Channel) -> bool {
+        sensor.location == self.location && sensor.axis == self.axis && sensor.quantity == self.quantity
+    }
+}
+
 /// How frequency responses are estimated.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Estimator {
@@ -137,13 +144,10 @@ pub fn points(history: &History) -> Vec<Point> {
 /// # Errors
 /// Where the run recorded none.
 pub fn signal(history: &History, point: &Point) -> Result<Vec<f64>, InputError> {
-    let of_point = |channel: &Channel| {
-        channel.location == point.location && channel.axis == point.axis && channel.quantity == point.quantity
-    };
     let sensors: Vec<_> = history
         .signals
         .iter()
-        .filter(|(channel, _)| of_point(channel))
+        .filter(|(channel, _)| point.has(channel))
         .collect();
     if sensors.is_empty() {
         let measured: Vec<_> = points(history).iter().map(Point::to_string).collect();
@@ -160,7 +164,7 @@ pub fn signal(history: &History, point: &Point) -> Result<Vec<f64>, InputError> 
 /// The transmissibilities of a run over the pairs `(from, to)`, all by way of `reference`: the excitation.
 ///
 /// # Errors
-/// Where a point was not measured, the reference does not move, or does not reach the ends of a sweep, or where the
+/// Where a point was not measured or a sensor was dead, the reference does not move, or does not reach the ends of a sweep, or where the
 /// record is too short or too slowly sampled for the frequencies.
 pub fn transmissibilities(
     history: &History,
@@ -197,6 +201,7 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
         .map(|point| signal(history, point))
         .collect::<Result<Vec<_>, _>>()?;
     let frequencies = band::frequencies(history, &points[0], &signals[0], options)?;
+    check_alive(history, points)?;
     let rate = history.sample_rate;
     let mut lines = match options.estimator {
         Estimator::Local { lines, width } => local::lines(&signals, rate, &frequencies, lines, width),
@@ -211,6 +216,19 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
             .for_each(|line| line.release(hold(line.frequency / rate)));
     }
     Ok(lines)
+}
+
+/// A sensor that never changes is dead, and would halve the mean of its pair.
+fn check_alive(history: &History, points: &[Point]) -> Result<(), InputError> {
+    let involved = |channel: &Channel| points.iter().any(|point| point.has(channel));
+    let recorded = history.signals.iter().filter(|(channel, _)| involved(channel));
+    let dead = recorded.filter(|(_, samples)| samples.iter().all(|sample| *sample == samples[0]));
+    let problem = |channel: &Channel| {
+        let place = Place::Name(channel.name.clone());
+        let remedy = "leave the column out if its sensor was dead, or export the record again";
+        Problem::new(&history.file, place, "a signal that never changes", "a measurement", remedy)
+    };
+    InputError::unless_empty(dead.map(|(channel, _)| problem(channel)).collect(), Some(()))
 }
 
 /// The response of a zero-order hold, at `f` as a share of the sample rate, to the sampled signal that it holds.

@@ -443,6 +443,8 @@ fn what_a_record_cannot_tell_is_refused() {
     let late = record(pad[20_000..].to_vec(), pad[20_000..].to_vec());
     assert!(refusal(&late, &all).contains("expected a sweep from `start_frequency = 0.5`"));
     assert!(refusal(&record(vec![0.0; 9000], vec![1.0; 9000]), &all).contains("found a signal that is zero"));
+    let dead = record(pad.clone(), vec![0.2; pad.len()]);
+    assert!(refusal(&dead, &all).contains("found a signal that never changes"));
     let mut without_body = cut(43.0);
     without_body.signals.pop();
     let said = refusal(&without_body, &all);

@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::error::InputError;
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
 use qcar_runtime::transmissibility::Options;
@@ -22,6 +22,7 @@ mod files;
 /// Fit a model to the sweeps and time histories of a campaign
 ///
 /// Runs with the role `fit` are fitted; those that are `held_out` are only compared with.
+/// The exit status is 1 where the search does not end at a minimum.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar fit models/campaigns/axle_a_rig --out results")]
 pub struct Arguments {
@@ -69,10 +70,15 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(folder) = &arguments.out {
         files::write(&fitted, folder)?;
     }
-    Ok(match arguments.format {
+    let result = match arguments.format {
         Format::Text => render::text(&fitted),
         Format::Json => render::json(&fitted),
-    })
+    };
+    if fitted.fit.converged {
+        Ok(result)
+    } else {
+        Err(Failure::Finding(result))
+    }
 }
 
 /// A campaign, the model that was fitted to it, and what came out.
@@ -93,7 +99,7 @@ pub struct Fitted {
 pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
     let begun = Instant::now();
     let campaign = Campaign::open(folder)?;
-    let model = catalogue::load(choices.model.as_deref().unwrap_or(&campaign.model))?;
+    let model = load(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, choices)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
     let measure = || levels(&campaign, model.about(), wanted, &Options::default());
@@ -109,6 +115,19 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         levels,
         fit,
     })
+}
+
+/// The model that the user wants, else the campaign's.
+fn load(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
+    if wanted.is_none() && !catalogue::is_known(&campaign.model) {
+        let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
+        let remedy = format!(
+            "choose among {}, or give the path of a file with --model",
+            catalogue::listed()
+        );
+        return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
+    }
+    catalogue::load(wanted.unwrap_or(&campaign.model))
 }
 
 /// The campaign's plan with the user's choices.

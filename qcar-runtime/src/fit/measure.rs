@@ -195,7 +195,7 @@ fn observation(
         Test::Sweep(sweep) => (sweep.start_frequency, sweep.end_frequency),
         _ => (ratio.frequency[0], ratio.frequency[ratio.frequency.len() - 1]),
     };
-    let sensors = |point: &Point| history.signals.iter().filter(|(sensor, _)| at(sensor, point)).count();
+    let sensors = |point: &Point| history.signals.iter().filter(|(sensor, _)| point.has(sensor)).count();
     Observation {
         channel: channel.clone(),
         fitted,
@@ -206,10 +206,6 @@ fn observation(
         band,
         differences,
     }
-}
-
-fn at(sensor: &Sensor, point: &Point) -> bool {
-    sensor.location == point.location && sensor.axis == point.axis && sensor.quantity == point.quantity
 }
 
 /// For each pair of points, what its symmetric sensors say apart from each other.
@@ -245,7 +241,7 @@ fn differences(
 
 /// The points that both sides have a sensor at. The reference stays the mean of its sensors: the virtual centre pad.
 fn doubled(history: &History, reference: &Point, sides: [Side; 2]) -> Vec<Point> {
-    let has = |point: &Point, side: Side| history.signals.iter().any(|(s, _)| at(s, point) && s.side == side);
+    let has = |point: &Point, side: Side| history.signals.iter().any(|(s, _)| point.has(s) && s.side == side);
     points(history)
         .into_iter()
         .filter(|p| p != reference && sides.iter().all(|&side| has(p, side)))
@@ -253,7 +249,7 @@ fn doubled(history: &History, reference: &Point, sides: [Side; 2]) -> Vec<Point>
 }
 
 fn without(history: &History, points: &[Point], side: Side) -> History {
-    let dropped = |sensor: &Sensor| sensor.side == side && points.iter().any(|point| at(sensor, point));
+    let dropped = |sensor: &Sensor| sensor.side == side && points.iter().any(|point| point.has(sensor));
     let signals = history
         .signals
         .iter()
