@@ -2,8 +2,8 @@
 
 use proc_macro2::Delimiter;
 
+use super::block::{conditional, definition};
 use super::expression::{arguments, expression};
-use super::statement::{self, conditional};
 use super::tokens::{Parsed, Tokens};
 use super::unit::declared_unit;
 use crate::diagnostic::reading;
@@ -69,7 +69,7 @@ fn law_statement(tokens: &mut Tokens) -> Parsed<LawStatement> {
         Some("force") => force(tokens),
         Some("state") => state(tokens),
         Some("rate") => rate(tokens),
-        Some("let") => Ok(LawStatement::Let(statement::definition(tokens)?)),
+        Some("let") => Ok(LawStatement::Let(definition(tokens)?)),
         Some("if") => Ok(LawStatement::If(conditional(tokens, &mut law)?)),
         Some("rolling") => {
             tokens.take_word("rolling");

@@ -14,11 +14,16 @@ use crate::syntax::{Axle, AxleKind, File, Item, Path};
 mod scan;
 // What the Rust lexer may see.
 mod tokens;
-// The grammar, from the leaves up.
-mod expression;
-mod law;
-mod statement;
+// The grammar, from the leaves up: units and numbers.
 mod unit;
+// Expressions and conditions.
+mod expression;
+// What models and laws share.
+mod block;
+// Statements of laws.
+mod law;
+// Statements of models.
+mod statement;
 
 use statement::Scope;
 pub use tokens::FUNCTIONS;

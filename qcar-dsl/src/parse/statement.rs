@@ -1,12 +1,14 @@
 //! Statements of families, axles and directions.
 
+use super::block::{conditional, definition};
 use super::expression::{dotted, expression, option_condition};
 use super::law::law;
 use super::tokens::{Parsed, Tokens};
 use super::unit::{declared_unit, number};
 use crate::diagnostic::reading;
 use crate::syntax::{
-    Choice, Coordinate, CoordinateKind, Direction, If, Let, Link, Parameter, ParameterDefault, Requirement, Statement,
+    Choice, Coordinate, CoordinateKind, Direction, Expression, Link, Number, Parameter, ParameterDefault, Requirement,
+    Statement,
 };
 
 /// The block that a statement stands in.
@@ -195,45 +197,10 @@ fn parameter_default(tokens: &mut Tokens) -> Parsed<ParameterDefault> {
     }
 }
 
-fn range(tokens: &mut Tokens) -> Parsed<(crate::syntax::Number, crate::syntax::Number)> {
+fn range(tokens: &mut Tokens) -> Parsed<(Number, Number)> {
     let low = number(tokens)?;
     tokens.expect("..", "in 50 N/mm..800 N/mm")?;
     Ok((low, number(tokens)?))
-}
-
-/// `let NAME = expression "sentence";`, which laws have too.
-pub fn definition(tokens: &mut Tokens) -> Parsed<Let> {
-    const EXAMPLE: &str = "let m_body = m_corner - m_wheel;";
-    tokens.take_word("let");
-    let name = tokens.new_name("the name of a derived quantity", EXAMPLE)?;
-    tokens.expect("=", EXAMPLE)?;
-    let value = expression(tokens)?;
-    let doc = tokens.sentence();
-    tokens.expect(";", EXAMPLE)?;
-    Ok(Let { name, value, doc })
-}
-
-/// `if condition { … } else if condition { … } else { … }` around parts of any kind.
-pub fn conditional<'a, Part>(
-    tokens: &mut Tokens<'a>,
-    body: &mut dyn FnMut(Tokens<'a>) -> Vec<Part>,
-) -> Parsed<If<Part>> {
-    const EXAMPLE: &str = "if top_mount == on { … } else { … }";
-    let mut branches = Vec::new();
-    let mut otherwise = Vec::new();
-    loop {
-        tokens.take_word("if");
-        let condition = option_condition(tokens)?;
-        branches.push((condition, body(tokens.block(EXAMPLE)?)));
-        if !tokens.take_word("else") {
-            break;
-        }
-        if tokens.peek().as_deref() != Some("if") {
-            otherwise = body(tokens.block(EXAMPLE)?);
-            break;
-        }
-    }
-    Ok(If { branches, otherwise })
 }
 
 fn direction(tokens: &mut Tokens) -> Parsed<Statement> {
@@ -285,7 +252,7 @@ fn angle(tokens: &mut Tokens, example: &str) -> Parsed<bool> {
     }
 }
 
-fn inertia(tokens: &mut Tokens, example: &str) -> Parsed<crate::syntax::Expression> {
+fn inertia(tokens: &mut Tokens, example: &str) -> Parsed<Expression> {
     tokens.expect("=", example)?;
     expression(tokens)
 }

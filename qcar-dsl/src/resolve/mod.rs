@@ -10,16 +10,21 @@ use crate::syntax::{Axle, Element, Statement};
 
 // First the options.
 pub mod options;
-// Then names and values.
-mod names;
+// Then values and their units.
 mod quantity;
 mod value;
+// What names mean.
+mod names;
 // Then what is made of them, in the order in which it is resolved.
-mod connect;
 mod declare;
-mod law;
-mod see;
+// Linear combinations of coordinates.
 mod stretch;
+// Terms and inner states.
+mod law;
+// Points, forces and links.
+mod connect;
+// Outputs and channels.
+mod see;
 
 use names::Names;
 use options::Taken;

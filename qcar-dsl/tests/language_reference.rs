@@ -1,0 +1,41 @@
+//! Every example of the language reference is a model that the compiler accepts without a warning.
+
+use std::path::Path;
+
+use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::source::Source;
+
+/// The fenced blocks of a language.
+fn blocks(text: &str, language: &str) -> Vec<String> {
+    let fence = format!("```{language}\n");
+    let after = text.split(&fence).skip(1);
+    after
+        .filter_map(|rest| Some(rest.split_once("```")?.0.to_string()))
+        .collect()
+}
+
+#[test]
+fn the_examples_compile() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
+    let examples = blocks(&std::fs::read_to_string(path).unwrap(), "axle");
+    assert!(examples.len() >= 4);
+    for text in examples {
+        let source = Source {
+            name: "docs/language.md".to_string(),
+            text,
+        };
+        let load = |_: &str, _: &str| Err("the example loads no file".to_string());
+        let checked = match source.text.starts_with("family") {
+            true => check_members(source, &load)
+                .unwrap()
+                .into_iter()
+                .map(|(_, checked)| checked)
+                .collect(),
+            false => vec![check_text(source, &load)],
+        };
+        for checked in checked {
+            let checked = checked.unwrap_or_else(|report| panic!("{report}"));
+            assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
+        }
+    }
+}
