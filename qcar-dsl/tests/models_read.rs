@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::front::{check_members, check_text, check_tokens};
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 
@@ -66,4 +66,27 @@ fn every_file_prints_as_the_same_tree() {
         assert!(first.file == second.file, "{}", printed.text);
         assert_eq!(second.file.to_string(), printed.text);
     }
+}
+
+#[test]
+fn the_tokens_of_a_macro_give_the_same_model() {
+    let file = read(&models().join("axles/quarter_car.axle"));
+    let from_text = check_text(file.clone(), &load).unwrap();
+    let from_tokens = check_tokens(file.text.parse().unwrap(), &load).unwrap();
+    assert_eq!(from_tokens.text(), from_text.text());
+    let lines = |model: &qcar_dsl::model::Model| -> Vec<String> {
+        model.links.iter().map(|link| link.declared.line.clone()).collect()
+    };
+    assert_eq!(lines(&from_tokens), lines(&from_text));
+}
+
+#[test]
+fn a_mistake_in_a_macro_becomes_a_compile_error() {
+    let tokens = "axle a { direction z { road pad; mass body = m; link l: body - pad { spring k; } } }";
+    let errors = check_tokens(tokens.parse().unwrap(), &load).unwrap_err().to_string();
+    assert_eq!(errors.matches("compile_error").count(), 2, "{errors}");
+    assert!(
+        errors.contains("the model has no `m`") && errors.contains("the model has no `k`"),
+        "{errors}"
+    );
 }

@@ -220,7 +220,9 @@ fn coordinate(tokens: &mut Tokens) -> Parsed<Statement> {
     let example = match word.as_str() {
         "mass" => "mass body = m_body;",
         "inertia" => "inertia pitch = j_body;",
-        _ => "node n; motion theta: angle; road pad;",
+        "node" => "node rod;` or `node lever: angle;",
+        "road" => "road pad;",
+        _ => "motion rod;` or `motion theta: angle;",
     };
     let name = tokens.new_name("a name", example)?;
     let angle = angle(tokens, example)?;
