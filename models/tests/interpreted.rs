@@ -1,0 +1,133 @@
+//! Generated code and the run-time evaluator give the same bits, on random parameters, states and inputs.
+
+use proptest::prelude::*;
+use qcar_dsl::disk::compile_file;
+use qcar_dsl::evaluate::{self, Evaluator};
+use qcar_runtime::model::{Contact, Model, ResponseMut};
+
+/// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
+mod zoo {
+    qcar_derive::axle_file!("tests/zoo/laws.axle");
+    qcar_derive::axle_file!("tests/zoo/mechanisms.axle");
+}
+
+/// Every compiled model with the file it comes from.
+fn all() -> Vec<(String, &'static dyn Model)> {
+    let shipped = models::all().iter().map(|shipped| (shipped.file.to_string(), shipped.model));
+    let zoo: [(&str, &'static dyn Model); 2] =
+        [("tests/zoo/laws.axle", &zoo::laws::Laws), ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms)];
+    shipped.chain(zoo.map(|(file, model)| (file.to_string(), model))).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(24))]
+
+    #[test]
+    fn generated_and_interpreted_are_equal(numbers in prop::collection::vec(-1.0..1.0f64, 256)) {
+        for (file, model) in all() {
+            let compiled = compile_file(&file).unwrap().compiled.unwrap();
+            let pair = Pair { model, evaluator: Evaluator::new(&compiled) };
+            pair.compare(&numbers);
+        }
+    }
+}
+
+/// Both ways to run one model.
+struct Pair {
+    model: &'static dyn Model,
+    evaluator: Evaluator,
+}
+
+impl Pair {
+    fn compare(&self, numbers: &[f64]) {
+        let about = self.model.about();
+        // Positive parameters, any state and input.
+        let p: Vec<f64> = numbers.iter().take(about.parameters.len()).map(|n| 10f64.powf(2.0 * n)).collect();
+        let x: Vec<f64> = numbers.iter().rev().take(about.states.len()).copied().collect();
+        let u: Vec<f64> = numbers.iter().skip(60).take(about.inputs.len()).copied().collect();
+        let (generated, interpreted) = (self.model, &self.evaluator);
+        let constants = equal(about.constants, |to| generated.prepare(&p, to), |to| interpreted.prepare(&p, to));
+        let (c, states, outputs) = (&constants, about.states.len(), about.outputs.len());
+        equal(states, |to| generated.derivative(c, &x, &u, to), |to| interpreted.derivative(c, &x, &u, to));
+        equal(outputs, |to| generated.outputs(c, &x, &u, to), |to| interpreted.outputs(c, &x, &u, to));
+        equal(
+            about.matrices.len(),
+            |to| generated.matrices(&p, &x, &u, to),
+            |to| interpreted.matrices(&p, &x, &u, to),
+        );
+        equal(
+            about.sensitivities.len(),
+            |to| generated.sensitivities(&p, &x, &u, to),
+            |to| interpreted.sensitivities(&p, &x, &u, to),
+        );
+        equal(
+            about.parameter_jacobian.len(),
+            |to| generated.parameter_jacobian(&p, &x, &u, to),
+            |to| interpreted.parameter_jacobian(&p, &x, &u, to),
+        );
+        self.compare_responses(c, numbers);
+        self.compare_rolling(c, &x, &u, numbers);
+    }
+
+    /// Eleven lines: a whole block and a rest.
+    fn compare_responses(&self, constants: &[f64], numbers: &[f64]) {
+        let omega: Vec<f64> = numbers[..11].iter().map(|n| 50.0 + 49.0 * n).collect();
+        for (excitation, layout) in self.model.about().responses.iter().enumerate() {
+            let (n, m) = (11 * layout.outputs.len(), 11 * layout.jacobian.len());
+            for jacobian in [false, true] {
+                let generated = |to: &mut [f64]| {
+                    let (re, im, slopes) = split(to, n, m);
+                    let jacobian = jacobian.then_some(slopes);
+                    self.model.response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
+                };
+                let interpreted = |to: &mut [f64]| {
+                    let (re, im, slopes) = split(to, n, m);
+                    let jacobian = jacobian.then_some(slopes);
+                    self.evaluator.response(excitation, constants, &omega, re, im, jacobian);
+                };
+                equal(2 * n + 2 * m, generated, interpreted);
+            }
+        }
+    }
+
+    fn compare_rolling(&self, constants: &[f64], x: &[f64], u: &[f64], numbers: &[f64]) {
+        let about = self.model.about();
+        let [s, v, fz, fx] = [numbers[0], numbers[1], numbers[2], numbers[3]];
+        let (contact, again) = (Contact { s, v, force: [fz, fx] }, evaluate::Contact { s, v, force: [fz, fx] });
+        equal(
+            1,
+            |to| to[0] = self.model.contact_force(constants, x, s, v),
+            |to| to[0] = self.evaluator.contact_force(constants, x, s, v),
+        );
+        equal(
+            about.states.len(),
+            |to| self.model.rolling_derivative(constants, x, u, &contact, to),
+            |to| self.evaluator.rolling_derivative(constants, x, u, &again, to),
+        );
+        equal(
+            about.outputs.len(),
+            |to| self.model.rolling_outputs(constants, x, u, &contact, to),
+            |to| self.evaluator.rolling_outputs(constants, x, u, &again, to),
+        );
+    }
+}
+
+/// Real parts, imaginary parts, and both of the Jacobian.
+type Parts<'a> = (&'a mut [f64], &'a mut [f64], (&'a mut [f64], &'a mut [f64]));
+
+fn split(to: &mut [f64], n: usize, m: usize) -> Parts<'_> {
+    let (re, rest) = to.split_at_mut(n);
+    let (im, rest) = rest.split_at_mut(n);
+    (re, im, rest.split_at_mut(m))
+}
+
+/// Both results, bit for bit; not-a-number is like any other.
+fn equal(length: usize, generated: impl Fn(&mut [f64]), interpreted: impl Fn(&mut [f64])) -> Vec<f64> {
+    let [mut one, mut other] = [vec![0.0; length], vec![0.0; length]];
+    generated(&mut one);
+    interpreted(&mut other);
+    for (place, (a, b)) in one.iter().zip(&other).enumerate() {
+        assert!(a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()), "value {place}: {a:e} and {b:e}");
+    }
+    one
+}
