@@ -34,7 +34,7 @@ fn model_files() -> Vec<PathBuf> {
 /// A model's module and its entry in the list; mistakes go to cargo.
 fn compile(file: &Path) -> Option<(String, String)> {
     let path = file.display().to_string();
-    let from_disk = match compile_file(&path) {
+    let from_disk = match compile_file(Path::new(""), &path) {
         Ok(from_disk) => from_disk,
         Err(reason) => {
             println!("cargo::error={path}: {reason}");

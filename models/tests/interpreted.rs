@@ -1,5 +1,7 @@
 //! Generated code and the run-time evaluator give the same bits, on random parameters, states and inputs.
 
+use std::path::Path;
+
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::{self, Evaluator};
@@ -13,10 +15,16 @@ mod zoo {
 
 /// Every compiled model with the file it comes from.
 fn all() -> Vec<(String, &'static dyn Model)> {
-    let shipped = models::all().iter().map(|shipped| (shipped.file.to_string(), shipped.model));
-    let zoo: [(&str, &'static dyn Model); 2] =
-        [("tests/zoo/laws.axle", &zoo::laws::Laws), ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms)];
-    shipped.chain(zoo.map(|(file, model)| (file.to_string(), model))).collect()
+    let shipped = models::all()
+        .iter()
+        .map(|shipped| (shipped.file.to_string(), shipped.model));
+    let zoo: [(&str, &'static dyn Model); 2] = [
+        ("tests/zoo/laws.axle", &zoo::laws::Laws),
+        ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms),
+    ];
+    shipped
+        .chain(zoo.map(|(file, model)| (file.to_string(), model)))
+        .collect()
 }
 
 proptest! {
@@ -25,7 +33,7 @@ proptest! {
     #[test]
     fn generated_and_interpreted_are_equal(numbers in prop::collection::vec(-1.0..1.0f64, 256)) {
         for (file, model) in all() {
-            let compiled = compile_file(&file).unwrap().compiled.unwrap();
+            let compiled = compile_file(Path::new(""), &file).unwrap().compiled.unwrap();
             let pair = Pair { model, evaluator: Evaluator::new(&compiled) };
             pair.compare(&numbers);
         }
@@ -42,14 +50,30 @@ impl Pair {
     fn compare(&self, numbers: &[f64]) {
         let about = self.model.about();
         // Positive parameters, any state and input.
-        let p: Vec<f64> = numbers.iter().take(about.parameters.len()).map(|n| 10f64.powf(2.0 * n)).collect();
+        let p: Vec<f64> = numbers
+            .iter()
+            .take(about.parameters.len())
+            .map(|n| 10f64.powf(2.0 * n))
+            .collect();
         let x: Vec<f64> = numbers.iter().rev().take(about.states.len()).copied().collect();
         let u: Vec<f64> = numbers.iter().skip(60).take(about.inputs.len()).copied().collect();
         let (generated, interpreted) = (self.model, &self.evaluator);
-        let constants = equal(about.constants, |to| generated.prepare(&p, to), |to| interpreted.prepare(&p, to));
+        let constants = equal(
+            about.constants,
+            |to| generated.prepare(&p, to),
+            |to| interpreted.prepare(&p, to),
+        );
         let (c, states, outputs) = (&constants, about.states.len(), about.outputs.len());
-        equal(states, |to| generated.derivative(c, &x, &u, to), |to| interpreted.derivative(c, &x, &u, to));
-        equal(outputs, |to| generated.outputs(c, &x, &u, to), |to| interpreted.outputs(c, &x, &u, to));
+        equal(
+            states,
+            |to| generated.derivative(c, &x, &u, to),
+            |to| interpreted.derivative(c, &x, &u, to),
+        );
+        equal(
+            outputs,
+            |to| generated.outputs(c, &x, &u, to),
+            |to| interpreted.outputs(c, &x, &u, to),
+        );
         equal(
             about.matrices.len(),
             |to| generated.matrices(&p, &x, &u, to),
@@ -78,7 +102,8 @@ impl Pair {
                 let generated = |to: &mut [f64]| {
                     let (re, im, slopes) = split(to, n, m);
                     let jacobian = jacobian.then_some(slopes);
-                    self.model.response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
+                    self.model
+                        .response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
                 };
                 let interpreted = |to: &mut [f64]| {
                     let (re, im, slopes) = split(to, n, m);
@@ -93,7 +118,10 @@ impl Pair {
     fn compare_rolling(&self, constants: &[f64], x: &[f64], u: &[f64], numbers: &[f64]) {
         let about = self.model.about();
         let [s, v, fz, fx] = [numbers[0], numbers[1], numbers[2], numbers[3]];
-        let (contact, again) = (Contact { s, v, force: [fz, fx] }, evaluate::Contact { s, v, force: [fz, fx] });
+        let (contact, again) = (
+            Contact { s, v, force: [fz, fx] },
+            evaluate::Contact { s, v, force: [fz, fx] },
+        );
         equal(
             1,
             |to| to[0] = self.model.contact_force(constants, x, s, v),
@@ -127,7 +155,10 @@ fn equal(length: usize, generated: impl Fn(&mut [f64]), interpreted: impl Fn(&mu
     generated(&mut one);
     interpreted(&mut other);
     for (place, (a, b)) in one.iter().zip(&other).enumerate() {
-        assert!(a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()), "value {place}: {a:e} and {b:e}");
+        assert!(
+            a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()),
+            "value {place}: {a:e} and {b:e}"
+        );
     }
     one
 }

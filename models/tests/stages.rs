@@ -1,5 +1,7 @@
 //! What people see of each shipped model, stage by stage, pinned.
 
+use std::path::Path;
+
 use qcar_dsl::compile::compile;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::schedule::Compiled;
@@ -14,7 +16,11 @@ fn every_stage_of_every_model_is_pinned() {
     for (name, compiled) in shipped() {
         for stage in Stage::ALL {
             let text = show(&compiled, stage);
-            let pinned = if stage == Stage::Rust && text.len() > LONG { outline(&text) } else { text };
+            let pinned = if stage == Stage::Rust && text.len() > LONG {
+                outline(&text)
+            } else {
+                text
+            };
             insta::with_settings!({ prepend_module_to_snapshot => false, omit_expression => true }, {
                 insta::assert_snapshot!(format!("{name}-{}", stage.name()), pinned);
             });
@@ -25,10 +31,16 @@ fn every_stage_of_every_model_is_pinned() {
 #[test]
 fn the_model_stage_reads_back_as_the_same_model() {
     for (name, compiled) in shipped() {
-        let source = Source { name: name.into(), text: show(&compiled, Stage::Model) };
+        let source = Source {
+            name: name.into(),
+            text: show(&compiled, Stage::Model),
+        };
         let again = compile(source, &|_, path| Err(format!("{path} is not needed")));
         let again = again.unwrap_or_else(|report| panic!("{report}"));
-        assert!(show(&again, Stage::Rust) == show(&compiled, Stage::Rust), "{name} reads back differently");
+        assert!(
+            show(&again, Stage::Rust) == show(&compiled, Stage::Rust),
+            "{name} reads back differently"
+        );
     }
 }
 
@@ -45,7 +57,7 @@ fn brackets_of_the_latex_stage_close() {
 
 fn shipped() -> impl Iterator<Item = (&'static str, Compiled)> {
     models::all().iter().map(|shipped| {
-        let from_disk = compile_file(shipped.file).expect("a shipped model can be read");
+        let from_disk = compile_file(Path::new(""), shipped.file).expect("a shipped model can be read");
         (shipped.name, from_disk.compiled.expect("a shipped model compiles"))
     })
 }
@@ -54,7 +66,9 @@ fn shipped() -> impl Iterator<Item = (&'static str, Compiled)> {
 fn outline(text: &str) -> String {
     let is_head = |line: &&str| {
         let line = line.trim_start();
-        ["///", "pub ", "impl ", "static ", "struct "].iter().any(|head| line.starts_with(head))
+        ["///", "pub ", "impl ", "static ", "struct "]
+            .iter()
+            .any(|head| line.starts_with(head))
     };
     text.lines().filter(is_head).map(|line| format!("{line}\n")).collect()
 }

@@ -1,7 +1,7 @@
 //! Model files from disk, for the doors. The compiler itself takes texts; nothing but this file reads one.
 
 use std::cell::RefCell;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::compile::compile;
 use crate::diagnostic::Report;
@@ -12,46 +12,72 @@ use crate::source::Source;
 pub struct FromDisk {
     /// The model, or every mistake in its files.
     pub compiled: Result<Compiled, Report>,
-    /// The model file, then each family file: the path as the model writes it, and the text. A door has them watched.
-    pub read: Vec<(String, Source)>,
+    /// What was read, the model file first. A door has it watched.
+    pub read: Vec<Read>,
 }
 
-/// Compiles a model file.
+/// A file that was read.
+#[derive(Clone, Debug)]
+pub struct Read {
+    /// The path as the model writes it.
+    pub written: String,
+    /// Its text; its name is the path relative to the folder of the door.
+    pub source: Source,
+}
+
+/// Compiles a model file of a folder, such as a package.
 ///
 /// # Errors
 /// The reason why the file itself cannot be read.
-pub fn compile_file(path: &str) -> Result<FromDisk, String> {
-    let source = read(Path::new(path))?;
-    let files = Files::default();
-    files.0.borrow_mut().push((path.to_string(), source.clone()));
+pub fn compile_file(folder: &Path, path: &str) -> Result<FromDisk, String> {
+    let files = Files::new(folder);
+    let source = files.read(PathBuf::from(path), path)?;
     let compiled = compile(source, &|asking, written| files.load(asking, written));
     Ok(FromDisk {
         compiled,
-        read: files.0.into_inner(),
+        read: files.finish(),
     })
 }
 
-/// The files that were read, in order.
-#[derive(Default)]
-pub struct Files(pub RefCell<Vec<(String, Source)>>);
+/// The files of a folder, as a loader of the compiler.
+pub struct Files {
+    folder: PathBuf,
+    read: RefCell<Vec<Read>>,
+}
 
 impl Files {
+    /// Of a folder; what is loaded may lie outside it.
+    pub fn new(folder: &Path) -> Files {
+        Files {
+            folder: folder.to_path_buf(),
+            read: RefCell::default(),
+        }
+    }
+
     /// A file that another names, relative to that one.
     ///
     /// # Errors
     /// The reason why it cannot be read.
     pub fn load(&self, asking: &str, written: &str) -> Result<Source, String> {
         let beside = Path::new(asking).parent().unwrap_or(Path::new(""));
-        let source = read(&beside.join(written))?;
-        self.0.borrow_mut().push((written.to_string(), source.clone()));
+        self.read(beside.join(written), written)
+    }
+
+    /// What was read, in order.
+    pub fn finish(self) -> Vec<Read> {
+        self.read.into_inner()
+    }
+
+    fn read(&self, path: PathBuf, written: &str) -> Result<Source, String> {
+        let text = std::fs::read_to_string(self.folder.join(&path)).map_err(|error| error.to_string())?;
+        let source = Source {
+            name: path.display().to_string(),
+            text,
+        };
+        self.read.borrow_mut().push(Read {
+            written: written.to_string(),
+            source: source.clone(),
+        });
         Ok(source)
     }
-}
-
-fn read(path: &Path) -> Result<Source, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
-    Ok(Source {
-        name: path.display().to_string(),
-        text,
-    })
 }

@@ -1,0 +1,7 @@
+qcar_derive::axle! {
+    axle grammar {
+        param m kg;
+    }
+}
+
+fn main() {}

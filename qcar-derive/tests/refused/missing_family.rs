@@ -1,0 +1,6 @@
+qcar_derive::axle! {
+    axle missing_family from "families/none.axle" {
+    }
+}
+
+fn main() {}

@@ -1,0 +1,3 @@
+qcar_derive::axle_file!("axles/none.axle");
+
+fn main() {}
