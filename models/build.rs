@@ -44,7 +44,7 @@ fn compile(file: &Path) -> Option<(String, String)> {
     from_disk
         .read
         .iter()
-        .for_each(|(_, source)| println!("cargo::rerun-if-changed={}", source.name));
+        .for_each(|read| println!("cargo::rerun-if-changed={}", read.source.name));
     match &from_disk.compiled {
         Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &from_disk))),
         Err(report) => {
@@ -69,7 +69,7 @@ fn entry(name: &str, from_disk: &FromDisk) -> String {
     let mut texts = from_disk
         .read
         .iter()
-        .map(|(written, source)| (written, included(&source.name)));
+        .map(|read| (&read.written, included(&read.source.name)));
     let (file, text) = texts.next().expect("the model file itself was read");
     let families: String = texts
         .map(|(written, text)| format!("({written:?}, {text}), "))

@@ -76,7 +76,7 @@ pub fn compile(model: &str) -> Result<Result<Compiled, Report>, Failure> {
     match models::find(model) {
         Some(shipped) => Ok(compile_shipped(shipped)),
         None if looks_like_a_path(model) => {
-            let from_disk = compile_file(model).map_err(|reason| {
+            let from_disk = compile_file(Path::new(""), model).map_err(|reason| {
                 let remedy = "correct the path, or put the file there";
                 Problem::new(Path::new(model), Place::File, reason, "a model file", remedy)
             })?;

@@ -226,7 +226,13 @@ fn check_alive(history: &History, points: &[Point]) -> Result<(), InputError> {
     let problem = |channel: &Channel| {
         let place = Place::Name(channel.name.clone());
         let remedy = "leave the column out if its sensor was dead, or export the record again";
-        Problem::new(&history.file, place, "a signal that never changes", "a measurement", remedy)
+        Problem::new(
+            &history.file,
+            place,
+            "a signal that never changes",
+            "a measurement",
+            remedy,
+        )
     };
     InputError::unless_empty(dead.map(|(channel, _)| problem(channel)).collect(), Some(()))
 }
