@@ -1,1 +1,9 @@
-//! (to come)
+//! A simulated cleat run beside the measured one: the thesis's two metrics (section 3.6.2), and what a driver feels.
+
+mod comfort;
+mod errors;
+mod histogram;
+
+pub use comfort::{Weighting, rms, vibration_dose};
+pub use errors::{Alignment, CompareError, Errors, Windows};
+pub use histogram::{Histogram, Summary};

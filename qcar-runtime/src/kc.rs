@@ -1,1 +1,145 @@
-//! (to come)
+//! Gradients of kinematics-and-compliance curves (thesis section 3.4.4.1): stiffness, damping and friction to start from.
+//!
+//! A loop is the sum of a spring, a damper and a dry friction that changes sign with the direction of travel:
+//! `F = F0 + k x + c v + f sign(v)`. All are found at once by least squares that give outliers less weight (Huber),
+//! over the linear range: the middle half of the travel for a quasi-static cycle, which leaves out bump stops and the
+//! elastic reversal of the friction; where the velocity is above a tenth of its peak for a sine.
+
+mod regression;
+
+pub use regression::Estimate;
+
+/// What a quasi-static cycle says.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Cycle {
+    /// Gradient of force over displacement, N/m.
+    pub stiffness: Estimate,
+    /// Half the width of the loop, N.
+    pub friction: Estimate,
+}
+
+/// What vertical sines say.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct Sine {
+    /// Gradient of force over displacement, N/m.
+    pub stiffness: Estimate,
+    /// Gradient of force over velocity, N s/m.
+    pub damping: Estimate,
+    /// Half the step of the force where the velocity changes sign, N.
+    pub friction: Estimate,
+}
+
+/// Samples of a sine.
+#[derive(Clone, Copy, Debug)]
+pub struct SineSamples<'a> {
+    /// m.
+    pub displacement: &'a [f64],
+    /// m/s.
+    pub velocity: &'a [f64],
+    /// N.
+    pub force: &'a [f64],
+}
+
+/// Why a curve has no gradients.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum KcError {
+    #[error("the columns of the curve have {first} and {second} values; expected one length")]
+    Lengths { first: usize, second: usize },
+    #[error("the curve has {found} samples in its linear range, expected at least {expected}; record a whole cycle")]
+    TooFew { found: usize, expected: usize },
+    #[error("the curve does not determine its gradients; expected travel in both directions")]
+    OneWay,
+}
+
+/// Share of the travel, in its middle, that is taken for linear.
+const LINEAR_SHARE: f64 = 0.5;
+/// Share of the peak velocity below which the friction of a sine is about to change sign.
+const SLOW_SHARE: f64 = 0.1;
+/// The direction of travel is that over so many parts of the curve before and behind a sample.
+const DIRECTION_PARTS: usize = 100;
+
+/// Stiffness and friction of a quasi-static cycle: displacement in m, force in N, one value a sample each.
+///
+/// # Errors
+/// Columns of unlike length, too few samples in the middle of the travel, travel in one direction only.
+pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
+    same_length(displacement, force)?;
+    let (low, high) = extent(displacement);
+    let (middle, reach) = ((low + high) / 2.0, LINEAR_SHARE * (high - low) / 2.0);
+    let rows: Vec<[f64; 4]> = (0..displacement.len())
+        .filter(|&i| (displacement[i] - middle).abs() <= reach)
+        .map(|i| [1.0, displacement[i] - middle, direction(displacement, i), force[i]])
+        .collect();
+    let [_, stiffness, friction] = regression::huber(&rows)?;
+    Ok(Cycle { stiffness, friction })
+}
+
+/// Stiffness, damping and friction of one or several sines of one suspension, each with a mean force of its own.
+///
+/// # Errors
+/// Columns of unlike length, too few samples away from the reversals, travel in one direction only.
+pub fn sines(runs: &[SineSamples<'_>]) -> Result<Sine, KcError> {
+    let mut rows: Vec<[f64; 4]> = Vec::new();
+    for run in runs {
+        same_length(run.displacement, run.velocity)?;
+        same_length(run.displacement, run.force)?;
+        rows.extend(centred(&moving(run)));
+    }
+    let [stiffness, damping, friction] = regression::huber(&rows)?;
+    Ok(Sine {
+        stiffness,
+        damping,
+        friction,
+    })
+}
+
+/// Displacement, velocity, direction and force where the wheel moves.
+fn moving(run: &SineSamples<'_>) -> Vec<[f64; 4]> {
+    let (low, high) = extent(run.velocity);
+    let slow = SLOW_SHARE * high.max(-low);
+    (0..run.velocity.len())
+        .filter(|&i| run.velocity[i].abs() > slow)
+        .map(|i| {
+            [
+                run.displacement[i],
+                run.velocity[i],
+                run.velocity[i].signum(),
+                run.force[i],
+            ]
+        })
+        .collect()
+}
+
+/// The rows less their mean: the same least squares as with a mean force to be found.
+fn centred(rows: &[[f64; 4]]) -> Vec<[f64; 4]> {
+    let mean = |column: usize| rows.iter().map(|row| row[column]).sum::<f64>() / rows.len() as f64;
+    let means = [mean(0), mean(1), mean(2), mean(3)];
+    rows.iter()
+        .map(|row| std::array::from_fn(|column| row[column] - means[column]))
+        .collect()
+}
+
+/// Whether the displacement grows (1) or falls (-1) around a sample.
+fn direction(displacement: &[f64], i: usize) -> f64 {
+    let reach = (displacement.len() / DIRECTION_PARTS).max(1);
+    let last = displacement.len() - 1;
+    (displacement[(i + reach).min(last)] - displacement[i.saturating_sub(reach)]).signum()
+}
+
+fn extent(values: &[f64]) -> (f64, f64) {
+    values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| {
+            (low.min(*v), high.max(*v))
+        })
+}
+
+fn same_length(first: &[f64], second: &[f64]) -> Result<(), KcError> {
+    let (first, second) = (first.len(), second.len());
+    if first == second {
+        Ok(())
+    } else {
+        Err(KcError::Lengths { first, second })
+    }
+}

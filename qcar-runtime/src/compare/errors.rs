@@ -1,0 +1,159 @@
+//! Peak and after-shake errors after alignment at the wheel's peak (thesis sections 2.1 and 3.6.2).
+
+/// Which parts of a run are compared, in s after its onset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Windows {
+    /// The impact lasts from the onset for so long (section 2.1: 100 ms); the peaks are looked for here.
+    pub impact: f64,
+    /// The after-shake follows the impact for so long, or to the end of the shorter record.
+    pub after_shake: f64,
+}
+
+impl Default for Windows {
+    fn default() -> Self {
+        Self {
+            impact: 0.1,
+            after_shake: 1.0,
+        }
+    }
+}
+
+/// How two records of one run lie to each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Alignment {
+    /// The first sample of the measurement at which the wheel feels the obstacle.
+    pub onset: usize,
+    /// How many samples later the simulation has what the measurement has.
+    pub delay: isize,
+}
+
+/// How a simulated acceleration differs from the measured one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Errors {
+    /// Largest magnitude in the impact, m/s²: measured, simulated.
+    pub peaks: [f64; 2],
+    /// Root mean square in the after-shake, m/s²: measured less the noise before the onset, simulated.
+    pub after_shakes: [f64; 2],
+}
+
+/// Why two records cannot be compared.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum CompareError {
+    #[error(
+        "the wheel's vertical acceleration never rises above zero in the {record}; expected a run over an obstacle"
+    )]
+    NoPeak { record: &'static str },
+    #[error("the after-shake of the {record} starts at sample {start}, but it has only {samples}; record for longer")]
+    TooShort {
+        record: &'static str,
+        start: isize,
+        samples: usize,
+    },
+}
+
+/// The onset is where the wheel's acceleration first exceeds this share of its peak, upward or downward.
+const ONSET_SHARE: f64 = 0.1;
+/// The wheel may feel the obstacle for so long before the onset, s; what is earlier is noise.
+const GUARD: f64 = 0.02;
+
+impl Alignment {
+    /// Aligns two records of the wheel's vertical acceleration, of one sample rate, by their upward peaks.
+    ///
+    /// # Errors
+    /// A record that never rises above zero.
+    pub fn at_peak(measured: &[f64], simulated: &[f64]) -> Result<Self, CompareError> {
+        let (peak, height) = upward_peak(measured).ok_or(CompareError::NoPeak { record: "measurement" })?;
+        let (simulated_peak, _) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
+        let onset = measured
+            .iter()
+            .position(|a| a.abs() > ONSET_SHARE * height)
+            .unwrap_or(peak);
+        Ok(Self {
+            onset,
+            delay: simulated_peak as isize - peak as isize,
+        })
+    }
+}
+
+fn upward_peak(record: &[f64]) -> Option<(usize, f64)> {
+    let peak = record.iter().copied().enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+    peak.filter(|&(_, height)| height > 0.0)
+}
+
+impl Errors {
+    /// Compares two records of one acceleration, both at `sample_rate` (Hz).
+    ///
+    /// # Errors
+    /// A record that ends before the after-shake starts.
+    pub fn between(
+        measured: &[f64],
+        simulated: &[f64],
+        alignment: &Alignment,
+        sample_rate: f64,
+        windows: &Windows,
+    ) -> Result<Self, CompareError> {
+        let onset = alignment.onset as isize;
+        let impact_end = onset + (windows.impact * sample_rate).round() as isize;
+        let wanted_end = impact_end + (windows.after_shake * sample_rate).round() as isize;
+        let end = wanted_end
+            .min(measured.len() as isize)
+            .min(simulated.len() as isize - alignment.delay);
+        check_reaches("measurement", measured, impact_end)?;
+        check_reaches("simulation", simulated, impact_end + alignment.delay)?;
+        let aligned = |from, to| {
+            [
+                cut(measured, from, to),
+                cut(simulated, from + alignment.delay, to + alignment.delay),
+            ]
+        };
+        let quiet = cut(measured, 0, onset - (GUARD * sample_rate) as isize);
+        let [measured_shake, simulated_shake] = aligned(impact_end, end).map(mean_square);
+        Ok(Self {
+            peaks: aligned(onset, impact_end).map(magnitude),
+            after_shakes: [
+                (measured_shake - mean_square(quiet)).max(0.0).sqrt(),
+                simulated_shake.sqrt(),
+            ],
+        })
+    }
+
+    /// Relative error of the peak, positive where the simulation is larger.
+    pub fn peak(&self) -> f64 {
+        relative(self.peaks)
+    }
+
+    /// Relative error of the after-shake's root mean square, positive where the simulation is larger.
+    pub fn after_shake(&self) -> f64 {
+        relative(self.after_shakes)
+    }
+}
+
+fn check_reaches(record: &'static str, samples: &[f64], start: isize) -> Result<(), CompareError> {
+    if start < samples.len() as isize {
+        return Ok(());
+    }
+    Err(CompareError::TooShort {
+        record,
+        start,
+        samples: samples.len(),
+    })
+}
+
+fn relative([measured, simulated]: [f64; 2]) -> f64 {
+    (simulated - measured) / measured
+}
+
+/// The samples of a record between two places, as far as it has them.
+fn cut(record: &[f64], from: isize, to: isize) -> &[f64] {
+    let place = |i: isize| (i.max(0) as usize).min(record.len());
+    &record[place(from)..place(to).max(place(from))]
+}
+
+fn magnitude(record: &[f64]) -> f64 {
+    record.iter().fold(0.0, |largest, a| largest.max(a.abs()))
+}
+
+fn mean_square(record: &[f64]) -> f64 {
+    record.iter().map(|a| a * a).sum::<f64>() / record.len().max(1) as f64
+}
