@@ -9,6 +9,7 @@ use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
+use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{Place, Problem};
 use qcar_runtime::model::Model;
 
@@ -40,13 +41,8 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 }
 
 /// The same as a list to choose from.
-pub fn listed() -> String {
+fn listed() -> String {
     names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// True for the name of a shipped model and for what looks like the path of a file.
-pub fn is_known(model: &str) -> bool {
-    models::find(model).is_some() || looks_like_a_path(model)
 }
 
 /// A model that can run.
@@ -58,6 +54,19 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
         Some(shipped) => Ok(Loaded::Shipped(shipped.model)),
         None => Ok(Loaded::File(Box::new(Evaluated::new(&compiled(model)?)))),
     }
+}
+
+/// The model that the user wants, else the campaign's.
+///
+/// # Errors
+/// As [`load`]; a name that is not known is a mistake of the campaign where the user names none.
+pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
+    if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
+        let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
+        let remedy = format!("choose among {}, or give the path of a file with --model", listed());
+        return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
+    }
+    load(wanted.unwrap_or(&campaign.model))
 }
 
 /// All that the compiler derives of a model.

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::failure::Failure;
-use crate::verbs::{check, fit, frf, matrices, score, show};
+use crate::verbs::{check, fit, frf, kc, matrices, score, show, simulate};
 
 /// Quarter-car axle models: compile them, fit them to rig data
 ///
@@ -24,6 +24,8 @@ enum Verb {
     Matrices(matrices::Arguments),
     Frf(frf::Arguments),
     Fit(fit::Arguments),
+    Kc(kc::Arguments),
+    Simulate(simulate::Arguments),
     Score(score::Arguments),
 }
 
@@ -36,6 +38,8 @@ impl Cli {
             Verb::Matrices(arguments) => matrices::run(&arguments),
             Verb::Frf(arguments) => frf::run(&arguments),
             Verb::Fit(arguments) => fit::run(&arguments),
+            Verb::Kc(arguments) => kc::run(&arguments),
+            Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Score(arguments) => score::run(&arguments),
         }
     }

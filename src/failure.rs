@@ -1,7 +1,6 @@
 //! Why a verb stops, and the exit status that says so.
 
 use std::fmt;
-use std::path::Path;
 
 use qcar_runtime::error::{InputError, Place, Problem};
 
@@ -45,15 +44,4 @@ pub fn flag(name: &str, found: impl fmt::Display, expected: &str, remedy: &str) 
         expected,
         remedy,
     )
-}
-
-/// Reads a text file, or says why it cannot.
-///
-/// # Errors
-/// A file that is missing, a folder, or not UTF-8.
-pub fn read_text(file: &Path) -> Result<String, InputError> {
-    std::fs::read_to_string(file).map_err(|error| {
-        let remedy = "correct the path, or put the file there";
-        Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into()
-    })
 }

@@ -3,6 +3,8 @@
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
 pub mod failure;
+// Reading and writing.
+pub mod files;
 // Results for people, programs and eyes.
 pub mod table;
 // The same for other programs.

@@ -34,13 +34,21 @@ impl FromStr for Setting {
     }
 }
 
-/// The value of every parameter of a model: from `path`, `settings` above it and defaults below it.
+/// The value of every parameter of a model: from `paths`, a later one above an earlier one, with `settings` above them
+/// all and defaults below.
 ///
 /// # Errors
 /// A file that cannot be read or understood, a name that the model does not have, a unit that is not the model's,
 /// a parameter without any value: all of them at once.
-pub fn resolve(about: &About, path: Option<&Path>, settings: &[Setting]) -> Result<Values, InputError> {
-    let file = path.map(ParameterFile::read).transpose()?.unwrap_or_default();
+pub fn resolve<'a>(
+    about: &About,
+    paths: impl IntoIterator<Item = &'a Path>,
+    settings: &[Setting],
+) -> Result<Values, InputError> {
+    let mut file = ParameterFile::default();
+    for path in paths {
+        file.overlay(ParameterFile::read(path)?);
+    }
     let mut given = numbers(&file.parameters);
     given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
     let mut problems = wrong_units(about, &file);
@@ -54,6 +62,7 @@ fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
     let of_file = error.problem(&file.path);
     if let Some(stated) = file.parameters.get(error.name()) {
         return Problem {
+            file: stated.file.clone(),
             place: stated.place.clone(),
             ..of_file
         };
@@ -83,7 +92,7 @@ fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
         .map(|(parameter, stated, unit)| {
             let (found, expected) = (format!("the unit \"{unit}\""), format!("\"{}\"", parameter.unit));
             let remedy = "convert the value to that unit and declare it";
-            Problem::new(&file.path, stated.place.clone(), found, expected, remedy)
+            Problem::new(&stated.file, stated.place.clone(), found, expected, remedy)
         })
         .collect()
 }

@@ -9,9 +9,11 @@ use crate::parameters::Setting;
 pub mod check;
 pub mod fit;
 pub mod frf;
+pub mod kc;
 pub mod matrices;
 pub mod score;
 pub mod show;
+pub mod simulate;
 
 /// A model and the values of its parameters.
 #[derive(Args)]

@@ -8,7 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::failure::read_text;
+use crate::files::read_text;
 
 /// What may stand beside `[parameters]`: the keys of campaigns and of their answers.
 const NEIGHBOURS: [&str; 9] = [
@@ -26,7 +26,7 @@ const NEIGHBOURS: [&str; 9] = [
 /// Values by name.
 #[derive(Default)]
 pub struct ParameterFile {
-    /// Empty where there is no file.
+    /// The last file that was read; empty where there is none.
     pub path: PathBuf,
     /// Below `[parameters]`.
     pub parameters: BTreeMap<String, Stated>,
@@ -40,7 +40,9 @@ pub struct Stated {
     pub value: f64,
     /// Where the file declares one.
     pub unit: Option<String>,
-    /// In the file.
+    /// Which file.
+    pub file: PathBuf,
+    /// Where in it.
     pub place: Place,
 }
 
@@ -74,6 +76,13 @@ impl ParameterFile {
             vehicle,
         };
         InputError::unless_empty(problems, Some(file))
+    }
+
+    /// Takes over what another file states.
+    pub fn overlay(&mut self, other: ParameterFile) {
+        self.path = other.path;
+        self.parameters.extend(other.parameters);
+        self.vehicle.extend(other.vehicle);
     }
 }
 
@@ -172,6 +181,7 @@ impl Reader<'_> {
         Some(Stated {
             value: finite,
             unit: unit.map(String::from),
+            file: self.path.into(),
             place: self.place(name.span().start, &key),
         })
     }

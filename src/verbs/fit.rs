@@ -5,7 +5,7 @@ use std::time::Instant;
 
 use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::error::InputError;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
 use qcar_runtime::transmissibility::Options;
@@ -99,7 +99,7 @@ pub struct Fitted {
 pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
     let begun = Instant::now();
     let campaign = Campaign::open(folder)?;
-    let model = load(&campaign, choices.model.as_deref())?;
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, choices)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
     let measure = || levels(&campaign, model.about(), wanted, &Options::default());
@@ -115,19 +115,6 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         levels,
         fit,
     })
-}
-
-/// The model that the user wants, else the campaign's.
-fn load(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
-    if wanted.is_none() && !catalogue::is_known(&campaign.model) {
-        let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
-        let remedy = format!(
-            "choose among {}, or give the path of a file with --model",
-            catalogue::listed()
-        );
-        return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
-    }
-    catalogue::load(wanted.unwrap_or(&campaign.model))
 }
 
 /// The campaign's plan with the user's choices.

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 6] = ["check", "show", "matrices", "frf", "fit", "score"];
+const VERBS: [&str; 8] = ["check", "show", "matrices", "frf", "fit", "kc", "simulate", "score"];
 
 #[test]
 fn every_verb_explains_itself_with_an_example() {

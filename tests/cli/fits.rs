@@ -1,6 +1,7 @@
 //! Fits of the campaigns in the repository, as a user runs them.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
@@ -81,6 +82,44 @@ fn results_are_written_whole_and_can_be_used_again() {
         ]
     );
     succeeds(&["frf", "axle_a", "--params", &format!("{out}/parameters.toml")]);
+}
+
+#[test]
+fn curves_give_start_values() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = folder.path().join("campaign");
+    copy(Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE).as_path(), &campaign);
+    let before = fs::read_to_string(campaign.join("campaign.toml")).unwrap();
+    let json: Value = serde_json::from_str(&succeeds(&["kc", campaign.to_str().unwrap(), "--format", "json"])).unwrap();
+    for (parameter, truth) in [("k_wheel_z", 35500.0), ("c_wheel_z", 1992.0), ("k_wheel_x", 471000.0)] {
+        let found = json
+            .as_array()
+            .unwrap()
+            .iter()
+            .find(|gradient| gradient["parameter"] == parameter)
+            .unwrap();
+        assert!((found["value"].as_f64().unwrap() / truth - 1.0).abs() < 0.01, "{found}");
+    }
+    succeeds(&["kc", campaign.to_str().unwrap(), "--write"]);
+    let after = fs::read_to_string(campaign.join("campaign.toml")).unwrap();
+    let changed = before
+        .lines()
+        .zip(after.lines())
+        .filter(|(before, after)| before != after)
+        .count();
+    assert_eq!((changed, before.lines().count()), (3, after.lines().count()));
+    succeeds(&["kc", campaign.to_str().unwrap()]);
+}
+
+fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        match entry.file_type().unwrap().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => fs::write(&target, fs::read(entry.path()).unwrap()).unwrap(),
+        }
+    }
 }
 
 #[test]

@@ -5,3 +5,4 @@ mod command_line;
 mod common;
 mod fits;
 mod readme;
+mod rides;

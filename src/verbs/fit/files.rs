@@ -1,12 +1,11 @@
-//! A fit as files. Each is written whole under another name first, so that nothing half-written looks complete.
+//! A fit as files.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::fs;
 use std::path::Path;
 
 use nalgebra::Complex;
-use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::error::InputError;
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::response::parameters::Values;
@@ -14,25 +13,14 @@ use qcar_runtime::response::ratio::ratio;
 
 use super::{Fitted, render};
 use crate::figure::{Curve, Figure, Panel, Style};
+use crate::files::put;
 
 pub(super) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
-    fs::create_dir_all(folder).map_err(|error| unwritable(folder, &error))?;
     let compared = compare(of);
     put(folder, "parameters.toml", &parameters(of))?;
     put(folder, "fit.json", &render::json(of))?;
     put(folder, "transmissibility.csv", &csv(&compared))?;
     put(folder, "transmissibility.svg", &figure(of, &compared).svg())
-}
-
-fn put(folder: &Path, name: &str, content: &str) -> Result<(), InputError> {
-    let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
-    let written = fs::write(&unfinished, content).and_then(|()| fs::rename(&unfinished, &path));
-    written.map_err(|error| unwritable(&path, &error))
-}
-
-fn unwritable(path: &Path, error: &std::io::Error) -> InputError {
-    let remedy = "choose another folder with --out, or make room there";
-    Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into()
 }
 
 /// A parameter file as `--params` takes it.

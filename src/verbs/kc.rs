@@ -1,0 +1,182 @@
+//! `qcar kc`: gradients of the kinematics and compliance curves of a campaign, as start values of a fit.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use qcar_runtime::campaign::{Campaign, Run, Test};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::kc::{Estimate, KcError, SineSamples, cycle, sines};
+use serde::Serialize;
+
+use crate::failure::Failure;
+use crate::json;
+use crate::table::{Table, number};
+
+// Start values in campaign.toml.
+mod write;
+
+/// Print stiffness, damping and friction from the K&C curves of a campaign, beside its start values
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar kc models/campaigns/axle_a_rig")]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    /// Put the gradients into campaign.toml as start values of the parameters they stand for
+    #[arg(long)]
+    write: bool,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// What a curve says.
+#[derive(Debug, Serialize)]
+struct Gradient {
+    /// `bounce`, `dynamic_bounce` or `longitudinal`.
+    test: &'static str,
+    /// `stiffness`, `damping` or `friction`.
+    quantity: &'static str,
+    value: f64,
+    stderr: f64,
+    unit: &'static str,
+    /// The parameter of the thesis's table 3.1 that it measures.
+    parameter: Option<&'static str>,
+    /// The campaign's start value of that parameter.
+    start: Option<f64>,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let gradients = gradients(&campaign)?;
+    if arguments.write {
+        write::start_values(&campaign, &gradients)?;
+    }
+    Ok(match arguments.format {
+        Format::Text => text(&gradients),
+        Format::Json => json::line(&gradients),
+    })
+}
+
+/// Gradients of all K&C runs; vertical sines are taken together.
+fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
+    let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test));
+    let mut found = Vec::new();
+    for run in of(|test| matches!(test, Test::Bounce)) {
+        found.extend(quasi_static(campaign, run, "bounce", "k_wheel_z")?);
+    }
+    let dynamic: Vec<&Run> = of(|test| matches!(test, Test::DynamicBounce { .. })).collect();
+    if !dynamic.is_empty() {
+        found.extend(vertical_sines(campaign, &dynamic)?);
+    }
+    for run in of(|test| matches!(test, Test::Longitudinal)) {
+        found.extend(quasi_static(campaign, run, "longitudinal", "k_wheel_x")?);
+    }
+    if found.is_empty() {
+        let expected = "a run of kind bounce, dynamic_bounce or longitudinal";
+        let remedy = "list the K&C curves as runs";
+        return Err(Problem::new(
+            campaign.manifest(),
+            Place::Name("run".into()),
+            "no K&C curve",
+            expected,
+            remedy,
+        )
+        .into());
+    }
+    Ok(found)
+}
+
+fn quasi_static(
+    campaign: &Campaign,
+    run: &Run,
+    test: &'static str,
+    parameter: &'static str,
+) -> Result<Vec<Gradient>, InputError> {
+    let curve = campaign.curve(run)?;
+    let cycle = cycle(&curve.displacement, &curve.force).map_err(|error| unusable(campaign, run, &error))?;
+    let gradient = |quantity, of: Estimate, unit, parameter| gradient(campaign, test, quantity, of, unit, parameter);
+    Ok(vec![
+        gradient("stiffness", cycle.stiffness, "N/m", Some(parameter)),
+        gradient("friction", cycle.friction, "N", None),
+    ])
+}
+
+fn vertical_sines(campaign: &Campaign, runs: &[&Run]) -> Result<Vec<Gradient>, InputError> {
+    let curves = runs
+        .iter()
+        .map(|run| campaign.dynamic_curve(run))
+        .collect::<Result<Vec<_>, _>>()?;
+    let samples: Vec<_> = curves
+        .iter()
+        .map(|curve| SineSamples {
+            displacement: &curve.displacement,
+            velocity: &curve.velocity,
+            force: &curve.force,
+        })
+        .collect();
+    let sine = sines(&samples).map_err(|error| unusable(campaign, runs[0], &error))?;
+    let gradient =
+        |quantity, of: Estimate, unit, parameter| gradient(campaign, "dynamic_bounce", quantity, of, unit, parameter);
+    Ok(vec![
+        gradient("stiffness", sine.stiffness, "N/m", None),
+        gradient("damping", sine.damping, "N s/m", Some("c_wheel_z")),
+        gradient("friction", sine.friction, "N", None),
+    ])
+}
+
+fn gradient(
+    campaign: &Campaign,
+    test: &'static str,
+    quantity: &'static str,
+    of: Estimate,
+    unit: &'static str,
+    parameter: Option<&'static str>,
+) -> Gradient {
+    let start = parameter
+        .and_then(|name| campaign.parameter(name))
+        .map(|parameter| parameter.value);
+    Gradient {
+        test,
+        quantity,
+        value: of.value,
+        stderr: of.standard_error,
+        unit,
+        parameter,
+        start,
+    }
+}
+
+fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
+    let file = campaign.folder.join(&run.file);
+    Problem::new(
+        file,
+        Place::File,
+        error.to_string(),
+        "a curve with gradients",
+        "record it again, or leave the run out",
+    )
+    .into()
+}
+
+fn text(of: &[Gradient]) -> String {
+    let mut table = Table::new(["test", "quantity", "unit", "value", "stderr", "parameter", "start"]);
+    for gradient in of {
+        table.row(vec![
+            gradient.test.into(),
+            gradient.quantity.into(),
+            gradient.unit.into(),
+            number(gradient.value, 4),
+            number(gradient.stderr, 2),
+            gradient.parameter.unwrap_or("-").into(),
+            gradient.start.map_or("-".into(), |start| number(start, 4)),
+        ]);
+    }
+    table.text()
+}

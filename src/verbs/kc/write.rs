@@ -1,0 +1,43 @@
+//! New start values in `campaign.toml`; every other byte of it stays.
+
+use std::ops::Range;
+
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::error::{InputError, Place, Problem};
+use toml::de::DeTable;
+
+use super::Gradient;
+use crate::files::{put, read_text};
+
+/// Replaces the value of each parameter that a gradient stands for and that the campaign has.
+pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Result<(), InputError> {
+    let file = campaign.manifest();
+    let mut text = read_text(&file)?;
+    let mut problems = Vec::new();
+    for gradient in gradients.iter().filter(|gradient| gradient.start.is_some()) {
+        let name = gradient.parameter.unwrap_or_default();
+        let value: f64 = format!("{:.4e}", gradient.value).parse().unwrap_or(gradient.value);
+        match campaign.parameter(name).and_then(|parameter| parameter.range) {
+            Some((low, high)) if !(low..=high).contains(&value) => {
+                let place = Place::Name(format!("parameters.{name}.range"));
+                let expected = format!("a range that holds {value}, the gradient of the curve");
+                let remedy = "widen the range, or check the curve";
+                problems.push(Problem::new(&file, place, format!("[{low}, {high}]"), expected, remedy));
+            }
+            _ => text.replace_range(value_of(&text, name), &format!("{value:?}")),
+        }
+    }
+    InputError::unless_empty(problems, Some(()))?;
+    put(&campaign.folder, "campaign.toml", &text)
+}
+
+/// Where the value of a parameter stands.
+fn value_of(text: &str, name: &str) -> Range<usize> {
+    let table = DeTable::parse(text).expect("the campaign was read from this text");
+    let parameter = table
+        .get_ref()
+        .get("parameters")
+        .and_then(|parameters| parameters.get_ref().get(name));
+    let value = parameter.and_then(|parameter| parameter.get_ref().get("value"));
+    value.expect("the campaign has this parameter").span()
+}

@@ -1,0 +1,224 @@
+//! `qcar simulate`: the cleat runs of a campaign, simulated and compared with the measurement.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+use qcar_runtime::campaign::{Campaign, History, Run, Test};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::road::Road;
+use qcar_runtime::simulate::{Car, Drive, Ride, Settings, SimulateError, Variant, rides};
+use qcar_runtime::tyre::{Geometry, Rates, Tyre};
+
+use crate::catalogue::{self, Loaded};
+use crate::failure::Failure;
+use crate::parameters::{self, Setting};
+use crate::progress::while_showing;
+
+// Simulated beside measured.
+mod compared;
+// The result as text, JSON and CSV.
+mod render;
+
+/// Simulate the cleat runs of a campaign and compare them with the measurement
+///
+/// The errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
+/// square, after both records are aligned at the peak of the wheel.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar simulate models/campaigns/axle_a_rig --params results/parameters.toml")]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    /// Simulate this model, by name or path, in place of the campaign's
+    #[arg(long)]
+    model: Option<String>,
+    /// Parameter values above the start values of the campaign: a TOML file with [parameters]
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// One value, in place of that of the files; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Setting>,
+    /// How much of the model is simulated
+    #[arg(long, value_enum, default_value_t = VariantName::Complete)]
+    variant: VariantName,
+    /// Write the time histories into this folder, a CSV for each run
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum VariantName {
+    /// All of it
+    Complete,
+    /// All moves along the road at constant speed
+    Locked,
+    /// Locked, and the tyre feels the height below the wheel's centre alone
+    Vertical,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+    Csv,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
+    let manifest = campaign.manifest();
+    let files = std::iter::once(manifest.as_path()).chain(arguments.params.as_deref());
+    let values = parameters::resolve(model.about(), files, &arguments.set)?;
+    let car = Car {
+        model: &*model,
+        parameters: values.as_slice(),
+        tyre: tyre(&campaign)?,
+        gravity: fact(&campaign, "gravity", "m/s²")?,
+        variant: arguments.variant.into(),
+    };
+    let cleats = cleats(&campaign)?;
+    let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
+    let simulate = || rides(&car, &drives, &Settings::default());
+    let rides = while_showing(format!("{}: {} rides", campaign.name, drives.len()), simulate);
+    let rides = checked(&cleats, rides)?;
+    let results = compared::compare(model.about(), &cleats, &rides)?;
+    if let Some(folder) = &arguments.out {
+        render::histories(model.about(), &cleats, &rides, folder)?;
+    }
+    Ok(match arguments.format {
+        Format::Text => render::text(&results),
+        Format::Json => render::json(&campaign, &model, &results),
+        Format::Csv => render::csv(&results),
+    })
+}
+
+/// A cleat run of the campaign: what was driven and measured.
+pub(crate) struct Cleat {
+    run: Run,
+    speed: f64,
+    measured: History,
+    road: Road,
+}
+
+impl Cleat {
+    fn drive(&self) -> Drive<'_> {
+        Drive {
+            road: &self.road,
+            speed: self.speed,
+            sample_rate: self.measured.sample_rate,
+            samples: self.measured.len(),
+        }
+    }
+}
+
+impl From<VariantName> for Variant {
+    fn from(name: VariantName) -> Self {
+        match name {
+            VariantName::Complete => Variant::Complete,
+            VariantName::Locked => Variant::LongitudinallyLocked,
+            VariantName::Vertical => Variant::PureVertical,
+        }
+    }
+}
+
+fn tyre(campaign: &Campaign) -> Result<Tyre, InputError> {
+    let radius = fact(campaign, "r_tire", "m")?;
+    let deflection = fact(campaign, "static_tire_def", "m")?;
+    Tyre::new(radius, deflection, Geometry::Area, Rates::AtStaticDeflection).map_err(|error| {
+        let (place, remedy) = (Place::Name("vehicle".into()), "correct r_tire and static_tire_def");
+        Problem::new(
+            campaign.manifest(),
+            place,
+            error.to_string(),
+            "a tyre that carries the car",
+            remedy,
+        )
+        .into()
+    })
+}
+
+fn fact(campaign: &Campaign, name: &str, unit: &str) -> Result<f64, InputError> {
+    campaign.vehicle(name).ok_or_else(|| {
+        let remedy = format!("add `{name} = …` in {unit}");
+        let place = Place::Name("vehicle".into());
+        Problem::new(
+            campaign.manifest(),
+            place,
+            format!("no `{name}`"),
+            "what a rolling tyre needs",
+            remedy,
+        )
+        .into()
+    })
+}
+
+fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
+    let runs = campaign.runs.iter().filter_map(|run| match &run.test {
+        Test::Cleat { speed, cleat, .. } => Some(self::cleat(campaign, run, *speed, cleat)),
+        _ => None,
+    });
+    let (mut found, mut problems) = (Vec::new(), Vec::new());
+    for run in runs {
+        match run {
+            Ok(cleat) => found.push(cleat),
+            Err(error) => problems.extend(error.problems),
+        }
+    }
+    if found.is_empty() && problems.is_empty() {
+        let (place, remedy) = (Place::Name("run".into()), "list runs of kind cleat");
+        problems.push(Problem::new(
+            campaign.manifest(),
+            place,
+            "no run over a cleat",
+            "at least one",
+            remedy,
+        ));
+    }
+    InputError::unless_empty(problems, Some(found))
+}
+
+fn cleat(campaign: &Campaign, run: &Run, speed: f64, name: &str) -> Result<Cleat, InputError> {
+    let road = campaign.roads.iter().find(|road| road.name == name);
+    let samples = campaign.road(road.expect("the campaign was checked for its roads"))?;
+    let road = Road::from_samples(&samples.x, &samples.z, &samples.slope).map_err(|error| {
+        let remedy = "sample the road again, from left to right and finely enough";
+        Problem::new(
+            &samples.file,
+            Place::File,
+            error.to_string(),
+            "a road to drive over",
+            remedy,
+        )
+    })?;
+    let measured = campaign.history(run)?;
+    Ok(Cleat {
+        run: run.clone(),
+        speed,
+        measured,
+        road,
+    })
+}
+
+fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {
+    let (mut done, mut problems) = (Vec::new(), Vec::new());
+    for (cleat, ride) in cleats.iter().zip(rides) {
+        match ride {
+            Ok(ride) => done.push(ride),
+            Err(error) => {
+                let remedy = "correct the run, the vehicle or the parameters";
+                let file = &cleat.measured.file;
+                problems.push(Problem::new(
+                    file,
+                    Place::File,
+                    error.to_string(),
+                    "a ride that can be simulated",
+                    remedy,
+                ));
+            }
+        }
+    }
+    InputError::unless_empty(problems, Some(done))
+}

@@ -1,0 +1,87 @@
+//! Cleat runs of the campaign in the repository, simulated as a user does.
+
+use std::fs;
+
+use serde_json::Value;
+
+use crate::common::{qcar, succeeds};
+
+const AXLE: &str = "models/campaigns/axle_a_rig";
+const TRUTH: &str = "models/campaigns/axle_a_rig/truth.toml";
+
+fn simulated(arguments: &[&str]) -> Value {
+    serde_json::from_str(&succeeds(
+        &[&["simulate", AXLE], arguments, &["--format", "json"]].concat(),
+    ))
+    .unwrap()
+}
+
+fn size(of: &Value, mass_axis: &str, metric: &str, which: &str) -> f64 {
+    of["summary"][mass_axis][metric][which].as_f64().unwrap()
+}
+
+#[test]
+fn the_true_parameters_give_the_measured_cleat_runs() {
+    let rides = simulated(&["--params", TRUTH]);
+    assert!(size(&rides, "body_z", "peak", "median") < 0.05);
+    assert!(size(&rides, "body_z", "peak", "worst") < 0.15);
+    assert!(size(&rides, "body_z", "after_shake", "median") < 0.08);
+}
+
+#[test]
+fn a_fit_to_the_rig_predicts_the_cleat() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().to_str().unwrap();
+    succeeds(&["fit", AXLE, "--out", out]);
+    let rides = simulated(&["--params", &format!("{out}/parameters.toml")]);
+    assert!(size(&rides, "body_z", "peak", "median") < 0.1);
+    assert!(size(&rides, "body_z", "after_shake", "median") < 0.1);
+}
+
+#[test]
+fn the_variants_differ_as_the_thesis_found() {
+    let error = |variant| {
+        size(
+            &simulated(&["--params", TRUTH, "--variant", variant]),
+            "wheel_z",
+            "peak",
+            "median",
+        )
+    };
+    let (complete, locked, vertical) = (error("complete"), error("locked"), error("vertical"));
+    assert!((locked - complete).abs() < 0.1, "{complete} {locked}");
+    assert!(vertical > 3.0 * locked.max(0.1), "{locked} {vertical}");
+}
+
+#[test]
+fn time_histories_are_written_run_by_run() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("rides");
+    let csv = succeeds(&["simulate", AXLE, "--out", out.to_str().unwrap(), "--format", "csv"]);
+    assert!(csv.starts_with("run,role,mass,axis,measured_peak"));
+    let file = fs::read_to_string(out.join("v30_h30.csv")).unwrap();
+    let columns = file.lines().next().unwrap().split(',').count();
+    assert!(file.starts_with("time,z_body_acceleration,"));
+    assert!(file.lines().all(|line| line.split(',').count() == columns));
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 3);
+}
+
+#[test]
+fn what_cannot_roll_is_refused() {
+    let cases: [(&[&str], &str); 3] = [
+        (&["--set", "k_tire=-5e5"], "static"),
+        (&["--model", "nowhere.axle"], "nowhere.axle"),
+        (&["--params", "nowhere.toml"], "nowhere.toml"),
+    ];
+    for (wish, said) in cases {
+        let ran = qcar(&[&["simulate", AXLE], wish].concat());
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{wish:?}\n{}", ran.stderr);
+        assert!(
+            ran.stderr.contains(said) && !ran.stderr.contains("panicked"),
+            "{wish:?}\n{}",
+            ran.stderr
+        );
+    }
+    let ran = qcar(&["simulate", "models/campaigns/silverbox"]);
+    assert_eq!(ran.status, 2, "{}", ran.stdout);
+}
