@@ -7,6 +7,7 @@ use models::Shipped;
 use qcar_dsl::compile::compile as compile_text;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::compile_file;
+use qcar_dsl::front::{Member, check_members};
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
@@ -15,6 +16,7 @@ use qcar_runtime::model::Model;
 
 use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
+use crate::files::read_text;
 
 /// A model that can run: compiled into this program, or interpreted.
 pub enum Loaded {
@@ -93,6 +95,22 @@ pub fn compile(model: &str) -> Result<Result<Compiled, Report>, Failure> {
         }
         None => Err(unknown(model).into()),
     }
+}
+
+/// Every member of the family in a file: its options, and what the checks say.
+///
+/// # Errors
+/// A file that cannot be read, or is no family.
+pub fn members(file: &str) -> Result<Vec<Member>, Failure> {
+    let text = read_text(Path::new(file))?;
+    let source = Source {
+        name: file.into(),
+        text,
+    };
+    check_members(source, &|_, path| {
+        Err(format!("a family loads no other file, such as {path}"))
+    })
+    .map_err(|report| Failure::Input(report.to_string()))
 }
 
 fn compile_shipped(shipped: &Shipped) -> Result<Compiled, Report> {

@@ -2,6 +2,7 @@
 
 use clap::Args;
 use qcar_dsl::diagnostic::Report;
+use qcar_dsl::resolve::options::Choices;
 use qcar_dsl::schedule::Compiled;
 
 use crate::catalogue;
@@ -15,6 +16,9 @@ use crate::failure::Failure;
 pub struct Arguments {
     /// Names of shipped models, or paths of model files
     models: Vec<String>,
+    /// Of a family's file, check every member that its options allow
+    #[arg(long)]
+    members: bool,
 }
 
 /// Does it.
@@ -23,6 +27,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         [] => catalogue::names().collect(),
         some => some.iter().map(String::as_str).collect(),
     };
+    if arguments.members {
+        return members(&named);
+    }
     let results = named
         .iter()
         .map(|name| catalogue::compile(name))
@@ -48,4 +55,36 @@ fn verdict(name: &str, result: Result<Compiled, Report>) -> String {
             warnings => format!("{name}: ok, with warnings\n{warnings}\n"),
         },
     }
+}
+
+/// All members of all families, those that are refused with their options.
+fn members(files: &[&str]) -> Result<String, Failure> {
+    let mut text = String::new();
+    let mut all_well = true;
+    for file in files {
+        let members = catalogue::members(file)?;
+        let refused: Vec<_> = members
+            .iter()
+            .filter_map(|(choices, result)| Some((choices, result.as_ref().err()?)))
+            .collect();
+        all_well &= refused.is_empty();
+        text += &format!("{file}: {} members, {} refused\n", members.len(), refused.len());
+        text.extend(
+            refused
+                .iter()
+                .map(|(choices, report)| format!("{}\n{report}\n", options(choices))),
+        );
+    }
+    if all_well {
+        Ok(text)
+    } else {
+        Err(Failure::Finding(text))
+    }
+}
+
+fn options(choices: &Choices) -> String {
+    choices
+        .iter()
+        .map(|(option, value)| format!("{option} = {value}; "))
+        .collect()
 }

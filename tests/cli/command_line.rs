@@ -230,6 +230,12 @@ fn a_reader_that_goes_away_is_no_error() {
 }
 
 #[test]
+fn every_member_of_the_family_passes_the_checks() {
+    let said = succeeds(&["check", "--members", "models/families/corner.axle"]);
+    assert_eq!(said, "models/families/corner.axle: 256 members, 0 refused\n");
+}
+
+#[test]
 fn a_finding_has_its_own_exit_status() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("loose.axle");
