@@ -54,7 +54,7 @@ fn noise_before_the_onset_is_not_taken_for_after_shake() {
     let wheel = shake(0.3, 50.0, 15.0, 0.05);
     let alignment = Alignment::at_peak(&wheel, &wheel).unwrap();
     let body = shake(0.3, 1.0, 3.0, 0.3);
-    let noise = |i: usize| 0.2 * if i * i / 7 % 2 == 0 { 1.0 } else { -1.0 };
+    let noise = |i: usize| 0.2 * if (i * i / 7).is_multiple_of(2) { 1.0 } else { -1.0 };
     let measured: Vec<f64> = body.iter().enumerate().map(|(i, a)| a + noise(i)).collect();
     let errors = Errors::between(&measured, &body, &alignment, RATE, &Windows::default()).unwrap();
     assert!(errors.after_shake().abs() < 0.05, "{errors:?}");
