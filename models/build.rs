@@ -1,28 +1,35 @@
-//! Compiles every file of `axles/` to a module, and lists them. A new file there needs no other change.
+//! Compiles every file of `axles/` to a module, and lists them and the files of `effects/`. A new file in either folder
+//! needs no other change.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
+use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::{FromDisk, compile_file};
+use qcar_dsl::patch::Patch;
 use qcar_dsl::rust::{module, type_name};
+use qcar_dsl::source::Source;
 
 fn main() {
     println!("cargo::rerun-if-changed=axles");
+    println!("cargo::rerun-if-changed=effects");
     let mut code = String::new();
     let mut entries = String::new();
-    for file in model_files() {
+    for file in files("axles") {
         let Some((text, entry)) = compile(&file) else { continue };
         code += &text;
         entries += &entry;
     }
     write!(code, "\nstatic SHIPPED: &[Shipped] = &[\n{entries}];\n").expect("a string takes all");
+    let effects: String = files("effects").iter().filter_map(|file| effect(file)).collect();
+    write!(code, "\nstatic EFFECTS: &[ShippedEffect] = &[\n{effects}];\n").expect("a string takes all");
     let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR");
     std::fs::write(Path::new(&out).join("models.rs"), code).expect("OUT_DIR can be written");
 }
 
-/// The model files, by name.
-fn model_files() -> Vec<PathBuf> {
-    let folder = std::fs::read_dir("axles").expect("this package has a folder of axles");
+/// The files of a folder, by name.
+fn files(folder: &str) -> Vec<PathBuf> {
+    let folder = std::fs::read_dir(folder).expect("this package has folders of axles and effects");
     let paths = folder.filter_map(|entry| Some(entry.ok()?.path()));
     let mut files: Vec<PathBuf> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "axle"))
@@ -48,11 +55,7 @@ fn compile(file: &Path) -> Option<(String, String)> {
     match &from_disk.compiled {
         Ok(compiled) => Some((module(compiled), entry(&compiled.about.name, &from_disk))),
         Err(report) => {
-            report
-                .compact()
-                .lines()
-                .for_each(|line| println!("cargo::error={line}"));
-            eprintln!("{report}");
+            refuse(report);
             None
         }
     }
@@ -60,12 +63,6 @@ fn compile(file: &Path) -> Option<(String, String)> {
 
 /// `Shipped { … }`: the module's type, and the texts that it comes from.
 fn entry(name: &str, from_disk: &FromDisk) -> String {
-    let included = |path: &str| {
-        format!(
-            "include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {:?}))",
-            format!("/{path}")
-        )
-    };
     let mut texts = from_disk
         .read
         .iter()
@@ -78,4 +75,41 @@ fn entry(name: &str, from_disk: &FromDisk) -> String {
     format!(
         "    Shipped {{ name: {name:?}, file: {file:?}, text: {text}, families: &[{families}], model: {model} }},\n"
     )
+}
+
+/// The text of a file of this package, put into the program.
+fn included(path: &str) -> String {
+    let below = format!("/{path}");
+    format!("include_str!(concat!(env!(\"CARGO_MANIFEST_DIR\"), {below:?}))")
+}
+
+/// `ShippedEffect { … }`: an effect that reads well; mistakes go to cargo.
+fn effect(file: &Path) -> Option<String> {
+    let name = file.display().to_string();
+    let text = std::fs::read_to_string(file).expect("a file that was listed can be read");
+    match Patch::read(Source {
+        name: name.clone(),
+        text,
+    }) {
+        Ok(patch) => {
+            let effect = &patch.effect().name.text;
+            let text = included(&name);
+            Some(format!(
+                "    ShippedEffect {{ name: {effect:?}, file: {name:?}, text: {text} }},\n"
+            ))
+        }
+        Err(report) => {
+            refuse(&report);
+            None
+        }
+    }
+}
+
+/// Tells cargo what is wrong, in lines and as it reads best.
+fn refuse(report: &Report) {
+    report
+        .compact()
+        .lines()
+        .for_each(|line| println!("cargo::error={line}"));
+    eprintln!("{report}");
 }

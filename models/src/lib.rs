@@ -1,4 +1,5 @@
-//! The axle models that qcar ships, compiled: a module for each file of `axles/`, and a list of them.
+//! The axle models that qcar ships, compiled: a module for each file of `axles/`, and a list of them. And the texts of the
+//! effects that may be missing in a model: the files of `effects/`.
 
 use qcar_runtime::model::Model;
 
@@ -27,4 +28,20 @@ pub fn all() -> &'static [Shipped] {
 /// The model of a name.
 pub fn find(name: &str) -> Option<&'static Shipped> {
     SHIPPED.iter().find(|shipped| shipped.name == name)
+}
+
+/// An effect of this package.
+#[derive(Clone, Copy)]
+pub struct ShippedEffect {
+    /// Its name.
+    pub name: &'static str,
+    /// Its file, relative to this package.
+    pub file: &'static str,
+    /// The text of that file.
+    pub text: &'static str,
+}
+
+/// All effects, by name.
+pub fn effects() -> &'static [ShippedEffect] {
+    EFFECTS
 }

@@ -118,9 +118,17 @@ impl<'a> Front<'a> {
 
     /// The only axle of a file.
     fn one_axle<'f>(&mut self, file: &'f File) -> Option<&'f Axle> {
+        let effect = file.items.iter().find_map(|item| match item {
+            Item::Effect(effect) => Some(effect),
+            _ => None,
+        });
+        if let Some(effect) = effect {
+            self.found.push(reading::effect_is_no_model(effect.name.span));
+            return None;
+        }
         let axles = file.items.iter().filter_map(|item| match item {
             Item::Axle(axle) => Some(axle),
-            Item::Element(_) => None,
+            Item::Element(_) | Item::Effect(_) => None,
         });
         let axles: Vec<&Axle> = axles.collect();
         match axles.as_slice() {
@@ -204,7 +212,7 @@ fn elements(file: &File) -> Vec<&Element> {
 fn as_element(item: &Item) -> Option<&Element> {
     match item {
         Item::Element(element) => Some(element),
-        Item::Axle(_) => None,
+        Item::Axle(_) | Item::Effect(_) => None,
     }
 }
 

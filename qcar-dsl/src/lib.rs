@@ -24,6 +24,8 @@ pub mod canonical;
 pub mod check;
 // The front end in one function.
 pub mod front;
+// Models with effects in them.
+pub mod patch;
 // All that follows is total. What is at which place of the vectors.
 pub mod about;
 // Sparse symmetric systems solved symbolically.

@@ -5,6 +5,11 @@
 
 use crate::source::Span;
 
+// What changes a model.
+mod effect;
+
+pub use effect::{Change, Effect, EffectParameter, Pattern, PlaceKind};
+
 /// A name, or a word that chooses something.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Name {
@@ -38,6 +43,8 @@ pub enum Item {
     Axle(Axle),
     /// A reusable law.
     Element(Element),
+    /// A patch of a model.
+    Effect(Box<Effect>),
 }
 
 /// A model, or a family of models.

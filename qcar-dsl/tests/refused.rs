@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::front::check_text;
+use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 
 fn folder() -> PathBuf {
@@ -21,10 +22,24 @@ fn source(path: &str) -> Result<Source, String> {
 
 fn report(code: Code) -> Report {
     let source = source(&format!("{}.axle", code.name())).unwrap();
+    if let Some(rest) = source.text.strip_prefix("// patch at ") {
+        let place = rest.lines().next().unwrap().to_string();
+        return report_of_effect(source, &place);
+    }
     match check_text(source, &|_, path| self::source(path)) {
         Ok(checked) => checked.warnings().clone(),
         Err(report) => report,
     }
+}
+
+/// Of an effect in its file, or else of its application to the model that is kept for it.
+fn report_of_effect(source: Source, place: &str) -> Report {
+    let model = check_text(self::source("models/strut.axle").unwrap(), &|_, path| {
+        self::source(path)
+    })
+    .unwrap();
+    let patched = Patch::read(source).and_then(|patch| patch.apply(&model, place, &|_| None));
+    patched.expect_err("the effect is refused")
 }
 
 #[test]

@@ -196,4 +196,24 @@ codes! {
     ParameterNotSeen = "parameter_not_seen",
     /// Parameters of which outputs see a combination only.
     OnlyTogether = "only_together",
+    /// No effect in a file, or several.
+    NotOneEffect = "not_one_effect",
+    /// An effect that does not say what it is, where it comes from or how it shows.
+    EffectNotDescribed = "effect_not_described",
+    /// A kind of linear term that the language does not have.
+    UnknownTerm = "unknown_term",
+    /// An effect of a sensor that changes the model.
+    SensorChangesModel = "sensor_changes_model",
+    /// A place that the pattern of an effect does not fit.
+    NoSuchPlace = "no_such_place",
+    /// Something that an effect asks of a place that has none.
+    PlaceLacks = "place_lacks",
+    /// A name of an effect that the model has already.
+    AlreadyInModel = "already_in_model",
+    /// A state of an effect that the link has already.
+    AlreadyInLink = "already_in_link",
+    /// A start or bound of another unit than its parameter.
+    StartOfOtherUnit = "start_of_other_unit",
+    /// A start that is not between its bounds.
+    StartOutsideRange = "start_outside_range",
 }

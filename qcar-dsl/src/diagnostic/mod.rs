@@ -14,6 +14,8 @@ pub mod units;
 pub mod structure;
 // What an output can see.
 pub mod visibility;
+// Effects and their places.
+pub mod effects;
 // How a report looks.
 mod render;
 

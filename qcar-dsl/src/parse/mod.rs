@@ -24,6 +24,8 @@ mod block;
 mod law;
 // Statements of models.
 mod statement;
+// What changes a model.
+mod effect;
 
 use statement::Scope;
 pub use tokens::FUNCTIONS;
@@ -104,7 +106,6 @@ fn parse(tokens: TokenStream, source: u16, length: Option<u32>) -> Reading {
 
 fn item(tokens: &mut Tokens) -> Parsed<Item> {
     const EXAMPLE: &str = "axle name { … }";
-    let span = tokens.span();
     match tokens.peek().as_deref() {
         Some("axle") => Ok(Item::Axle(axle(tokens)?)),
         Some("family") => Ok(Item::Axle(family(tokens)?)),
@@ -113,8 +114,11 @@ fn item(tokens: &mut Tokens) -> Parsed<Item> {
             let name = tokens.new_name("the name of an element", "element maxwell(k: N/m, c: N s/m) { … }")?;
             Ok(Item::Element(law::element(tokens, name)?))
         }
-        Some("effect") => Err(Box::new(reading::effect_is_no_model(span))),
-        _ => tokens.expected("`axle`, `family` or `element`", EXAMPLE),
+        Some("effect") => {
+            tokens.take_word("effect");
+            Ok(Item::Effect(Box::new(effect::effect(tokens)?)))
+        }
+        _ => tokens.expected("`axle`, `family`, `element` or `effect`", EXAMPLE),
     }
 }
 

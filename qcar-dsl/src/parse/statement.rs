@@ -76,7 +76,8 @@ fn home(statement: &Statement, scope: Scope) -> Option<&'static str> {
     (!fits).then_some(home)
 }
 
-fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
+/// One statement.
+pub fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
     let word = tokens.peek();
     if is_choice(tokens) {
         return choose(tokens);

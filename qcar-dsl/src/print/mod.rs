@@ -7,6 +7,8 @@ use crate::syntax::{
     Parameter, ParameterDefault, Requirement, Statement,
 };
 
+// What changes a model.
+mod effect;
 // Expressions, conditions, numbers and units.
 mod expression;
 
@@ -16,6 +18,7 @@ impl Display for File {
             let lines = match item {
                 Item::Axle(axle) => axle_lines(axle),
                 Item::Element(element) => element_lines(element),
+                Item::Effect(effect) => effect::effect_lines(effect),
             };
             f.write_str(if index > 0 { "\n" } else { "" })?;
             lines.iter().try_for_each(|line| writeln!(f, "{line}"))?;

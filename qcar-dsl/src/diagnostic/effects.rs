@@ -1,0 +1,111 @@
+//! Mistakes of effects, and of places where they do not apply.
+
+use super::{Code, Diagnostic, nearest, one_of};
+use crate::source::Span;
+
+/// A file without an effect, or with more than one.
+pub fn not_one_effect(span: Span, found: usize) -> Diagnostic {
+    let message = match found {
+        0 => "this file holds no effect".to_string(),
+        _ => format!("this file holds {found} effects"),
+    };
+    Diagnostic::error(Code::NotOneEffect, message)
+        .label(span, "one `effect` for each file")
+        .hint("write one `effect name at link l { … }` in a file of its own")
+}
+
+/// An effect that does not say what it is, where it comes from or how it shows.
+pub fn not_described(span: Span, effect: &str, what: &str, example: &str) -> Diagnostic {
+    Diagnostic::error(Code::EffectNotDescribed, format!("effect `{effect}` has no {what}"))
+        .label(span, "nobody can judge it without")
+        .hint(format!("write `{example}` into the effect"))
+}
+
+/// A linear term that the language does not have.
+pub fn unknown_term(span: Span, term: &str, known: &[&str]) -> Diagnostic {
+    Diagnostic::error(Code::UnknownTerm, format!("`{term}` is no kind of linear term"))
+        .label(span, "unknown")
+        .hint(match nearest(term, known) {
+            Some(near) => format!("write `{near}`"),
+            None => format!("write {}", one_of(known)),
+        })
+}
+
+/// An effect of a sensor that changes the model.
+pub fn sensor_changes_model(span: Span) -> Diagnostic {
+    Diagnostic::error(
+        Code::SensorChangesModel,
+        "an effect of a sensor cannot change the model",
+    )
+    .label(span, "the place is a sensor")
+    .hint("write `delay m by …;` or `scale m by …;` alone, or an effect `at link l` or `at mass m`")
+}
+
+/// A place of a model that the pattern of an effect does not fit.
+pub fn no_such_place(span: Span, effect: &str, place: &str, model: &str, places: &[&str]) -> Diagnostic {
+    let message = format!("effect `{effect}` does not apply at `{place}` of {model}");
+    let hint = match places {
+        [] => format!("choose another effect: {model} has no place for this one"),
+        _ => format!("write {}", one_of(places)),
+    };
+    Diagnostic::error(Code::NoSuchPlace, message)
+        .label(span, "the pattern of this effect")
+        .hint(hint)
+}
+
+/// Something that an effect asks of a place that has none.
+pub fn place_lacks(span: Span, said: &str, name: &str) -> Diagnostic {
+    Diagnostic::error(
+        Code::PlaceLacks,
+        format!("there is no `{said}`: `{name}` is missing, or has none"),
+    )
+    .label(span, "asked for here")
+    .hint("write what the place must have into the head of the effect: `with damper`, `given body`")
+}
+
+/// A name that the model has already.
+pub fn already_in_model(span: Span, name: &str, model: &str) -> Diagnostic {
+    Diagnostic::error(Code::AlreadyInModel, format!("{model} has `{name}` already"))
+        .label(span, "declared by the effect")
+        .hint("apply each effect to a model once; for a second part of the kind, write an effect with other names")
+}
+
+/// A state that the law of the link has already.
+pub fn already_in_link(span: Span, name: &str, link: &str) -> Diagnostic {
+    Diagnostic::error(
+        Code::AlreadyInLink,
+        format!("link `{link}` has the state `{name}` already"),
+    )
+    .label(span, "declared by the effect")
+    .hint("apply each effect to a link once; for a second law of the kind, write an effect with other names")
+}
+
+/// A start or bound of another unit than its parameter.
+pub fn start_of_other_unit(span: Span, what: &str, expected: &str, found: &str) -> Diagnostic {
+    Diagnostic::error(
+        Code::StartOfOtherUnit,
+        format!("{what} is in {found}, not in {expected}"),
+    )
+    .label(span, format!("in {found}"))
+    .hint(format!(
+        "write an expression in {expected}, such as a part of the model's own parameter"
+    ))
+}
+
+/// A start that is not between its bounds, or has no value.
+pub fn start_outside_range(span: Span, name: &str, start: f64, low: f64, high: f64) -> Diagnostic {
+    Diagnostic::error(
+        Code::StartOutsideRange,
+        format!("`{name}` starts at {start:?}, which is not between {low:?} and {high:?}"),
+    )
+    .label(span, "declared here")
+    .hint("write `= start in low..high` with low <= start <= high; a value that is not a number needs a default or range of the model's parameter")
+}
+
+/// Whether a mistake is that nothing uses a name.
+pub fn is_about_use(diagnostic: &Diagnostic) -> bool {
+    matches!(
+        diagnostic.code,
+        Code::UnusedParameter | Code::UnusedLet | Code::UnusedElement
+    )
+}

@@ -1,0 +1,233 @@
+//! Effects: patches of models, read from files, and made at the places where they apply.
+//!
+//! A patch is a change of the syntax tree, so that the new model is a file that reads, and compiles, like any other.
+//! Everything that an effect says about the model is bound to the model as it was before: `l.damper` is the coefficient
+//! that stood there, and stays what it was when the term is replaced.
+
+// Trees with other names in them.
+mod rewrite;
+// The model as a tree.
+mod base;
+// What a link connects.
+mod stretch;
+// Where an effect may apply.
+mod place;
+// What its names mean there.
+mod bind;
+// Its changes.
+mod apply;
+mod tidy;
+// Its numbers.
+mod start;
+// What it must say.
+mod rules;
+
+use base::Base;
+use bind::Bindings;
+pub use place::Place;
+pub use start::Values;
+
+use crate::check::Checked;
+use crate::diagnostic::{Diagnostic, Report, effects};
+use crate::front::check_text;
+use crate::source::Source;
+use crate::syntax::{Effect, Name};
+use crate::units::Unit;
+
+/// Why something cannot be made.
+pub(crate) type Refused = Vec<Diagnostic>;
+
+/// Something, or why it cannot be made.
+pub(crate) type Made<Thing> = Result<Thing, Refused>;
+
+fn refused(mistake: Diagnostic) -> Refused {
+    vec![mistake]
+}
+
+/// An effect that was read from a file.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    effect: Effect,
+    source: Source,
+}
+
+/// A model with an effect in it.
+#[derive(Clone, Debug)]
+pub struct Patched {
+    /// The effect.
+    pub effect: String,
+    /// The label of its place.
+    pub place: String,
+    /// The model, checked; its name says the effect, `axle_c_with_coulomb_friction`.
+    pub model: Checked,
+    /// The parameters of the effect, in the order of its file.
+    pub parameters: Vec<NewParameter>,
+    /// What the effect does to measured signals; the equations know nothing of it.
+    pub signals: Vec<SignalChange>,
+    comments: Vec<String>,
+}
+
+/// A parameter of an effect in a patched model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewParameter {
+    /// Its name in the model.
+    pub name: String,
+    /// Its name in the effect: another one where the model had used that name.
+    pub effect_name: String,
+    /// A coherent SI unit.
+    pub unit: Unit,
+    /// Where a search begins, in SI.
+    pub start: f64,
+    /// What is plausible, in SI, lower below upper.
+    pub range: (f64, f64),
+    /// Given, not to be estimated.
+    pub known: bool,
+    /// The sentence.
+    pub doc: String,
+    /// False for a shared one that the model had already.
+    pub is_new: bool,
+}
+
+/// What is wrong with a measured signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SignalChange {
+    /// The location of the sensor.
+    pub location: String,
+    /// Its axis.
+    pub axis: String,
+    /// What is wrong.
+    pub kind: Signal,
+    /// The parameter that says how much.
+    pub parameter: String,
+}
+
+/// What may be wrong with a measured signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// It comes late, by a parameter in s.
+    Delay,
+    /// It is too large, by a factor.
+    Gain,
+}
+
+impl Patch {
+    /// Reads the file of an effect.
+    ///
+    /// # Errors
+    /// The report of every mistake that shows without a model.
+    pub fn read(source: Source) -> Result<Patch, Report> {
+        rules::effect_of(&source)
+            .map(|effect| Patch {
+                effect,
+                source: source.clone(),
+            })
+            .map_err(|diagnostics| Report {
+                sources: vec![source],
+                diagnostics,
+            })
+    }
+
+    /// The effect as its file says it.
+    pub fn effect(&self) -> &Effect {
+        &self.effect
+    }
+
+    /// The places of a model where the effect applies, in the order of the model's text.
+    pub fn places(&self, model: &Checked) -> Vec<Place> {
+        let base = Base::of(model);
+        let mut places = place::fitting(&base, &self.effect.pattern);
+        places.retain(|place| apply::apply(Bindings::new(&base, &self.effect, place)).is_ok());
+        places
+    }
+
+    /// The model with the effect at a place, given by its label. Starts and ranges that depend on the model are taken
+    /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
+    ///
+    /// # Errors
+    /// A place where the effect does not apply, names that the model has already, and every rule of the compiler that
+    /// the patched model breaks.
+    pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
+        let base = Base::of(model);
+        let patched = self.tree(&base, place, values).map_err(|diagnostics| Report {
+            sources: vec![self.source.clone()],
+            diagnostics,
+        })?;
+        let (tree, parameters, signals) = patched;
+        let text = Source {
+            name: format!("{}.axle", tree.axle.name.text),
+            text: tree.file().to_string(),
+        };
+        let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+        Ok(Patched {
+            effect: self.effect.name.text.clone(),
+            place: place.to_string(),
+            model,
+            parameters,
+            signals,
+            comments: self.comments(place),
+        })
+    }
+
+    fn tree(&self, base: &Base, label: &str, values: Values) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
+        let places = place::fitting(base, &self.effect.pattern);
+        let Some(place) = places.iter().find(|place| place.label == label) else {
+            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
+            let (name, model) = (&self.effect.name, &base.axle.name.text);
+            return Err(refused(effects::no_such_place(
+                name.span, &name.text, label, model, &labels,
+            )));
+        };
+        let mut patching = apply::apply(Bindings::new(base, &self.effect, place))?;
+        let mut asked = Vec::new();
+        for (declared, name) in &patching.parameters {
+            let [start, low, high] =
+                [&declared.start, &declared.range.0, &declared.range.1].map(|e| patching.meaning(e));
+            asked.push(start::Asked {
+                declared,
+                name: name.clone(),
+                expressions: [start?, low?, high?],
+            });
+        }
+        let (parameters, declared) = start::evaluate(base, &asked, values)?.into_iter().unzip();
+        patching.declare_parameters(declared);
+        let mut tree = patching.tree;
+        tidy::tidy(&mut tree);
+        self.rename(&mut tree, label);
+        Ok((tree, parameters, patching.signals))
+    }
+
+    /// Says in name and sentence of a model what has been added.
+    fn rename(&self, tree: &mut Base, label: &str) {
+        let (effect, axle) = (&self.effect.name.text, &mut tree.axle);
+        let joint = if axle.name.text.contains("_with_") {
+            "and"
+        } else {
+            "with"
+        };
+        axle.name = Name::new(format!("{}_{joint}_{effect}", axle.name.text));
+        let doc = if axle.doc.is_empty() {
+            String::new()
+        } else {
+            format!("{}, ", axle.doc)
+        };
+        axle.doc = format!("{doc}{joint} {effect} at {label}");
+    }
+
+    fn comments(&self, label: &str) -> Vec<String> {
+        let effect = &self.effect;
+        vec![
+            format!("{} at {label}: {}.", effect.name.text, effect.doc),
+            format!("Source: {}.", effect.source),
+        ]
+    }
+}
+
+impl Patched {
+    /// The model file, with comments that say what was added and what speaks for it; one comment line for each line of
+    /// `evidence`.
+    pub fn text(&self, evidence: &str) -> String {
+        let comments = self.comments.iter().map(String::as_str).chain(evidence.lines());
+        let comments: String = comments.map(|line| format!("// {line}\n")).collect();
+        format!("{comments}{}", self.model.text())
+    }
+}

@@ -1,0 +1,234 @@
+//! What the names of an effect mean at a place: its variable, the ends and coefficients of links, its parameters.
+
+use std::collections::BTreeMap;
+
+use super::base::Base;
+use super::place::{Place, is_term};
+use super::rewrite::{self, binary, named};
+use super::stretch::{lever, lower, upper};
+use super::{Made, refused};
+use crate::diagnostic::effects;
+use crate::syntax::{
+    CoordinateKind, Dotted, Effect, Expression, ExpressionKind, LawStatement, Link, Name, Number, Operator, PlaceKind,
+};
+
+/// What a name may ask of a link or mass behind a dot.
+const FIELDS: [&str; 6] = ["upper", "lower", "spring", "damper", "inerter", "mass"];
+
+/// An effect at a place of a model, before anything is changed.
+pub struct Bindings<'a> {
+    /// The model.
+    pub base: &'a Base,
+    /// The effect.
+    pub effect: &'a Effect,
+    /// The place.
+    pub place: &'a Place,
+    /// Parameters whose names the model has given to something else.
+    pub renamed: BTreeMap<String, String>,
+    lever: Option<Expression>,
+}
+
+impl<'a> Bindings<'a> {
+    /// Binds the names of an effect at a place.
+    pub fn new(base: &'a Base, effect: &'a Effect, place: &'a Place) -> Bindings<'a> {
+        let link = base.link(&place.direction, &place.name);
+        let lever = link.zip(effect.pattern.seen_from.as_ref());
+        let lever = lever.and_then(|(link, point)| lever_of(base, place, link, &point.text));
+        Bindings {
+            base,
+            effect,
+            place,
+            renamed: BTreeMap::new(),
+            lever,
+        }
+    }
+
+    /// The name in the model of a name in the effect: the variable is the place.
+    pub fn name<'n>(&'n self, name: &'n Name) -> &'n str {
+        if name.text == self.effect.pattern.variable.text {
+            &self.place.name
+        } else {
+            &name.text
+        }
+    }
+
+    /// An expression in the names of the model.
+    pub fn expression(&self, e: &Expression, direction: &str) -> Made<Expression> {
+        rewrite::expression(e, &mut |name| self.meaning(name, direction))
+    }
+
+    fn meaning(&self, name: &Dotted, direction: &str) -> Made<Option<Expression>> {
+        match name.names.as_slice() {
+            [own] => {
+                let new = self.renamed.get(&own.text).map_or(self.name(own), String::as_str);
+                Ok((new != own.text).then(|| named(new)))
+            }
+            [owner, field] if FIELDS.contains(&field.text.as_str()) => Ok(Some(self.field(owner, field, direction)?)),
+            _ => Ok(None),
+        }
+    }
+
+    /// The point that is meant where a point must stand: `body`, `m` or `l.upper`.
+    pub fn point(&self, name: &Dotted, direction: &str) -> Made<String> {
+        let meant = self.meaning(name, direction)?;
+        Ok(match meant.map(|meant| meant.kind) {
+            Some(ExpressionKind::Name(name)) => name.to_string(),
+            _ => name.to_string(),
+        })
+    }
+
+    fn field(&self, owner: &Name, field: &Name, direction: &str) -> Made<Expression> {
+        let name = self.name(owner);
+        // What the place is, it is in its own direction: other directions have points of the same names.
+        let home = if name == self.place.name {
+            &self.place.direction
+        } else {
+            direction
+        };
+        let found = match field.text.as_str() {
+            "mass" => self.mass(direction, name),
+            "upper" => self
+                .link(home, name)
+                .and_then(|link| Some(named(&upper(self.base, home, link)?))),
+            "lower" => self
+                .link(home, name)
+                .and_then(|link| Some(named(&lower(self.base, home, link)?))),
+            kind => self.link(home, name).and_then(|link| self.coefficient(link, kind)),
+        };
+        found.ok_or_else(|| {
+            let said = Dotted {
+                names: vec![owner.clone(), field.clone()],
+            };
+            refused(effects::place_lacks(said.span(), &said.to_string(), name))
+        })
+    }
+
+    fn link(&self, direction: &str, name: &str) -> Option<&Link> {
+        self.base.link(direction, name)
+    }
+
+    fn mass(&self, direction: &str, name: &str) -> Option<Expression> {
+        match &self.base.coordinate(direction, name)?.kind {
+            CoordinateKind::Mass(mass) | CoordinateKind::Inertia(mass) => Some(mass.clone()),
+            _ => None,
+        }
+    }
+
+    /// The sum of a link's linear terms of a kind; at the place as it is seen from the point of the pattern.
+    fn coefficient(&self, link: &Link, kind: &str) -> Option<Expression> {
+        let terms = link.body.iter().filter(|statement| is_term(statement, kind));
+        let values = terms.filter_map(|term| match term {
+            LawStatement::Spring(value) | LawStatement::Damper(value) | LawStatement::Inerter(value) => {
+                Some(value.clone())
+            }
+            _ => None,
+        });
+        let sum = values.reduce(|a, b| binary(Operator::Add, a, b))?;
+        match &self.lever {
+            Some(lever) if link.name.text == self.place.name => Some(per_square(sum, lever)),
+            _ => Some(sum),
+        }
+    }
+
+    /// A law in the names of the model, its stretch and forces per travel of the link itself.
+    pub fn law(&self, body: &[LawStatement], link: &str, direction: &str) -> Made<Vec<LawStatement>> {
+        let own = rewrite::law(body, &mut |e| self.expression(e, direction))?;
+        Ok(match (&self.lever, &self.effect.pattern.seen_from) {
+            (Some(lever), Some(point)) if link == self.place.name => through_lever(own, lever, &point.text),
+            _ => own,
+        })
+    }
+}
+
+fn lever_of(base: &Base, place: &Place, link: &Link, point: &str) -> Option<Expression> {
+    lever(base, &place.direction, link, point)
+}
+
+impl Bindings<'_> {
+    /// Whether the place of the effect is in a direction: the mass, or the upper end of the link.
+    pub fn moves_along(&self, direction: &str) -> bool {
+        let name = match self.effect.pattern.kind {
+            PlaceKind::Link => {
+                let link = self.base.link(&self.place.direction, &self.place.name);
+                let upper = link.and_then(|link| upper(self.base, &self.place.direction, link));
+                self.base.pointed_at(&self.place.direction, &upper.unwrap_or_default())
+            }
+            PlaceKind::Mass | PlaceKind::Sensor => self.place.name.clone(),
+        };
+        self.base.coordinate(direction, &name).is_some()
+    }
+}
+
+/// `k` where the coefficient is `k / r^2`, and `coefficient * r^2` otherwise.
+fn per_square(coefficient: Expression, lever: &Expression) -> Expression {
+    let square = squared(lever);
+    match coefficient.kind {
+        ExpressionKind::Binary(Operator::Divide, above, below) if *below == square => *above,
+        _ => binary(Operator::Multiply, coefficient, square),
+    }
+}
+
+fn squared(lever: &Expression) -> Expression {
+    let two = Number {
+        digits: "2".to_string(),
+        ..Number::new(2.0)
+    };
+    binary(
+        Operator::Power,
+        lever.clone(),
+        rewrite::made(ExpressionKind::Number(two)),
+    )
+}
+
+/// A law that is said per travel of a point, as one per travel of the link: `s_wheel = s / r`, and forces divided by `r`.
+fn through_lever(law: Vec<LawStatement>, lever: &Expression, point: &str) -> Vec<LawStatement> {
+    let mut lets = Vec::new();
+    let mut body = in_travel_of_point(law, lever, point, &mut lets);
+    lets.dedup();
+    lets.append(&mut body);
+    lets
+}
+
+fn in_travel_of_point(
+    law: Vec<LawStatement>,
+    lever: &Expression,
+    point: &str,
+    lets: &mut Vec<LawStatement>,
+) -> Vec<LawStatement> {
+    let mut rename = |name: &Dotted| {
+        let own = name.to_string();
+        let moves = own == "s" || own == "v";
+        Ok::<_, std::convert::Infallible>(moves.then(|| {
+            let new = format!("{own}_{point}");
+            let definition = travel(&new, &own, lever);
+            if !lets.contains(&definition) {
+                lets.push(definition);
+            }
+            named(&new)
+        }))
+    };
+    let Ok(law) = rewrite::law(&law, &mut |e| rewrite::expression(e, &mut rename));
+    law.into_iter().map(|statement| divided(statement, lever)).collect()
+}
+
+fn travel(new: &str, own: &str, lever: &Expression) -> LawStatement {
+    LawStatement::Let(crate::syntax::Let {
+        name: Name::new(new),
+        value: binary(Operator::Divide, named(own), lever.clone()),
+        doc: String::new(),
+    })
+}
+
+fn divided(statement: LawStatement, lever: &Expression) -> LawStatement {
+    let over = |e: Expression, by: Expression| binary(Operator::Divide, e, by);
+    match statement {
+        LawStatement::Force(force) => LawStatement::Force(over(force, lever.clone())),
+        LawStatement::Spring(k) => LawStatement::Spring(over(k, squared(lever))),
+        LawStatement::Damper(c) => LawStatement::Damper(over(c, squared(lever))),
+        LawStatement::Inerter(b) => LawStatement::Inerter(over(b, squared(lever))),
+        LawStatement::Rolling(span, body) => {
+            LawStatement::Rolling(span, body.into_iter().map(|inner| divided(inner, lever)).collect())
+        }
+        other => other,
+    }
+}

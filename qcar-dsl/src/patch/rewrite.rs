@@ -1,0 +1,113 @@
+//! Trees with other names in them.
+
+use crate::syntax::{
+    Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, Logic,
+};
+
+/// What a name becomes: `None` leaves it as it is.
+pub type Rename<'a, Mistake> = &'a mut dyn FnMut(&Dotted) -> Result<Option<Expression>, Mistake>;
+
+/// An expression whose names are replaced.
+pub fn expression<Mistake>(e: &Expression, rename: Rename<'_, Mistake>) -> Result<Expression, Mistake> {
+    let mut of = |part: &Expression| expression(part, rename);
+    let kind = match &e.kind {
+        ExpressionKind::Name(name) => return Ok(rename(name)?.unwrap_or_else(|| e.clone())),
+        ExpressionKind::Number(number) => ExpressionKind::Number(number.clone()),
+        ExpressionKind::Negative(a) => ExpressionKind::Negative(Box::new(of(a)?)),
+        ExpressionKind::Binary(operator, a, b) => ExpressionKind::Binary(*operator, Box::new(of(a)?), Box::new(of(b)?)),
+        ExpressionKind::Call(function, arguments) => {
+            ExpressionKind::Call(function.clone(), arguments.iter().map(of).collect::<Result<_, _>>()?)
+        }
+        ExpressionKind::If(condition, then, otherwise) => {
+            let condition = logic(condition, rename)?;
+            let mut of = |part: &Expression| expression(part, rename);
+            ExpressionKind::If(Box::new(condition), Box::new(of(then)?), Box::new(of(otherwise)?))
+        }
+    };
+    Ok(Expression { kind, span: e.span })
+}
+
+fn logic<Mistake>(of: &Logic<Comparison>, rename: Rename<'_, Mistake>) -> Result<Logic<Comparison>, Mistake> {
+    let mut boxed = |part: &Logic<Comparison>| Ok(Box::new(logic(part, rename)?));
+    Ok(match of {
+        Logic::Not(a) => Logic::Not(boxed(a)?),
+        Logic::And(a, b) => Logic::And(boxed(a)?, boxed(b)?),
+        Logic::Or(a, b) => Logic::Or(boxed(a)?, boxed(b)?),
+        Logic::Test(test) => Logic::Test(Comparison {
+            left: expression(&test.left, rename)?,
+            order: test.order,
+            right: expression(&test.right, rename)?,
+        }),
+    })
+}
+
+/// A law whose expressions are changed.
+pub fn law<Mistake>(
+    body: &[LawStatement],
+    change: &mut dyn FnMut(&Expression) -> Result<Expression, Mistake>,
+) -> Result<Vec<LawStatement>, Mistake> {
+    let mut changed = Vec::new();
+    for statement in body {
+        changed.push(match statement {
+            LawStatement::Spring(k) => LawStatement::Spring(change(k)?),
+            LawStatement::Damper(c) => LawStatement::Damper(change(c)?),
+            LawStatement::Inerter(b) => LawStatement::Inerter(change(b)?),
+            LawStatement::Force(force) => LawStatement::Force(change(force)?),
+            LawStatement::Rate(name, rate) => LawStatement::Rate(name.clone(), change(rate)?),
+            LawStatement::Let(definition) => LawStatement::Let(Let {
+                value: change(&definition.value)?,
+                ..definition.clone()
+            }),
+            LawStatement::Use(element) => {
+                let mut element = element.clone();
+                element.arguments = element.arguments.iter().map(&mut *change).collect::<Result<_, _>>()?;
+                LawStatement::Use(element)
+            }
+            LawStatement::Rolling(span, body) => LawStatement::Rolling(*span, law(body, change)?),
+            LawStatement::State(..) | LawStatement::If(_) => statement.clone(),
+        });
+    }
+    Ok(changed)
+}
+
+/// Something that moves, its inertia changed.
+pub fn coordinate<Mistake>(
+    of: &Coordinate,
+    change: &mut dyn FnMut(&Expression) -> Result<Expression, Mistake>,
+) -> Result<Coordinate, Mistake> {
+    let kind = match &of.kind {
+        CoordinateKind::Mass(mass) => CoordinateKind::Mass(change(mass)?),
+        CoordinateKind::Inertia(inertia) => CoordinateKind::Inertia(change(inertia)?),
+        other => other.clone(),
+    };
+    Ok(Coordinate { kind, ..of.clone() })
+}
+
+/// Every name in an expression.
+pub fn names_in(e: &Expression, told: &mut dyn FnMut(&Dotted)) {
+    let mut look = |name: &Dotted| {
+        told(name);
+        Ok::<_, std::convert::Infallible>(None)
+    };
+    let Ok(_) = expression(e, &mut look);
+}
+
+/// An expression that stands in no file.
+pub fn made(kind: ExpressionKind) -> Expression {
+    Expression {
+        kind,
+        span: crate::source::Span::default(),
+    }
+}
+
+/// A name as an expression.
+pub fn named(name: &str) -> Expression {
+    made(ExpressionKind::Name(Dotted {
+        names: vec![crate::syntax::Name::new(name)],
+    }))
+}
+
+/// `a operator b`
+pub fn binary(operator: crate::syntax::Operator, a: Expression, b: Expression) -> Expression {
+    made(ExpressionKind::Binary(operator, Box::new(a), Box::new(b)))
+}

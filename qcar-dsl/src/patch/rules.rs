@@ -1,0 +1,79 @@
+//! What an effect's file must say, whatever the model.
+
+use super::Made;
+use crate::diagnostic::{Diagnostic, Severity, effects, reading};
+use crate::parse::parse_text;
+use crate::source::{Source, Span};
+use crate::syntax::{Change, Effect, Item, Name, PlaceKind};
+
+/// The only effect of a file.
+pub fn effect_of(source: &Source) -> Made<Effect> {
+    let reading = parse_text(source, 0);
+    let mut found = reading.mistakes;
+    let effects: Vec<Effect> = reading
+        .file
+        .items
+        .into_iter()
+        .filter_map(|item| match item {
+            Item::Effect(effect) => Some(*effect),
+            _ => None,
+        })
+        .collect();
+    if found.is_empty() {
+        match effects.as_slice() {
+            [effect] => found.extend(mistakes(effect)),
+            others => found.push(effects::not_one_effect(second(others), others.len())),
+        }
+    }
+    let is_well = found.iter().all(|diagnostic| diagnostic.severity != Severity::Error);
+    effects.into_iter().next().filter(|_| is_well).ok_or(found)
+}
+
+fn second(effects: &[Effect]) -> Span {
+    effects.get(1).map_or(Span::default(), |second| second.name.span)
+}
+
+fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
+    let mut found = undescribed(effect);
+    let pattern = &effect.pattern;
+    pattern.terms.iter().for_each(|term| found.extend(no_term(term)));
+    for change in &effect.body {
+        match change {
+            Change::ReplaceTerm(term, ..) => found.extend(no_term(term)),
+            Change::Delay(place, _) | Change::Scale(place, _) if pattern.kind != PlaceKind::Sensor => {
+                found.push(reading::misplaced_statement(
+                    place.span,
+                    "delay",
+                    "an effect `at sensor m`",
+                ));
+            }
+            Change::Parameter(_) | Change::Delay(..) | Change::Scale(..) => {}
+            _ if pattern.kind == PlaceKind::Sensor => found.push(effects::sensor_changes_model(pattern.variable.span)),
+            _ => {}
+        }
+    }
+    found
+}
+
+/// A person must be able to judge an effect: what it is, where its law comes from, how it shows.
+fn undescribed(effect: &Effect) -> Vec<Diagnostic> {
+    let span = effect.name.span;
+    let told = [
+        (&effect.doc, "sentence that says what it is", "\"what it is\""),
+        (&effect.source, "source of its law", "source \"Author: Title, year\";"),
+        (
+            &effect.shows,
+            "sentence that says how it shows",
+            "shows \"how it shows in measurements\";",
+        ),
+    ];
+    let missing = told.into_iter().filter(|(text, ..)| text.is_empty());
+    missing
+        .map(|(_, what, example)| effects::not_described(span, &effect.name.text, what, example))
+        .collect()
+}
+
+fn no_term(term: &Name) -> Option<Diagnostic> {
+    let known = ["spring", "damper", "inerter"];
+    (!known.contains(&term.text.as_str())).then(|| effects::unknown_term(term.span, &term.text, &known))
+}

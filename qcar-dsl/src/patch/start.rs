@@ -1,0 +1,210 @@
+//! Where a search for an effect's parameters begins, and what is plausible: expressions of the model's own parameters,
+//! as numbers.
+
+use std::collections::BTreeMap;
+
+use super::base::Base;
+use super::{NewParameter, Refused};
+use crate::diagnostic::{Diagnostic, effects};
+use crate::expr::Symbol;
+use crate::model::{Default, Model};
+use crate::resolve::options::take;
+use crate::resolve::resolve;
+use crate::syntax::{
+    EffectParameter, Expression, ExpressionKind, Let, Name, Number, Parameter, ParameterDefault, Statement,
+};
+use crate::units::Unit;
+
+/// The values of the model's parameters, as far as somebody knows them.
+pub type Values<'a> = &'a dyn Fn(&str) -> Option<f64>;
+
+/// A parameter of an effect with its expressions in the names of the model.
+pub struct Asked<'a> {
+    /// As the effect declares it.
+    pub declared: &'a EffectParameter,
+    /// Its name in the model.
+    pub name: String,
+    /// Start, lower and upper bound.
+    pub expressions: [Expression; 3],
+}
+
+/// What an expression stands for, as a derived quantity of a model that is only asked.
+const ROLES: [&str; 3] = ["start of ", "low end of ", "high end of "];
+
+/// The numbers of every parameter, and its declaration in the model.
+///
+/// # Errors
+/// Expressions that mean nothing, are of another unit than the parameter, or have no value.
+pub fn evaluate(base: &Base, asked: &[Asked], values: Values) -> Result<Vec<(NewParameter, Parameter)>, Refused> {
+    let (model, found) = with_questions(base, asked);
+    if !found.is_empty() {
+        return Err(found);
+    }
+    let answers: BTreeMap<&str, (f64, Unit)> = model
+        .definitions
+        .iter()
+        .map(|definition| {
+            (
+                definition.name.as_str(),
+                (value(&model, definition.value, values), definition.unit),
+            )
+        })
+        .collect();
+    let mut all = Vec::new();
+    let mut found = Vec::new();
+    for one in asked {
+        match numbers(one, &model, &answers) {
+            Ok(numbers) => all.push(declaration(one, numbers, base)),
+            Err(mistake) => found.push(*mistake),
+        }
+    }
+    if found.is_empty() { Ok(all) } else { Err(found) }
+}
+
+/// The model with each expression as a derived quantity, and the parameters themselves for their units.
+fn with_questions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
+    let mut axle = base.axle.clone();
+    for one in asked {
+        let parameter = Parameter {
+            known: false,
+            name: Name::new(unit_of(one)),
+            unit: one.declared.unit.clone(),
+            default: None,
+            range: None,
+            doc: String::new(),
+        };
+        axle.body.push(Statement::Parameter(parameter));
+        for (role, expression) in ROLES.iter().zip(&one.expressions) {
+            let name = Name::new(format!("{role}{}", one.name));
+            let (value, doc) = (expression.clone(), String::new());
+            axle.body.push(Statement::Let(Let { name, value, doc }));
+        }
+    }
+    let mut found = Vec::new();
+    let taken = take(&axle, None, &mut found);
+    let (model, more) = resolve(&axle, &taken, &base.elements());
+    found.extend(more);
+    // The questions themselves are used by nothing.
+    found.retain(|diagnostic| !effects::is_about_use(diagnostic));
+    (model, found)
+}
+
+fn unit_of(one: &Asked) -> String {
+    format!("unit of {}", one.name)
+}
+
+fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
+    let leaf = |symbol| match symbol {
+        Symbol::Parameter(index) => known(model, index, values),
+        _ => f64::NAN,
+    };
+    model.graph.evaluate(e, &leaf)
+}
+
+/// The value of a parameter: what somebody knows, its default, or the middle of its range.
+fn known(model: &Model, index: u16, values: Values) -> f64 {
+    let parameter = &model.parameters[usize::from(index)];
+    let default = match parameter.default {
+        Default::Value(value) => Some(value),
+        Default::Same(other) => Some(known(model, other, values)),
+        Default::None => None,
+    };
+    values(&parameter.name)
+        .or(default)
+        .or(parameter.range.map(middle))
+        .unwrap_or(f64::NAN)
+}
+
+fn middle((low, high): (f64, f64)) -> f64 {
+    if low > 0.0 {
+        (low * high).sqrt()
+    } else {
+        (low + high) / 2.0
+    }
+}
+
+fn numbers(
+    one: &Asked,
+    model: &Model,
+    answers: &BTreeMap<&str, (f64, Unit)>,
+) -> Result<([f64; 3], Unit), Box<Diagnostic>> {
+    let name = unit_of(one);
+    let unit = model.parameters.iter().find(|parameter| parameter.name == name);
+    let unit = unit.map_or(Unit::ONE, |parameter| parameter.unit);
+    let mut numbers = [0.0; 3];
+    for ((number, role), expression) in numbers.iter_mut().zip(ROLES).zip(&one.expressions) {
+        let question = format!("{role}{}", one.name);
+        let (value, own) = answers.get(question.as_str()).copied().unwrap_or((f64::NAN, unit));
+        if own != unit && !is_plain(expression) {
+            let what = format!("the {}`{}`", role, one.declared.name.text);
+            return Err(Box::new(effects::start_of_other_unit(
+                expression.span,
+                &what,
+                &unit.to_string(),
+                &own.to_string(),
+            )));
+        }
+        *number = value;
+    }
+    let [start, low, high] = numbers.map(rounded);
+    if !(low <= start && start <= high && low < high) {
+        let span = one.declared.name.span;
+        return Err(Box::new(effects::start_outside_range(
+            span,
+            &one.declared.name.text,
+            start,
+            low,
+            high,
+        )));
+    }
+    Ok(([start, low, high], unit))
+}
+
+/// A number without a unit, which is in the declared one.
+fn is_plain(e: &Expression) -> bool {
+    match &e.kind {
+        ExpressionKind::Number(number) => number.unit.factors.is_empty(),
+        ExpressionKind::Negative(inner) => is_plain(inner),
+        _ => false,
+    }
+}
+
+/// To three digits, so that a file reads well.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+fn declaration(one: &Asked, ([start, low, high], unit): ([f64; 3], Unit), base: &Base) -> (NewParameter, Parameter) {
+    let declared = one.declared;
+    let [from, to] = [(&declared.range.0, low), (&declared.range.1, high)].map(|(e, value)| number(e, value));
+    let parameter = Parameter {
+        known: declared.known,
+        name: Name::new(&one.name),
+        unit: declared.unit.clone(),
+        default: Some(ParameterDefault::Number(number(&declared.start, start))),
+        range: Some((from, to)),
+        doc: declared.doc.clone(),
+    };
+    let new = NewParameter {
+        name: one.name.clone(),
+        effect_name: declared.name.text.clone(),
+        unit,
+        start,
+        range: (low, high),
+        known: declared.known,
+        doc: declared.doc.clone(),
+        is_new: base.global(&one.name).is_none(),
+    };
+    (new, parameter)
+}
+
+/// The number as the effect writes it, or in the declared unit where it is computed.
+fn number(e: &Expression, value: f64) -> Number {
+    match &e.kind {
+        ExpressionKind::Number(number) => number.clone(),
+        _ => Number {
+            digits: format!("{value}"),
+            ..Number::new(value)
+        },
+    }
+}

@@ -1,0 +1,69 @@
+//! What a patch leaves without use goes: the coefficient of a term that was replaced, the point that nothing is at.
+
+use std::collections::BTreeSet;
+
+use super::base::Base;
+use super::rewrite::names_in;
+use crate::syntax::{Dotted, Expression, ParameterDefault, Statement};
+
+/// Removes parameters, derived quantities and points that nothing uses, until each of them is used.
+pub fn tidy(tree: &mut Base) {
+    loop {
+        let used = used(tree);
+        let mut removed = 0;
+        let mut keep = |statement: &Statement| {
+            let kept = is_used(statement, &used);
+            removed += usize::from(!kept);
+            kept
+        };
+        tree.axle.body.retain(&mut keep);
+        for statement in &mut tree.axle.body {
+            if let Statement::Direction(direction) = statement {
+                direction.body.retain(&mut keep);
+            }
+        }
+        if removed == 0 {
+            return;
+        }
+    }
+}
+
+fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {
+    match statement {
+        Statement::Parameter(parameter) => used.contains(&parameter.name.text),
+        Statement::Let(definition) => used.contains(&definition.name.text),
+        Statement::Point(name, _) => used.contains(&name.text),
+        _ => true,
+    }
+}
+
+/// Every part of every name that an expression, a default or a path says.
+fn used(tree: &Base) -> BTreeSet<String> {
+    let mut used = BTreeSet::new();
+    let mut asked = tree.clone();
+    asked.change_expressions(&mut |e: &Expression| {
+        names_in(e, &mut |name| add(name, &mut used));
+        e.clone()
+    });
+    let inside = tree.directions().flat_map(|direction| &direction.body);
+    for statement in tree.axle.body.iter().chain(inside) {
+        match statement {
+            Statement::Parameter(parameter) => {
+                if let Some(ParameterDefault::Same(other)) = &parameter.default {
+                    used.insert(other.text.clone());
+                }
+            }
+            Statement::Force(_, path) | Statement::Point(_, path) | Statement::Output(_, path) => add(path, &mut used),
+            Statement::Channel(_, above, below) => {
+                add(above, &mut used);
+                add(below, &mut used);
+            }
+            _ => {}
+        }
+    }
+    used
+}
+
+fn add(name: &Dotted, used: &mut BTreeSet<String>) {
+    used.extend(name.names.iter().map(|name| name.text.clone()));
+}

@@ -1,0 +1,124 @@
+//! What an effect file says: where the effect may apply, and how it changes a model there.
+
+use super::{Dotted, Expression, LawStatement, Name, Statement, UnitText};
+
+/// A patch of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Effect {
+    /// The name.
+    pub name: Name,
+    /// The places where it may apply.
+    pub pattern: Pattern,
+    /// The sentence.
+    pub doc: String,
+    /// Where its law comes from: `source "…";`
+    pub source: String,
+    /// How it shows in measurements: `shows "…";`
+    pub shows: String,
+    /// In the order of the text.
+    pub body: Vec<Change>,
+}
+
+/// `at link l in z named damper with damper given pivot seen from wheel`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pattern {
+    /// What a place is.
+    pub kind: PlaceKind,
+    /// What the effect calls the place.
+    pub variable: Name,
+    /// `in z`: the only direction that has places.
+    pub direction: Option<Name>,
+    /// `named damper` or `named sf as subframe`: the names that a place may have, with what the catalogue calls it.
+    /// Any name where there is none.
+    pub names: Vec<(Name, Option<Name>)>,
+    /// `with spring, damper`: linear terms that the link must have.
+    pub terms: Vec<Name>,
+    /// `given m_corner, pivot`: what the model must declare.
+    pub given: Vec<Name>,
+    /// `seen from wheel`: laws and coefficients are per travel of this point, whatever lever is between.
+    pub seen_from: Option<Name>,
+}
+
+/// What a place is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PlaceKind {
+    /// A link.
+    Link,
+    /// A mass or rotational inertia.
+    Mass,
+    /// Where something can be measured: anything that moves but a massless node.
+    Sensor,
+}
+
+impl PlaceKind {
+    /// Every kind.
+    pub const ALL: [PlaceKind; 3] = [PlaceKind::Link, PlaceKind::Mass, PlaceKind::Sensor];
+
+    /// As written.
+    pub fn word(self) -> &'static str {
+        match self {
+            PlaceKind::Link => "link",
+            PlaceKind::Mass => "mass",
+            PlaceKind::Sensor => "sensor",
+        }
+    }
+}
+
+/// A change of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Change {
+    /// `param NAME: unit = start in low..high "sentence";`
+    Parameter(EffectParameter),
+    /// A derived quantity, something that moves, a link, a point, an output or a channel.
+    Declare(Statement),
+    /// `take m_tm from body;`: a part of a mass becomes one of its own.
+    Take(Expression, Dotted),
+    /// `add to l { … }`
+    Add(Name, Vec<LawStatement>),
+    /// `replace damper of l { … }`: other terms for the linear ones of a kind.
+    ReplaceTerm(Name, Name, Vec<LawStatement>),
+    /// `replace l.upper of l by tm;`: the first time that the point stands in the link's stretch, or, without `of`,
+    /// wherever it stands in the stretches of the direction.
+    ReplacePoint {
+        /// A name, or an end of a link.
+        point: Dotted,
+        /// The link.
+        of: Option<Name>,
+        /// What stands there instead.
+        by: Expression,
+    },
+    /// `remove l;`
+    Remove(Name),
+    /// `direction x without sf { … }`: changes that are made where the place moves along this direction as well.
+    Direction {
+        /// The direction.
+        name: Name,
+        /// Nothing is changed where the direction has one of these.
+        without: Vec<Name>,
+        /// The changes.
+        body: Vec<Change>,
+    },
+    /// `delay m by delay;`: the signal of a location comes late.
+    Delay(Name, Name),
+    /// `scale m by gain;`: the signal of a location is too large or too small.
+    Scale(Name, Name),
+}
+
+/// A parameter of an effect.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EffectParameter {
+    /// `shared param`: the model's own parameter of this name, where it has one.
+    pub shared: bool,
+    /// `known param`
+    pub known: bool,
+    /// The name.
+    pub name: Name,
+    /// The declared unit.
+    pub unit: UnitText,
+    /// Where a search begins, of the model's parameters and coefficients.
+    pub start: Expression,
+    /// What is plausible.
+    pub range: (Expression, Expression),
+    /// The sentence.
+    pub doc: String,
+}

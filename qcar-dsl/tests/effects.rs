@@ -1,0 +1,97 @@
+//! Every effect that is shipped reads, prints as itself, and compiles at each of its places in each model.
+
+use std::path::{Path, PathBuf};
+
+use qcar_dsl::check::Checked;
+use qcar_dsl::front::check_text;
+use qcar_dsl::parse::parse_text;
+use qcar_dsl::patch::{Patch, Patched};
+use qcar_dsl::source::Source;
+
+fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../models")
+}
+
+fn files(folder: &str) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(models().join(folder)).unwrap();
+    let mut files: Vec<_> = entries.map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+fn read(path: &Path) -> Source {
+    Source {
+        name: path.display().to_string(),
+        text: std::fs::read_to_string(path).unwrap(),
+    }
+}
+
+fn load(from: &str, path: &str) -> Result<Source, String> {
+    Ok(read(&Path::new(from).parent().unwrap().join(path)))
+}
+
+fn checked(file: &Path) -> Checked {
+    check_text(read(file), &load).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn model(name: &str) -> Checked {
+    checked(&models().join(format!("axles/{name}.axle")))
+}
+
+fn effect(name: &str) -> Patch {
+    let source = read(&models().join(format!("effects/{name}.axle")));
+    Patch::read(source).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn patched(patch: &Patch, model: &Checked, place: &str) -> Patched {
+    patch
+        .apply(model, place, &|_| None)
+        .unwrap_or_else(|report| panic!("{}\n{report}", report.sources[0].text))
+}
+
+#[test]
+fn every_effect_prints_as_the_same_tree() {
+    for file in files("effects") {
+        let first = parse_text(&read(&file), 0);
+        assert!(first.mistakes.is_empty(), "{}", file.display());
+        let printed = Source {
+            name: "printed".into(),
+            text: first.file.to_string(),
+        };
+        let second = parse_text(&printed, 0);
+        assert!(
+            second.mistakes.is_empty() && first.file == second.file,
+            "{}",
+            printed.text
+        );
+        assert_eq!(second.file.to_string(), printed.text);
+    }
+}
+
+#[test]
+fn every_effect_compiles_wherever_it_applies() {
+    let effects: Vec<Patch> = files("effects")
+        .iter()
+        .map(|file| Patch::read(read(file)).unwrap_or_else(|report| panic!("{report}")))
+        .collect();
+    for file in files("axles") {
+        let model = checked(&file);
+        for effect in &effects {
+            for place in effect.places(&model) {
+                let patched = patched(effect, &model, &place.label);
+                assert!(
+                    patched.model.warnings().diagnostics.is_empty(),
+                    "{}\n{}",
+                    patched.model.warnings(),
+                    patched.text("")
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn a_patched_model_is_a_file_that_reads_well() {
+    let patched = patched(&effect("suspended_mass"), &model("axle_c"), "body");
+    insta::assert_snapshot!(patched.text("Evidence: none yet."));
+}
