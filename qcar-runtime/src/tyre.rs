@@ -132,6 +132,11 @@ impl Tyre {
         self.radius
     }
 
+    /// Deflection under the static load on a flat road, m.
+    pub fn static_deflection(&self) -> f64 {
+        self.static_deflection
+    }
+
     /// How the road is felt.
     pub fn geometry(&self) -> Geometry {
         self.geometry

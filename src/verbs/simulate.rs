@@ -76,7 +76,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         model: &*model,
         parameters: values.as_slice(),
         tyre: tyre(&campaign)?,
-        gravity: fact(&campaign, "gravity", "m/s²")?,
+        load: fact(&campaign, "static_tire_load", "N")?,
         variant: arguments.variant.into(),
     };
     let cleats = cleats(&campaign)?;

@@ -1,9 +1,8 @@
 //! A model on its tyre, ready to roll.
 
-use super::equilibrium::{self, Unbalanced};
+use super::equilibrium::Unbalanced;
 use super::failure::SimulateError;
-use super::settings::scales;
-use crate::model::{ContactAbout, InputKind, Model, Quantity};
+use crate::model::{ContactAbout, Model};
 use crate::tyre::{Geometry, Tyre};
 
 /// A model with its parameters and its tyre.
@@ -14,8 +13,8 @@ pub struct Car<'a, M: ?Sized> {
     pub parameters: &'a [f64],
     /// Radius, static deflection and geometry of the tyre.
     pub tyre: Tyre,
-    /// m/s².
-    pub gravity: f64,
+    /// Static load that the tyre carries, N.
+    pub load: f64,
     /// What of the model is simulated.
     pub variant: Variant,
 }
@@ -77,25 +76,6 @@ impl<M: Model + ?Sized> Car<'_, M> {
         let mut constants = vec![0.0; self.model.about().constants];
         self.model.prepare(self.parameters, &mut constants);
         constants
-    }
-
-    /// Gravity, every motion at `height` and every force at zero.
-    pub(super) fn inputs(&self, height: f64) -> Vec<f64> {
-        let input = |kind: InputKind| match kind {
-            InputKind::Gravity => self.gravity,
-            InputKind::Motion(_, Quantity::Position) => height,
-            InputKind::Motion(..) | InputKind::Force(_) => 0.0,
-        };
-        self.model.about().inputs.iter().map(|i| input(i.kind)).collect()
-    }
-
-    /// Where the model comes to rest on its tyre as it is on the rig: near to where it rests while it rolls.
-    pub(super) fn standing(&self, constants: &[f64], inputs: &[f64]) -> Result<Vec<f64>, SimulateError> {
-        let scales: Vec<f64> = scales(self.model.about()).collect();
-        let mut x = vec![0.0; scales.len()];
-        let derivative = |x: &[f64], dx: &mut [f64]| self.model.derivative(constants, x, inputs, dx);
-        equilibrium::settle(&scales, derivative, &mut x).map_err(|unbalanced| self.unbalanced(&unbalanced))?;
-        Ok(x)
     }
 
     pub(super) fn unbalanced(&self, unbalanced: &Unbalanced) -> SimulateError {

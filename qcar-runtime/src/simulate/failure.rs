@@ -42,8 +42,13 @@ pub enum SimulateError {
     )]
     TooSoft { deflection: f64, radius: f64 },
     #[error(
-        "model `{model}` has no static equilibrium: with all else balanced, d({state})/dt stays at {rate}; \
-         check that every mass is held, and the parameters of the links that carry it"
+        "the tyre pushes no more when it is pressed further than its static deflection of {deflection} m, so nothing \
+         stands on it; check k_tire, the static load and deflection"
+    )]
+    Unstable { deflection: f64 },
+    #[error(
+        "model `{model}` has no static equilibrium on its tyre: with all else balanced, d({state})/dt stays at {rate}; \
+         check k_tire, the static load and deflection, and that every parameter is a number"
     )]
     NoEquilibrium { model: String, state: String, rate: f64 },
     #[error("the simulation of model `{model}` stopped: {report}")]

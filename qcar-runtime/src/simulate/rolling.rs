@@ -2,7 +2,7 @@
 
 use super::car::Car;
 use super::equilibrium;
-use super::failure::SimulateError;
+use super::failure::{SimulateError, positive};
 use super::settings::scales;
 use crate::model::{Contact, ContactAbout, Model};
 use crate::road::Road;
@@ -12,10 +12,14 @@ use crate::tyre::{Geometry, Touch, Tyre, Wheel};
 pub(super) struct Rolling<'a, M: ?Sized> {
     model: &'a M,
     constants: Vec<f64>,
-    /// Gravity, and every motion and force at rest.
+    /// All zero: the preloads of the links balance gravity, and the road acts through the contact alone.
     inputs: Vec<f64>,
     pub tyre: Tyre,
+    /// Static load of the tyre, N.
+    load: f64,
     road: &'a Road,
+    /// Height of the wheel's centre in the design position, m.
+    height: f64,
     /// m/s.
     pub speed: f64,
     wheel: WheelStates,
@@ -52,41 +56,48 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// The tyre's damping has a part along a flat road too, since its front grows and its rear shrinks: a drag. A
     /// constant traction balances it, so that nothing moves before the road does.
     pub fn at_rest(car: &Car<'a, M>, road: &'a Road, speed: f64, t: f64) -> Result<(Self, Vec<f64>), SimulateError> {
-        let about = car.contact()?;
-        let height = road.vertices()[0][1];
+        let (contact, about, tyre) = (car.contact()?, car.model.about(), car.rolling_tyre());
         let mut rolling = Self {
             model: car.model,
             constants: car.constants(),
-            inputs: car.inputs(height),
-            tyre: car.rolling_tyre(),
+            inputs: vec![0.0; about.inputs.len()],
+            tyre,
+            load: positive("the static load of the tyre", car.load, "N")?,
             road,
+            height: road.vertices()[0][1] + tyre.radius() - tyre.static_deflection(),
             speed,
-            wheel: WheelStates::new(about),
-            locked: car.locked(about),
+            wheel: WheelStates::new(contact),
+            locked: car.locked(contact),
             traction: 0.0,
             smooth_until: f64::INFINITY,
         };
-        let mut x = car.standing(&rolling.constants, &rolling.inputs)?;
-        rolling.check_deflection(height - x[rolling.wheel.z[0]])?;
-        let scales: Vec<f64> = scales(car.model.about()).collect();
+        let mut x = vec![0.0; about.states.len()];
+        let scales: Vec<f64> = scales(about).collect();
         let settled = equilibrium::settle(&scales, |x, dx| rolling.derivative_without_drag(t, x, dx), &mut x);
         settled.map_err(|unbalanced| car.unbalanced(&unbalanced))?;
-        rolling.check_deflection(rolling.deflection(t, &x))?;
+        rolling.check_stands(t, &x)?;
         rolling.traction = -rolling.contact(rolling.touch(t, &x).as_ref(), &x).force[1];
         Ok((rolling, x))
     }
 
-    fn check_deflection(&self, deflection: f64) -> Result<(), SimulateError> {
-        let radius = self.tyre.radius();
-        if deflection < radius {
+    /// A tyre stands where it is pressed by less than its radius, and pushes the more the more it is pressed.
+    fn check_stands(&self, t: f64, x: &[f64]) -> Result<(), SimulateError> {
+        let (radius, deflection) = (self.tyre.radius(), self.deflection(t, x));
+        if deflection >= radius {
+            return Err(SimulateError::TooSoft { deflection, radius });
+        }
+        let push = |x: &[f64]| self.contact(self.touch(t, x).as_ref(), x).force[0];
+        let mut lower = x.to_vec();
+        lower[self.wheel.z[0]] -= 1e-3 * deflection;
+        if push(&lower) > push(x) {
             Ok(())
         } else {
-            Err(SimulateError::TooSoft { deflection, radius })
+            Err(SimulateError::Unstable { deflection })
         }
     }
 
     fn derivative_without_drag(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        let mut contact = self.contact(self.touch(t, x).as_ref(), x);
+        let mut contact = self.driven(self.contact(self.touch(t, x).as_ref(), x));
         contact.force[1] = 0.0;
         self.model
             .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
@@ -146,7 +157,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         let [z, vz] = self.wheel.z.map(|place| x[place]);
         let [ahead, faster] = self.wheel.x.map_or([0.0; 2], |places| places.map(|place| x[place]));
         Wheel {
-            position: [self.speed * t + ahead, self.tyre.radius() + z],
+            position: [self.speed * t + ahead, self.height + z],
             velocity: [self.speed + faster, vz],
         }
     }
@@ -158,8 +169,11 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         touch.map_or(Contact::default(), |touch| touch.force(law))
     }
 
+    /// The forces that move the wheel from its rest: beside the contact's, the static load, which the preloads of the
+    /// suspension put on it, and the traction.
     #[inline]
     fn driven(&self, mut contact: Contact) -> Contact {
+        contact.force[0] -= self.load;
         contact.force[1] += self.traction;
         contact
     }

@@ -11,10 +11,12 @@ use qcar_runtime::simulate::{Car, Variant};
 use qcar_runtime::tyre::{Geometry, Rates, Tyre};
 
 pub const GRAVITY: f64 = 9.81;
+/// Weight of body and wheel, N.
+pub const LOAD: f64 = 445.0 * GRAVITY;
 pub const RADIUS: f64 = 0.32;
 pub const STATIC_DEFLECTION: f64 = 0.025;
 
-const PARAMETERS: [(&str, f64); 10] = [
+const PARAMETERS: [(&str, f64); 11] = [
     ("m_body", 400.0),
     ("m_wheel", 45.0),
     ("k_tire", 220e3),
@@ -25,15 +27,17 @@ const PARAMETERS: [(&str, f64); 10] = [
     ("m_half", 800.0),
     ("k_x", 450e3),
     ("c_x", 700.0),
+    ("k_stop", 0.0),
 ];
 
-/// Outputs: the accelerations of body and wheel in z and x, the height of the wheel, its place in x, and the energy
+/// Outputs: the accelerations of body and wheel in z and x, the heights of body and wheel, the wheel's place in x, and the energy
 /// that cannot be accounted for (J).
-pub const OUTPUTS: [&str; 7] = [
+pub const OUTPUTS: [&str; 8] = [
     "z_body_acceleration",
     "z_wheel_acceleration",
     "x_body_acceleration",
     "x_wheel_acceleration",
+    "z_body",
     "z_wheel",
     "x_wheel",
     "imbalance",
@@ -76,14 +80,23 @@ pub fn car<'a>(model: &'a Roller, parameters: &'a [f64], variant: Variant) -> Ca
         model,
         parameters,
         tyre: tyre(),
-        gravity: GRAVITY,
+        load: LOAD,
         variant,
     }
 }
 
+/// Compression of the suspension from the design position at which the bump stop is met, m.
+pub const GAP: f64 = 0.02;
+/// Place of the stiffness of that stop among the parameters; zero by default.
+pub const K_STOP: usize = 10;
+
+fn into_stop(x: &[f64]) -> f64 {
+    (x[0] - x[1] + GAP).min(0.0)
+}
+
 /// Accelerations of body and wheel in z and x under a force on the wheel.
 fn accelerations(p: &[f64], x: &[f64], g: f64, force: [f64; 2]) -> [f64; 4] {
-    let suspension = p[5] * (x[0] - x[1]) + p[6] * (x[2] - x[3]);
+    let suspension = p[5] * (x[0] - x[1]) + p[6] * (x[2] - x[3]) + p[K_STOP] * into_stop(x);
     let bushing = p[8] * (x[4] - x[5]) + p[9] * (x[6] - x[7]);
     [
         -g - suspension / p[0],
@@ -96,7 +109,7 @@ fn accelerations(p: &[f64], x: &[f64], g: f64, force: [f64; 2]) -> [f64; 4] {
 /// Kinetic and potential energy of masses and springs without the tyre.
 fn stored(p: &[f64], x: &[f64], g: f64) -> f64 {
     let kinetic = p[0] * x[2].powi(2) + p[1] * x[3].powi(2) + (p[7] - p[1]) * x[6].powi(2) + p[1] * x[7].powi(2);
-    let springs = p[5] * (x[0] - x[1]).powi(2) + p[8] * (x[4] - x[5]).powi(2);
+    let springs = p[5] * (x[0] - x[1]).powi(2) + p[8] * (x[4] - x[5]).powi(2) + p[K_STOP] * into_stop(x).powi(2);
     0.5 * (kinetic + springs) + g * (p[0] * x[0] + p[1] * x[1])
 }
 
@@ -114,6 +127,7 @@ fn seen(p: &[f64], x: &[f64], g: f64, force: [f64; 2], y: &mut [f64]) {
         wheel_z,
         body_x,
         wheel_x,
+        x[0],
         x[1],
         x[5],
         stored(p, x, g) + x[8] - x[9],
