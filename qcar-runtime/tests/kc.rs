@@ -72,6 +72,15 @@ fn outliers_hardly_move_the_gradient() {
     assert!((stiffness.value / 30e3 - 1.0).abs() < 0.005, "{stiffness:?}");
 }
 
+#[test]
+fn the_uncertainty_holds_scatter_and_scale() {
+    let estimate = Estimate {
+        value: 30e3,
+        standard_error: 200.0,
+    };
+    assert!((estimate.uncertainty() - 250.0).abs() < 1e-9);
+}
+
 /// Sines of ±20 mm at a peak velocity, sampled as K&C rigs do.
 fn sine(peak: f64, seed: u64) -> [Vec<f64>; 3] {
     let mut scatter = Scatter(seed);

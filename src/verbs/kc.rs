@@ -43,7 +43,8 @@ struct Gradient {
     /// `stiffness`, `damping` or `friction`.
     quantity: &'static str,
     value: f64,
-    stderr: f64,
+    /// One standard deviation, from the scatter of the curve and the scale of the rig.
+    uncertainty: f64,
     unit: &'static str,
     /// The parameter of the thesis's table 3.1 that it measures.
     parameter: Option<&'static str>,
@@ -146,7 +147,7 @@ fn gradient(
         test,
         quantity,
         value: of.value,
-        stderr: of.standard_error,
+        uncertainty: of.uncertainty(),
         unit,
         parameter,
         start,
@@ -166,14 +167,14 @@ fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
 }
 
 fn text(of: &[Gradient]) -> String {
-    let mut table = Table::new(["test", "quantity", "unit", "value", "stderr", "parameter", "start"]);
+    let mut table = Table::new(["test", "quantity", "unit", "value", "uncertainty", "parameter", "start"]);
     for gradient in of {
         table.row(vec![
             gradient.test.into(),
             gradient.quantity.into(),
             gradient.unit.into(),
             number(gradient.value, 4),
-            number(gradient.stderr, 2),
+            number(gradient.uncertainty, 2),
             gradient.parameter.unwrap_or("-").into(),
             gradient.start.map_or("-".into(), |start| number(start, 4)),
         ]);

@@ -4,6 +4,9 @@ use super::KcError;
 use nalgebra::{Matrix3, Vector3};
 
 /// A value and its standard error (one standard deviation), in one unit.
+///
+/// The standard error is that of the scatter alone. A rig's scale factor may be wrong as well, alike in all samples;
+/// [`Estimate::uncertainty`] holds both.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Estimate {
     /// Best estimate.
@@ -12,6 +15,15 @@ pub struct Estimate {
     pub standard_error: f64,
 }
 
+impl Estimate {
+    /// Standard uncertainty from the scatter and from the scale of force over displacement, known to 0.5 %.
+    pub fn uncertainty(&self) -> f64 {
+        self.standard_error.hypot(SCALE_UNCERTAINTY * self.value)
+    }
+}
+
+/// Relative standard uncertainty of a rig's scale factors.
+const SCALE_UNCERTAINTY: f64 = 0.005;
 /// Residuals beyond so many standard deviations count less (Huber 1964: 95 % efficient for normal scatter).
 const TUNING: f64 = 1.345;
 /// A normal distribution's standard deviation over the median of its magnitudes.
