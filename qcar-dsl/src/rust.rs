@@ -68,15 +68,8 @@ pub mod straight {
 ";
 
 fn indent(text: &str) -> String {
-    text.lines()
-        .map(|line| {
-            if line.is_empty() {
-                "\n".into()
-            } else {
-                format!("    {line}\n")
-            }
-        })
-        .collect()
+    let margin = |line: &str| if line.is_empty() { "" } else { "    " };
+    text.lines().flat_map(|line| [margin(line), line, "\n"]).collect()
 }
 
 /// The 64-bit FNV-1a hash (Fowler, Noll and Vo).

@@ -1,5 +1,6 @@
 //! A straight-line program as Rust: one operation a line, a result stored where it is computed.
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::expr::Function;
@@ -105,8 +106,8 @@ struct Printer<'a> {
     signature: &'a Signature<'a>,
     cut: &'a Pieces<'a>,
     piece: usize,
-    /// The local variable of each value that the piece reads, takes or computes.
-    locals: BTreeMap<Value, String>,
+    /// The local variable of each value that the piece reads, takes or computes; empty for the others.
+    locals: Vec<String>,
     /// The results to which each value goes.
     results: BTreeMap<Value, Vec<usize>>,
 }
@@ -114,13 +115,13 @@ struct Printer<'a> {
 impl<'a> Printer<'a> {
     fn new(signature: &'a Signature<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
         let mut names = Names::beside(signature.arguments.iter().map(|(argument, _)| *argument));
-        let mut locals = BTreeMap::new();
+        let mut locals = vec![String::new(); cut.program.ops.len()];
         for (leaf, value) in cut.read(piece) {
-            locals.insert(value, names.take(&(signature.leaf)(leaf).name));
+            locals[value.0 as usize] = names.take(&(signature.leaf)(leaf).name);
         }
         for value in cut.taken(piece).into_iter().chain(cut.pieces[piece].iter().copied()) {
             let label = signature.labels.get(&value).cloned();
-            locals.insert(value, names.take(&label.unwrap_or_else(|| format!("v{}", value.0))));
+            locals[value.0 as usize] = names.take(&label.unwrap_or_else(|| format!("v{}", value.0)));
         }
         let mut results: BTreeMap<Value, Vec<usize>> = BTreeMap::new();
         for (place, &value) in cut.program.outputs.iter().enumerate() {
@@ -176,13 +177,13 @@ impl<'a> Printer<'a> {
             .into_iter()
             .partition(|(local, _)| local.argument == FREQUENCIES);
         let read = |(local, value): &(Local, Value)| {
-            format!("let {} = {}{};", self.locals[value], local.argument, local.place)
+            format!("let {} = {}{};", self.local(*value), local.argument, local.place)
         };
         let once: Vec<String> = once.iter().map(read).collect();
         let kept = self.cut.taken(self.piece).into_iter().map(|value| {
             format!(
                 "let {} = kept[{}]{};",
-                self.locals[&value],
+                self.local(value),
                 self.cut.kept[&value],
                 self.line()
             )
@@ -219,9 +220,9 @@ impl<'a> Printer<'a> {
 
     /// The statement that computes a value, and those that put it where it is wanted.
     fn compute(&self, value: Value) -> Vec<String> {
-        let mut statements = vec![format!("let {} = {};", self.locals[&value], self.operation(value))];
+        let mut statements = vec![format!("let {} = {};", self.local(value), self.operation(value))];
         if let Some(place) = self.cut.kept.get(&value) {
-            statements.push(format!("kept[{place}]{} = {};", self.line(), self.locals[&value]));
+            statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
         }
         let results = self.results.get(&value).into_iter().flatten();
         statements.extend(results.map(|&place| self.store(place, value)));
@@ -238,17 +239,21 @@ impl<'a> Printer<'a> {
         )
     }
 
-    fn operand(&self, value: Value) -> String {
+    fn operand(&self, value: Value) -> Cow<'_, str> {
         match op(self.cut.program, value) {
-            Op::Constant(number) => literal(number),
-            _ => self.locals[&value].clone(),
+            Op::Constant(number) => literal(number).into(),
+            _ => self.local(value).into(),
         }
+    }
+
+    fn local(&self, value: Value) -> &str {
+        &self.locals[value.0 as usize]
     }
 
     fn operation(&self, value: Value) -> String {
         let at = |v: Value| self.operand(v);
         match op(self.cut.program, value) {
-            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self.operand(value),
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self.operand(value).into_owned(),
             Op::Neg(a) => format!("-{}", at(a)),
             Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
             Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
@@ -267,9 +272,10 @@ impl<'a> Printer<'a> {
 pub const FREQUENCIES: &str = "frequencies";
 
 fn indent(statements: &[String], depth: usize) -> String {
+    let margin = "    ".repeat(depth);
     statements
         .iter()
-        .map(|statement| format!("{}{statement}\n", "    ".repeat(depth)))
+        .flat_map(|statement| [margin.as_str(), statement, "\n"])
         .collect()
 }
 

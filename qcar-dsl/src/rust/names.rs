@@ -1,9 +1,9 @@
 //! Names of local variables: each free of Rust's keywords and of the others.
 
-use std::collections::BTreeSet;
+use std::collections::HashSet;
 
 /// The names that are taken in a function.
-pub struct Names(BTreeSet<String>);
+pub struct Names(HashSet<String>);
 
 /// What a function refers to beside its own variables.
 const RESERVED: &[&str] = &[

@@ -1,5 +1,7 @@
 //! The straight-line functions of a model: which programs, over which arguments, under which doc comments.
 
+use std::collections::BTreeMap;
+
 use crate::about::{About, Source};
 use crate::equations::Sheet;
 use crate::expr::Symbol;
@@ -96,6 +98,7 @@ impl Straight<'_> {
         results: Vec<String>,
         program: &Program,
     ) -> String {
+        let lines = arguments.contains(&FREQUENCIES);
         let signature = Signature {
             name: name.into(),
             doc: doc.lines().map(String::from).collect(),
@@ -105,8 +108,13 @@ impl Straight<'_> {
                 .collect(),
             results,
             leaf: &|leaf| self.local(leaf, arguments),
-            labels: labels(self.compiled, program),
-            lines: arguments.contains(&FREQUENCIES),
+            // A response is complex throughout: beside its leaves nothing in it has a name.
+            labels: if lines {
+                BTreeMap::new()
+            } else {
+                labels(self.compiled, program)
+            },
+            lines,
         };
         function(&signature, program)
     }

@@ -1,0 +1,64 @@
+//! Instructions of compiled models, counted by valgrind: the same on a busy machine.
+
+#![allow(
+    missing_docs,
+    reason = "the macros of gungraun make public items without documentation"
+)]
+
+mod subject;
+
+use gungraun::{library_benchmark, library_benchmark_group};
+use std::hint::black_box;
+use std::process::{Command, Stdio};
+use subject::Subject;
+
+#[library_benchmark]
+#[bench::axle_d(Subject::new())]
+fn matrices_and_jacobians(mut subject: Subject) -> Subject {
+    black_box(&mut subject).linearise();
+    subject
+}
+
+#[library_benchmark]
+#[bench::axle_d(Subject::new())]
+fn response_and_jacobian(mut subject: Subject) -> Subject {
+    black_box(&mut subject).respond();
+    subject
+}
+
+library_benchmark_group!(name = models; benchmarks = matrices_and_jacobians, response_and_jacobian);
+
+/// The counting itself.
+mod counted {
+    use super::models;
+    gungraun::main!(library_benchmark_groups = models);
+
+    /// Counts, or is counted.
+    pub fn run() {
+        main();
+    }
+}
+
+fn main() {
+    let missing: Vec<&str> = ["valgrind", "gungraun-runner"]
+        .into_iter()
+        .filter(|tool| !is_there(tool))
+        .collect();
+    match missing.as_slice() {
+        [] => counted::run(),
+        _ => println!(
+            "instructions are not counted: {} is not installed; write `apt-get install valgrind` and \
+             `cargo install gungraun-runner --version 0.20.0`",
+            missing.join(" and ")
+        ),
+    }
+}
+
+fn is_there(tool: &str) -> bool {
+    Command::new(tool)
+        .arg("--version")
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .status()
+        .is_ok()
+}
