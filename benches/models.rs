@@ -22,7 +22,7 @@ fn main() {
 }
 
 /// A, B, C, D and all their parameter Jacobians.
-#[divan::bench]
+#[divan::bench(sample_size = 1000)]
 fn matrices_and_jacobians(bencher: Bencher) {
     let mut subject = Subject::new();
     bencher.bench_local(|| black_box(&mut subject).linearise());
@@ -36,7 +36,7 @@ fn response_and_jacobian(bencher: Bencher) {
 }
 
 /// The equations of motion once.
-#[divan::bench]
+#[divan::bench(sample_size = 1000)]
 fn derivative(bencher: Bencher) {
     let subject = Subject::new();
     let mut dx = vec![0.0; subject.x.len()];
