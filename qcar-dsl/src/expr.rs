@@ -8,7 +8,7 @@ mod rewrite;
 // Values and derivatives.
 mod calculus;
 
-use std::collections::HashMap;
+use crate::hash::HashMap;
 
 pub use calculus::Differential;
 pub use rewrite::{Leaves, Substitution};

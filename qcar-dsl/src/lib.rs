@@ -7,6 +7,8 @@ pub mod source;
 pub mod diagnostic;
 // Units of every expression.
 pub mod units;
+// Hash tables for small keys.
+pub mod hash;
 // Expressions: one hash-consed graph for a model.
 pub mod expr;
 // Text to tree.

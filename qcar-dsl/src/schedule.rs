@@ -3,12 +3,11 @@
 //! A program holds what its outputs need and nothing else, each value once, arguments first, in the order in which the
 //! outputs ask for them. What depends on the parameters alone is left to `prepare`.
 
-use std::collections::{HashMap, HashSet};
-
 use crate::about::About;
 use crate::check::Checked;
 use crate::complex::Complex;
 use crate::expr::{Expr, Graph, Node, Symbol};
+use crate::hash::{HashMap, HashSet};
 use crate::linear::Linear;
 use crate::motion::{Motion, RollingTyre};
 use crate::program::{Op, Program, Programs, Response, Rolling, Value};
@@ -149,10 +148,10 @@ impl<'a> Writer<'a> {
             graph,
             constants: None,
             program: Program::default(),
-            values: HashMap::new(),
-            powers: HashMap::new(),
-            fixed: HashMap::new(),
-            shared_divisors: HashSet::new(),
+            values: HashMap::default(),
+            powers: HashMap::default(),
+            fixed: HashMap::default(),
+            shared_divisors: HashSet::default(),
         }
     }
 
@@ -189,8 +188,8 @@ impl<'a> Writer<'a> {
 
     /// Counts by how many quotients each divisor is used; a fixed one has its reciprocal prepared.
     fn share_divisors(&mut self, outputs: &[Expr]) {
-        let mut seen = HashSet::new();
-        let mut divisors = HashSet::new();
+        let mut seen = HashSet::default();
+        let mut divisors = HashSet::default();
         let mut waiting = outputs.to_vec();
         while let Some(e) = waiting.pop() {
             if !seen.insert(e) || self.is_prepared(e) {

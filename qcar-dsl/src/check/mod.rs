@@ -1,10 +1,10 @@
 //! The structure: what is held, what is solvable, what can be seen. Each rule is a function; [`check`] lists them.
 
-use std::collections::HashMap;
 use std::ops::Deref;
 
 use crate::diagnostic::{Diagnostic, Report, Severity, structure, visibility};
 use crate::expr::{Differential, Expr, Graph, Symbol};
+use crate::hash::HashMap;
 use crate::model::{CoordinateKind, Model};
 use crate::source::Span;
 
@@ -200,7 +200,7 @@ fn expressions(model: &Model, slopes: &[Slopes]) -> Vec<Expr> {
 fn gradients(graph: &mut Graph, expressions: &[Expr], parameters: u16) -> HashMap<Expr, Vec<(u16, Expr)>> {
     let by = |graph: &mut Graph, index| Differential::by(graph, Symbol::Parameter(index));
     let mut by_each: Vec<Differential> = (0..parameters).map(|index| by(graph, index)).collect();
-    let mut gradients = HashMap::new();
+    let mut gradients = HashMap::default();
     for &e in expressions {
         let mut gradient = Vec::new();
         for symbol in graph.symbols([e]) {

@@ -2,9 +2,9 @@
 //! point, so a few points that look random decide it, and the same ones every time keep the compiler deterministic.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 
 use crate::expr::{Expr, Graph, Node, Symbol};
+use crate::hash::HashMap;
 use crate::model::{Default, Model, Parameter};
 
 /// Where values come from.

@@ -1,8 +1,7 @@
 //! What an expression is worth, and how it changes: value and derivative of every operation.
 
-use std::collections::HashMap;
-
 use super::{Expr, Function, Graph, Leaves, Node, Symbol};
+use crate::hash::HashMap;
 
 /// The derivative of `y = f(x)` by `x`, as an expression in both.
 type Slope = fn(&mut Graph, Expr, Expr) -> Expr;
@@ -54,7 +53,7 @@ impl Differential {
     pub fn new(leaves: Leaves) -> Self {
         Differential {
             leaves,
-            known: HashMap::new(),
+            known: HashMap::default(),
         }
     }
 

@@ -1,8 +1,9 @@
 //! Expressions walked: what they depend on, what they become with other leaves, what they are worth.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{Expr, Graph, Node, Symbol};
+use crate::hash::{HashMap, HashSet};
 
 /// Something for each of several leaves.
 pub type Leaves = BTreeMap<Symbol, Expr>;
@@ -43,7 +44,7 @@ impl Graph {
 
     /// The leaves that expressions depend on.
     pub fn symbols(&self, roots: impl IntoIterator<Item = Expr>) -> BTreeSet<Symbol> {
-        let mut seen = HashSet::new();
+        let mut seen = HashSet::default();
         let mut found = BTreeSet::new();
         let mut waiting: Vec<Expr> = roots.into_iter().collect();
         while let Some(e) = waiting.pop() {
@@ -91,7 +92,7 @@ impl Substitution {
     pub fn new(leaves: Leaves) -> Self {
         Substitution {
             leaves,
-            known: HashMap::new(),
+            known: HashMap::default(),
         }
     }
 

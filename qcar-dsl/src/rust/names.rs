@@ -1,6 +1,6 @@
 //! Names of local variables: each free of Rust's keywords and of the others.
 
-use std::collections::HashSet;
+use crate::hash::HashSet;
 
 /// The names that are taken in a function.
 pub struct Names(HashSet<String>);
