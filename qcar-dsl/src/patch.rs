@@ -24,7 +24,6 @@ mod rules;
 
 use base::Base;
 use bind::Bindings;
-pub use place::Place;
 pub use start::Values;
 
 use crate::check::Checked;
@@ -132,12 +131,19 @@ impl Patch {
         &self.effect
     }
 
-    /// The places of a model where the effect applies, in the order of the model's text.
-    pub fn places(&self, model: &Checked) -> Vec<Place> {
-        let base = Base::of(model);
-        let mut places = place::fitting(&base, &self.effect.pattern);
-        places.retain(|place| apply::apply(Bindings::new(&base, &self.effect, place)).is_ok());
+    /// The labels of the places of a model where the effect applies, in the order of the model's text.
+    pub fn places(&self, model: &Checked) -> Vec<String> {
+        let patched = self.candidates(model, &|_| None).into_iter();
+        patched.map(|patched| patched.place).collect()
+    }
+
+    /// The model with the effect at each place where it applies, in the order of the model's text: where the pattern
+    /// fits, the model has all that the effect asks for, and the compiler accepts what comes out.
+    pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
+        let places = place::fitting(&Base::of(model), &self.effect.pattern).into_iter();
         places
+            .filter_map(|place| self.apply(model, &place.label, values).ok())
+            .collect()
     }
 
     /// The model with the effect at a place, given by its label. Starts and ranges that depend on the model are taken

@@ -49,6 +49,11 @@ fn patched(patch: &Patch, model: &Checked, place: &str) -> Patched {
         .unwrap_or_else(|report| panic!("{}\n{report}", report.sources[0].text))
 }
 
+fn effects() -> Vec<Patch> {
+    let read = |file: &PathBuf| Patch::read(read(file)).unwrap_or_else(|report| panic!("{report}"));
+    files("effects").iter().map(read).collect()
+}
+
 #[test]
 fn every_effect_prints_as_the_same_tree() {
     for file in files("effects") {
@@ -70,21 +75,12 @@ fn every_effect_prints_as_the_same_tree() {
 
 #[test]
 fn every_effect_compiles_wherever_it_applies() {
-    let effects: Vec<Patch> = files("effects")
-        .iter()
-        .map(|file| Patch::read(read(file)).unwrap_or_else(|report| panic!("{report}")))
-        .collect();
     for file in files("axles") {
         let model = checked(&file);
-        for effect in &effects {
-            for place in effect.places(&model) {
-                let patched = patched(effect, &model, &place.label);
-                assert!(
-                    patched.model.warnings().diagnostics.is_empty(),
-                    "{}\n{}",
-                    patched.model.warnings(),
-                    patched.text("")
-                );
+        for effect in effects() {
+            for patched in effect.candidates(&model, &|_| None) {
+                let warnings = patched.model.warnings();
+                assert!(warnings.diagnostics.is_empty(), "{}\n{warnings}", patched.model.name);
             }
         }
     }
@@ -94,4 +90,21 @@ fn every_effect_compiles_wherever_it_applies() {
 fn a_patched_model_is_a_file_that_reads_well() {
     let patched = patched(&effect("suspended_mass"), &model("axle_c"), "body");
     insta::assert_snapshot!(patched.text("Evidence: none yet."));
+}
+
+/// Where each effect applies, model by model: what a discovery chooses from.
+#[test]
+fn the_catalogue_applies_where_it_should() {
+    let mut table = String::new();
+    for file in files("axles") {
+        let model = checked(&file);
+        table += &format!("{}\n", model.name);
+        for effect in effects() {
+            let places = effect.places(&model);
+            if !places.is_empty() {
+                table += &format!("    {}: {}\n", effect.effect().name.text, places.join(", "));
+            }
+        }
+    }
+    insta::assert_snapshot!(table);
 }

@@ -24,6 +24,7 @@ mod response;
 mod duplicates;
 mod held;
 mod inertia;
+mod kinetic;
 mod nodes;
 mod passive;
 mod visible;

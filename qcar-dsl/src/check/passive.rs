@@ -1,7 +1,9 @@
-//! What takes energy: a damper may only take, never give.
+//! What takes energy: a damper may only take, never give. An inerter may be negative as far as the masses around it
+//! outweigh it.
 
 use super::Scratch;
 use super::extremes::extreme;
+use super::kinetic;
 use super::sample::{bounds, uniform};
 use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{Expr, LinkId, Symbol};
@@ -22,7 +24,9 @@ pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
         for term in link.law.terms.iter().chain(rolling) {
             found.extend(match *term {
                 Term::Damper(c) => negative(scratch, link, c, "damping"),
-                Term::Inerter(b) => negative(scratch, link, b, "inertance"),
+                Term::Inerter(b) => {
+                    negative(scratch, link, b, "inertance").filter(|_| !kinetic::stays_positive(scratch))
+                }
                 Term::Spring(_) | Term::Force(_) => None,
             });
         }

@@ -38,9 +38,12 @@ impl<'a> Point<'a> {
         }
     }
 
-    /// The same parameters in another motion.
+    /// The same parameters in another motion, of which every parameter set has its own.
     pub fn moved(self, motion: u64) -> Point<'a> {
-        Point { motion, ..self }
+        Point {
+            motion: (self.seed << 8) + motion,
+            ..self
+        }
     }
 
     /// The value of a leaf.

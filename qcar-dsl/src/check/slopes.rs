@@ -100,7 +100,7 @@ fn at_rest(g: &mut Graph, e: Expr) -> Expr {
     Substitution::new(moves.map(|leaf| (leaf, zero)).collect()).apply(g, e)
 }
 
-/// Twice the motion does not give twice the change.
+/// Twice the motion does not give twice the change, or the opposite motion not the opposite one.
 fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     let rest = at_rest(g, e);
     let change = g.sub(e, rest);
@@ -115,8 +115,9 @@ fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     let sizes = [1.0, 0.1, 0.01, 0.001];
     let mut points = sizes.into_iter().flat_map(|size| (1..=4).map(move |seed| (seed, size)));
     points.any(|(seed, size)| {
-        let (once, twice) = (value(seed, size), value(seed, 2.0 * size));
-        (twice - 2.0 * once).abs() > 1e-9 * twice.abs()
+        let (once, twice, back) = (value(seed, size), value(seed, 2.0 * size), value(seed, -size));
+        let differ = |a: f64, b: f64| (a - b).abs() > 1e-9 * b.abs();
+        differ(2.0 * once, twice) || differ(-once, back)
     })
 }
 
