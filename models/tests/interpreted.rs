@@ -11,6 +11,7 @@ use qcar_runtime::model::{Contact, Model, ResponseMut};
 mod zoo {
     qcar_derive::axle_file!("tests/zoo/laws.axle");
     qcar_derive::axle_file!("tests/zoo/mechanisms.axle");
+    qcar_derive::axle_file!("tests/zoo/names.axle");
 }
 
 /// Every compiled model with the file it comes from.
@@ -18,9 +19,10 @@ fn all() -> Vec<(String, &'static dyn Model)> {
     let shipped = models::all()
         .iter()
         .map(|shipped| (shipped.file.to_string(), shipped.model));
-    let zoo: [(&str, &'static dyn Model); 2] = [
+    let zoo: [(&str, &'static dyn Model); 3] = [
         ("tests/zoo/laws.axle", &zoo::laws::Laws),
         ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms),
+        ("tests/zoo/names.axle", &zoo::names::Names),
     ];
     shipped
         .chain(zoo.map(|(file, model)| (file.to_string(), model)))

@@ -26,9 +26,9 @@ impl Names {
         Names(RESERVED.iter().copied().chain(arguments).map(String::from).collect())
     }
 
-    /// The wished name, with as many `_` behind it as make it free.
+    /// The wished name, with as many `_` behind it as make it free. The state of an element has a dot in its name.
     pub fn take(&mut self, wish: &str) -> String {
-        let mut name = wish.to_string();
+        let mut name = wish.replace('.', "_");
         while is_keyword(&name) || self.0.contains(&name) {
             name.push('_');
         }
