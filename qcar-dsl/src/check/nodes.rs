@@ -18,31 +18,56 @@ enum Balance {
     Position,
 }
 
+/// Nodes that move as one.
+type Group = Vec<CoordinateId>;
+
 /// Every node can be solved for.
 pub fn nodes_are_solvable(scratch: &Scratch) -> Vec<Diagnostic> {
+    let nodes = nodes(scratch);
+    let of_one: Vec<Diagnostic> = nodes
+        .iter()
+        .filter_map(|&(id, balance)| mistake(scratch, id, balance))
+        .collect();
+    if of_one.is_empty() {
+        together(scratch, &nodes)
+    } else {
+        of_one
+    }
+}
+
+/// What is wrong with the balance of one node.
+fn mistake(scratch: &Scratch, id: CoordinateId, balance: Option<Balance>) -> Option<Diagnostic> {
+    let coordinate = &scratch.model.coordinates[usize::from(id.0)];
+    let (span, name) = (coordinate.declared.span, coordinate.name.as_str());
+    let Some(balance) = balance else {
+        return Some(structure::node_not_attached(span, name));
+    };
+    let (link, what) = nonlinear(scratch, id, balance)?;
+    let place = (link.declared.span, link.name.as_str());
+    Some(structure::node_nonlinear(span, name, place, what))
+}
+
+/// What is wrong with the balances of several nodes. Dampers do not resist the common motion of the nodes that they
+/// join; springs then place the group, as they place single nodes.
+fn together(scratch: &Scratch, nodes: &[(CoordinateId, Option<Balance>)]) -> Vec<Diagnostic> {
+    let single = |balance: Balance| -> Vec<Group> {
+        let own = nodes.iter().filter(|(_, own)| *own == Some(balance));
+        own.map(|(id, _)| vec![*id]).collect()
+    };
     let mut found = Vec::new();
-    let nodes: Vec<(CoordinateId, Option<Balance>)> = nodes(scratch);
-    for &(id, balance) in &nodes {
-        let coordinate = &scratch.model.coordinates[usize::from(id.0)];
-        let (span, name) = (coordinate.declared.span, coordinate.name.as_str());
-        match balance {
-            None => found.push(structure::node_not_attached(span, name)),
-            Some(balance) => {
-                if let Some((link, what)) = nonlinear(scratch, id, balance) {
-                    found.push(structure::node_nonlinear(
-                        span,
-                        name,
-                        (link.declared.span, &link.name),
-                        what,
-                    ));
-                }
-            }
+    let mut placed = single(Balance::Position);
+    let damped = single(Balance::Velocity);
+    match common_motions(scratch, &damped) {
+        Some(groups) => {
+            let members = groups.iter().flatten();
+            found.extend(members.filter_map(|&id| mistake(scratch, id, Some(Balance::Position))));
+            placed.extend(groups);
         }
+        None => found.extend(floating(scratch, &damped, Balance::Velocity)),
     }
     if found.is_empty() {
-        for balance in [Balance::Position, Balance::Velocity, Balance::Acceleration] {
-            found.extend(singular(scratch, &nodes, balance));
-        }
+        found.extend(floating(scratch, &placed, Balance::Position));
+        found.extend(floating(scratch, &single(Balance::Acceleration), Balance::Acceleration));
     }
     found
 }
@@ -90,34 +115,58 @@ fn nonlinear<'a>(scratch: &'a Scratch, id: CoordinateId, balance: Balance) -> Op
     links_of(scratch, id).find_map(depends)
 }
 
-/// Nodes of one kind that move together without any force of that kind.
-fn singular(scratch: &Scratch, nodes: &[(CoordinateId, Option<Balance>)], balance: Balance) -> Option<Diagnostic> {
-    let own: Vec<CoordinateId> = nodes
+/// The groups of damped nodes whose common motion no damper resists. `None` where dampers leave another motion free,
+/// such as that of a lever.
+fn common_motions(scratch: &Scratch, damped: &[Group]) -> Option<Vec<Group>> {
+    let motions = unresisted(scratch, damped, Balance::Velocity);
+    let moves = |entry: f64| entry.abs() > 1e-6;
+    let is_common = |motion: &Vec<f64>| motion.iter().all(|&entry| !moves(entry) || !moves(entry - 1.0));
+    let member = |(group, &entry): (&Group, &f64)| moves(entry).then_some(group[0]);
+    let groups: Vec<Group> = motions
         .iter()
-        .filter(|(_, b)| *b == Some(balance))
-        .map(|(id, _)| *id)
+        .map(|motion| damped.iter().zip(motion).filter_map(member).collect())
         .collect();
+    let joins_two = |index: usize| {
+        let stretch = &scratch.model.links[index].stretch;
+        let touches = |group: &&Group| stretch.iter().any(|(id, _)| group.contains(id));
+        groups.iter().filter(touches).count() > 1
+    };
+    let apart = !acting(scratch, Balance::Velocity).any(joins_two);
+    (motions.iter().all(is_common) && apart).then_some(groups)
+}
+
+/// Groups that move together without any force of the kind that is to place them.
+fn floating(scratch: &Scratch, groups: &[Group], balance: Balance) -> Option<Diagnostic> {
+    let loose = support(&unresisted(scratch, groups, balance));
+    let named = loose.iter().flat_map(|&column| &groups[column]);
+    let named = named.map(|id| &scratch.model.coordinates[usize::from(id.0)]);
+    let named: Vec<_> = named.map(|node| (node.declared.span, node.name.as_str())).collect();
+    let what = match balance {
+        Balance::Acceleration => "an inerter",
+        Balance::Velocity => "a damper",
+        Balance::Position => "a spring or damper",
+    };
+    (!named.is_empty()).then(|| structure::nodes_float(&named, what))
+}
+
+/// The motions of groups that stretch no link of a kind: a vector for each, with an entry for each group.
+fn unresisted(scratch: &Scratch, groups: &[Group], balance: Balance) -> Vec<Vec<f64>> {
     let point = Point::new(scratch.model, Kind::Plain, 1);
     let leaf = |symbol| point.leaf(symbol);
     let values = Values::new(&scratch.graph, &leaf);
-    let acts = |index: &usize| scratch.graph.as_constant(slope(scratch, *index, balance)) != Some(0.0);
     let row = |index: usize| -> Vec<f64> {
         let stretch = &scratch.model.links[index].stretch;
-        let coefficient = |id: &CoordinateId| stretch.iter().find(|(other, _)| other == id);
-        own.iter()
-            .map(|id| coefficient(id).map_or(0.0, |(_, c)| values.of(*c)))
-            .collect()
+        let along = |group: &Group| {
+            let held = stretch.iter().filter(|(id, _)| group.contains(id));
+            held.map(|(_, coefficient)| values.of(*coefficient)).sum()
+        };
+        groups.iter().map(along).collect()
     };
-    let rows: Vec<Vec<f64>> = (0..scratch.model.links.len()).filter(acts).map(row).collect();
-    let loose = support(&null_space(rows, own.len()));
-    let named = loose
-        .iter()
-        .map(|&column| &scratch.model.coordinates[usize::from(own[column].0)]);
-    let named: Vec<_> = named.map(|node| (node.declared.span, node.name.as_str())).collect();
-    let what = match balance {
-        Balance::Acceleration => "inerters",
-        Balance::Velocity => "dampers",
-        Balance::Position => "springs",
-    };
-    (!named.is_empty()).then(|| structure::nodes_float(&named, what))
+    null_space(acting(scratch, balance).map(row).collect(), groups.len())
+}
+
+/// The links with a force of a kind.
+fn acting<'a>(scratch: &'a Scratch, balance: Balance) -> impl Iterator<Item = usize> + use<'a> {
+    let links = 0..scratch.model.links.len();
+    links.filter(move |&index| scratch.graph.as_constant(slope(scratch, index, balance)) != Some(0.0))
 }

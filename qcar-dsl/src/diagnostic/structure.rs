@@ -77,7 +77,7 @@ pub fn node_nonlinear(span: Span, name: &str, link: (Span, &str), what: &str) ->
 /// Nodes that are connected with each other only.
 pub fn nodes_float(nodes: &Named, what: &str) -> Diagnostic {
     let message = format!(
-        "the balance of {} cannot be solved: {what} hold the nodes at each other only",
+        "the balance of {} cannot be solved: the nodes are held at each other only",
         names(nodes)
     );
     label_all(
