@@ -227,6 +227,20 @@ fn signal(model: &Checked, signal: &model::Signal) -> Signal {
     }
 }
 
+fn reference(model: &Checked, reference: &model::Reference) -> Signal {
+    match reference {
+        model::Reference::Signal(of) => signal(model, of),
+        model::Reference::Force(place) => {
+            let force = excitation(model, Source::Force(*place));
+            Signal {
+                location: force.name,
+                axis: force.axis,
+                kind: SignalKind::Force,
+            }
+        }
+    }
+}
+
 fn excitation(model: &Checked, source: Source) -> Excitation {
     match source {
         Source::Motion(c) => {
@@ -256,7 +270,7 @@ fn channel(model: &Checked, channel: &model::Channel) -> Channel {
     Channel {
         name: channel.name.clone(),
         numerator: signal(model, &channel.numerator),
-        denominator: signal(model, &channel.denominator),
+        denominator: reference(model, &channel.denominator),
     }
 }
 

@@ -3,7 +3,9 @@
 use std::collections::BTreeSet;
 
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Node, Symbol};
-use crate::model::{Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Quantity, Signal, Term};
+use crate::model::{
+    Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Quantity, Reference, Signal, Term,
+};
 
 use crate::notation::{Notation, Summand, Writer};
 
@@ -269,10 +271,10 @@ fn is_short(graph: &Graph, link: &Link) -> bool {
 fn is_seen(model: &Model, link: LinkId) -> bool {
     let shows = |signal: &Signal| matches!(*signal, Signal::LinkForce(l) | Signal::LinkStretch(l) if l == link);
     model.outputs.iter().any(|output| shows(&output.signal))
-        || model
-            .channels
-            .iter()
-            .any(|channel| shows(&channel.numerator) || shows(&channel.denominator))
+        || model.channels.iter().any(|channel| {
+            let below = matches!(&channel.denominator, Reference::Signal(signal) if shows(signal));
+            below || shows(&channel.numerator)
+        })
 }
 
 /// The stretch or one of its derivatives as one expression.
@@ -396,10 +398,17 @@ fn channels(model: &Model, writer: &Writer) -> Vec<Equation> {
         left: writer.identifier(&channel.name),
         right: vec![writer.ratio(
             &signal(writer, &channel.numerator),
-            &signal(writer, &channel.denominator),
+            &reference(writer, &channel.denominator),
         )],
     };
     model.channels.iter().map(written).collect()
+}
+
+fn reference(writer: &Writer, reference: &Reference) -> String {
+    match reference {
+        Reference::Signal(of) => signal(writer, of),
+        Reference::Force(place) => writer.symbol(Symbol::Force(*place)),
+    }
 }
 
 fn signal(writer: &Writer, signal: &Signal) -> String {

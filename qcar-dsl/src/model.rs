@@ -238,7 +238,7 @@ pub struct Output {
     pub declared: Declared,
 }
 
-/// A ratio of two signals of the same unit or not, such as `pad_to_body`.
+/// A ratio of a signal to another or to a force input, such as `pad_to_body`.
 #[derive(Clone, Debug)]
 pub struct Channel {
     /// The name.
@@ -246,7 +246,16 @@ pub struct Channel {
     /// Above the line.
     pub numerator: Signal,
     /// Below the line.
-    pub denominator: Signal,
+    pub denominator: Reference,
     /// Where.
     pub declared: Declared,
+}
+
+/// What a channel is compared with.
+#[derive(Clone, PartialEq, Debug)]
+pub enum Reference {
+    /// Something that moves, or that a link carries.
+    Signal(Signal),
+    /// A force input, by its place in `Model::forces`.
+    Force(u16),
 }

@@ -7,7 +7,7 @@ use super::dual::{Complex, Dual, solve};
 use super::sample::{Kind, Point, Values};
 use super::stiffness::dynamic_stiffness;
 use crate::expr::{CoordinateId, Expr, LinkId};
-use crate::model::{CoordinateKind, Quantity, Signal};
+use crate::model::{CoordinateKind, Quantity, Reference, Signal};
 
 /// Angular frequencies for numbers near 1.
 const PLAIN: [f64; 6] = [0.3, 0.7, 1.1, 1.9, 3.1, 5.3];
@@ -111,9 +111,12 @@ impl At<'_> {
                 .iter()
                 .map(|output| excited.response(&output.signal, frequency));
             add_relative(responses.collect(), seen);
-            let ratios = model.channels.iter().map(|channel| {
-                let below = excited.response(&channel.denominator, frequency);
-                excited.response(&channel.numerator, frequency).over(&below)
+            let ratios = model.channels.iter().filter_map(|channel| {
+                let above = excited.response(&channel.numerator, frequency);
+                match &channel.denominator {
+                    Reference::Signal(signal) => Some(above.over(&excited.response(signal, frequency))),
+                    Reference::Force(place) => (drive == Drive::Force(usize::from(*place))).then_some(above),
+                }
             });
             add_relative(ratios.collect(), seen);
         }

@@ -30,10 +30,14 @@ impl Resolver<'_> {
             let Statement::Force(name, on) = statement else {
                 continue;
             };
-            self.declare_thing(name, direction, Thing::Force);
-            if let Ok(force) = self.force(name, on, direction, statement) {
-                self.model.forces.push(force);
-            }
+            let thing = match self.force(name, on, direction, statement) {
+                Ok(force) => {
+                    self.model.forces.push(force);
+                    Thing::Force(self.model.forces.len() as u16 - 1)
+                }
+                Err(_) => Thing::Broken,
+            };
+            self.declare_thing(name, direction, thing);
         }
     }
 

@@ -27,8 +27,8 @@ pub enum Thing {
     Coordinate(CoordinateId),
     /// A link.
     Link(LinkId),
-    /// A force input.
-    Force,
+    /// A force input, by its place in `Model::forces`.
+    Force(u16),
     /// A gravity.
     Gravity,
     /// Its own declaration is mistaken, so its uses are not blamed.
@@ -40,7 +40,7 @@ impl Thing {
         match self {
             Thing::Coordinate(_) => "a point that moves",
             Thing::Link(_) => "a link",
-            Thing::Force => "a force input",
+            Thing::Force(_) => "a force input",
             Thing::Gravity => "a gravity",
             Thing::Broken => "mistaken",
         }

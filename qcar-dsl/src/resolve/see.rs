@@ -6,7 +6,7 @@ use super::names::Thing;
 use super::{Known, Placed, Reported, Resolver};
 use crate::diagnostic::{names, units as mistakes};
 use crate::expr::CoordinateId;
-use crate::model::{Channel, CoordinateKind, Output, Quantity, Signal};
+use crate::model::{Channel, CoordinateKind, Declared, Output, Quantity, Reference, Signal};
 use crate::syntax::{Dotted, Name, Statement};
 use crate::units::Unit;
 
@@ -15,6 +15,21 @@ struct Seen {
     signal: Signal,
     unit: Unit,
     name: String,
+}
+
+/// What a channel is compared with.
+enum Below {
+    Signal(Seen),
+    Force(u16),
+}
+
+impl Below {
+    fn reference(&self) -> Reference {
+        match self {
+            Below::Signal(seen) => Reference::Signal(seen.signal.clone()),
+            Below::Force(place) => Reference::Force(*place),
+        }
+    }
 }
 
 const QUANTITIES: [(&str, Quantity); 3] = [
@@ -39,22 +54,29 @@ impl Resolver<'_> {
                 text: name.as_ref().map_or(seen.name, |name| name.text.clone()),
                 span,
             };
-            if let Some(first) = self.model.outputs.iter().find(|output| output.name == name.text) {
-                let mistake = names::duplicate_name(span, first.declared.span, &name.text, "the outputs");
-                self.report(mistake);
-                continue;
-            }
-            let declared = declared(&name, statement);
-            self.model.outputs.push(Output {
-                name: name.text,
-                signal: seen.signal,
-                unit: seen.unit,
-                declared,
-            });
+            let seen = Seen {
+                name: name.text.clone(),
+                ..seen
+            };
+            self.add_output(seen, declared(&name, statement));
         }
         if !self.declares_outputs {
             self.default_outputs();
         }
+    }
+
+    fn add_output(&mut self, Seen { name, signal, unit }: Seen, declared: Declared) {
+        if let Some(first) = self.model.outputs.iter().find(|output| output.name == name) {
+            let mistake = names::duplicate_name(declared.span, first.declared.span, &name, "the outputs");
+            self.report(mistake);
+            return;
+        }
+        self.model.outputs.push(Output {
+            name,
+            signal,
+            unit,
+            declared,
+        });
     }
 
     fn default_outputs(&mut self) {
@@ -81,27 +103,66 @@ impl Resolver<'_> {
                 let mistake = names::duplicate_name(name.span, first.declared.span, &name.text, "the channels");
                 self.report(mistake);
             }
-            let (above, below) = (self.signal(numerator, direction), self.signal(denominator, direction));
+            let (above, below) = (
+                self.signal(numerator, direction),
+                self.reference(denominator, direction),
+            );
             let (Ok(above), Ok(below)) = (above, below) else {
                 continue;
             };
-            if let (Signal::Motion(_, a), Signal::Motion(_, b)) = (&above.signal, &below.signal)
+            if let (
+                Signal::Motion(_, a),
+                Below::Signal(Seen {
+                    signal: Signal::Motion(_, b),
+                    ..
+                }),
+            ) = (&above.signal, &below)
                 && a != b
             {
                 let span = numerator.span().join(denominator.span());
-                self.report(mistakes::channel_units_differ(
-                    span,
-                    quantity_name(*a),
-                    quantity_name(*b),
-                ));
+                let mistake = mistakes::channel_units_differ(span, quantity_name(*a), quantity_name(*b));
+                self.report(mistake);
             }
-            self.model.channels.push(Channel {
+            let declared = declared(name, statement);
+            let channel = Channel {
                 name: name.text.clone(),
-                numerator: above.signal,
-                denominator: below.signal,
-                declared: declared(name, statement),
-            });
+                numerator: above.signal.clone(),
+                denominator: below.reference(),
+                declared: declared.clone(),
+            };
+            self.model.channels.push(channel);
+            self.show(above, &declared);
+            if let Below::Signal(below) = below {
+                self.show(below, &declared);
+            }
         }
+    }
+
+    /// What a channel compares is an output, unless it is an input or follows from an output.
+    fn show(&mut self, seen: Seen, declared: &Declared) {
+        let follows = |output: &Output| match (&output.signal, &seen.signal) {
+            (Signal::Motion(known, _), Signal::Motion(wanted, _)) => known == wanted,
+            (known, wanted) => known == wanted,
+        };
+        let prescribed = |coordinate: CoordinateId| {
+            let kind = self.model.coordinates[usize::from(coordinate.0)].kind;
+            matches!(kind, CoordinateKind::Road | CoordinateKind::Motion)
+        };
+        let is_input = matches!(seen.signal, Signal::Motion(coordinate, _) if prescribed(coordinate));
+        if !is_input && !self.model.outputs.iter().any(follows) {
+            self.add_output(seen, declared.clone());
+        }
+    }
+
+    /// A signal, or `f_wheel_z.force` for a force input.
+    fn reference(&mut self, path: &Dotted, direction: &str) -> Known<Below> {
+        if let Some((quantity, owner)) = path.names.split_last()
+            && quantity.text == "force"
+            && let Some((_, Thing::Force(place))) = self.names.find(&Dotted { names: owner.to_vec() }, direction)
+        {
+            return Ok(Below::Force(place));
+        }
+        self.signal(path, direction).map(Below::Signal)
     }
 
     /// `body.acceleration`, or with its direction `z.body.acceleration`.
