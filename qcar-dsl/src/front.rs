@@ -75,7 +75,7 @@ struct Front<'a> {
 impl<'a> Front<'a> {
     fn new(source: Source, load: Load<'a>) -> Front<'a> {
         Front {
-            sources: vec![source],
+            sources: vec![source.without_mark()],
             found: vec![],
             load,
         }
@@ -145,6 +145,7 @@ impl<'a> Front<'a> {
         let asking = &self.sources[usize::from(path.span.source)].name;
         match (self.load)(asking, &path.text) {
             Ok(source) => {
+                let source = source.without_mark();
                 let reading = parse_text(&source, self.sources.len() as u16);
                 self.sources.push(source);
                 self.read(reading)

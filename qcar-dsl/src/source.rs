@@ -46,6 +46,14 @@ pub struct Source {
 }
 
 impl Source {
+    /// The same without the mark that some editors put before the first character.
+    pub fn without_mark(mut self) -> Source {
+        if let Some(text) = self.text.strip_prefix('\u{feff}') {
+            self.text = text.to_string();
+        }
+        self
+    }
+
     /// Line and column of a byte, both counted from 1, columns in characters.
     pub fn line_column(&self, byte: u32) -> (usize, usize) {
         let before = &self.text[..self.border(byte as usize)];

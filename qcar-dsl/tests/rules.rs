@@ -99,6 +99,16 @@ fn nodes_are_solved_where_they_can_be() {
         "road p; mass a = m; node n; link l: a - p { spring k; }",
         &[NodeNotAttached],
     );
+    let strut = |upper: &str| {
+        let links = format!("link u: a - n {{ {upper} }} link d: n - q {{ damper c; }} link l: q - p {{ spring k; }}");
+        format!("road p; mass a = m; node n; node q; {links}")
+    };
+    earns(&strut("spring k;"), &[]);
+    earns(&strut("force = k*s*abs(s)/1 m;"), &[NodeNonlinear]);
+    let unheld = "link x: a - p { spring k; } link y: n - q { damper c; }";
+    earns(&format!("road p; mass a = m; node n; node q; {unheld}"), &[NodesFloat]);
+    let lever = "link x: a - p { spring k; } link y: n - 2*q { damper c; } link z: q - p { spring k; }";
+    earns(&format!("road p; mass a = m; node n; node q; {lever}"), &[NodesFloat]);
     let floating = "link x: a - p { spring k; } link y: n - q { spring k; }";
     earns(
         &format!("road p; mass a = m; node n; node q; {floating}"),
@@ -184,4 +194,39 @@ fn a_dyno_sees_its_own_law() {
     };
     assert_eq!(codes(&dyno("force = c*v/(1 + abs(v)/w);")), []);
     assert_eq!(codes(&dyno("force = c*w*(v/w);")), [ParameterNotSeen]);
+}
+
+#[test]
+fn a_byte_order_mark_is_no_mistake() {
+    let text = "\u{feff}axle case { known param m: kg = 1; direction z { mass a = m; force f on a; } }";
+    assert_eq!(codes(text), []);
+}
+
+#[test]
+fn a_channel_shows_what_it_compares() {
+    let text = "axle case { known param k: N/m = 1; direction z { road p; mass a = 1 kg; node n; force f on a;
+        link u: a - n { spring k; } link l: n - p { spring k; damper 1 N s/m; }
+        output a.velocity;
+        channel lag = n.position / a.position; channel load = l.force / p.position; channel reach = a.position / f.force; } }";
+    let source = Source {
+        name: "case.axle".to_string(),
+        text: text.to_string(),
+    };
+    let checked = check_text(source, &|_, _| Err("no files".to_string())).unwrap();
+    let names: Vec<&str> = checked.outputs.iter().map(|output| output.name.as_str()).collect();
+    assert_eq!(names, ["z_a_velocity", "z_n_position", "z_l_force"]);
+}
+
+#[test]
+fn hints_say_what_to_write() {
+    let hint = |text: &str| {
+        let source = Source {
+            name: "case.axle".to_string(),
+            text: text.to_string(),
+        };
+        let report = check_text(source, &|_, _| Err("no files".to_string())).unwrap_err();
+        report.diagnostics[0].hint.clone()
+    };
+    assert!(hint("axle case { param k: N/m = 3 in 3..3; }").contains("`= 3`"));
+    assert!(hint("axle case {\n/// Stiffness\n}").contains("`// …`"));
 }

@@ -110,6 +110,8 @@ pub fn ambiguous_unit(span: Span, before: &str, after: &str) -> Diagnostic {
 pub fn unknown_statement(span: Span, found: &str, known: &[&str]) -> Diagnostic {
     let word = found.trim_matches('`');
     let hint = match nearest(word, known) {
+        // What Rust makes of `///` and `//!`.
+        _ if word == "#" => "write a comment as `// …`".to_string(),
         Some(near) => format!("write `{near} …`"),
         None => format!("write a statement that begins with {}", one_of(known)),
     };

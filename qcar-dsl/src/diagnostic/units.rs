@@ -187,7 +187,10 @@ pub fn second_rolling(span: Span) -> Diagnostic {
 pub fn range_reversed(span: Span, low: &str, high: &str) -> Diagnostic {
     Diagnostic::error(Code::RangeReversed, "the lower bound is not below the upper one")
         .label(span, "an empty range")
-        .hint(format!("write `in {high}..{low}`"))
+        .hint(match low == high {
+            true => format!("write a lower and an upper bound, or no range: `= {low}` is the value unless given"),
+            false => format!("write `in {high}..{low}`"),
+        })
 }
 
 /// A default outside of the declared range.

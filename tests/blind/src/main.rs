@@ -1,6 +1,6 @@
 //! Makes the campaigns of the blind tests.
 //!
-//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE:parameter=value,…]… [--clean-model MODEL]`
+//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE:parameter=value,…]… [--model MODEL]`
 
 mod axle;
 mod campaign;
@@ -34,7 +34,8 @@ fn main() -> ExitCode {
 
 fn make() -> Result<(), String> {
     let mut words = std::env::args().skip(1);
-    let folder = PathBuf::from(words.next().ok_or("which folder?")?);
+    let folder = words.next().filter(|word| !word.starts_with('-'));
+    let folder = PathBuf::from(folder.ok_or("which folder?")?);
     let (mut seed, mut letter, mut model) = (1, String::from("c"), None);
     let (mut systematic, mut noise, mut cleats, mut effects) = (0.005, 0.02, true, Vec::new());
     while let Some(word) = words.next() {
