@@ -12,14 +12,25 @@ mod settings;
 mod sampling;
 // Where a model comes to rest.
 mod equilibrium;
-// A tyre that rolls over a road, and what is recorded of it.
+// A model on its tyre.
 mod car;
-mod recorder;
-mod ride;
+// What moves it while the tyre rolls over a road.
 mod rolling;
+// What is recorded meanwhile.
+mod recorder;
+// Rides over a road.
+mod ride;
+// A recorded signal between its samples.
+mod wave;
+// What a rig has done to a model.
+mod recorded;
+// A model to which that is done.
+mod replay;
 
 pub use car::{Car, Variant};
 pub use failure::SimulateError;
+pub use recorded::{Between, Record, Recorded};
+pub use replay::{Replay, replay};
 pub use ride::{Drive, Ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};

@@ -67,6 +67,24 @@ pub fn transform(samples: &[f64]) -> Vec<Complex<f64>> {
     lines
 }
 
+/// The real signal of `samples` samples that has these lines of [`transform`], from 0 on, and nothing above them.
+pub fn synthesize(lines: &[Complex<f64>], samples: usize) -> Vec<f64> {
+    let plan = RealFftPlanner::new().plan_fft_inverse(samples);
+    let (mut input, mut output) = (plan.make_input_vec(), plan.make_output_vec());
+    let scale = 1.0 / samples as f64;
+    for (input, line) in input.iter_mut().zip(lines) {
+        *input = line * scale;
+    }
+    // What stands on neither side of its mirror image is real.
+    input[0].im = 0.0;
+    if samples.is_multiple_of(2) {
+        input[samples / 2].im = 0.0;
+    }
+    plan.process(&mut input, &mut output)
+        .expect("the plan was made for these lengths");
+    output
+}
+
 /// How a record is cut into segments.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Segments {

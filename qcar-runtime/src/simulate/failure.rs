@@ -53,10 +53,9 @@ pub enum SimulateError {
     NoEquilibrium { model: String, state: String, rate: f64 },
     #[error("the simulation of model `{model}` stopped: {report}")]
     Stopped { model: String, report: Report },
-    #[error("input {place} is driven by excitation {excitation}, but model `{model}` has {count}")]
+    #[error("a record is of excitation {excitation}, counted from 0, but model `{model}` has {count}")]
     NoSuchExcitation {
         model: String,
-        place: usize,
         excitation: usize,
         count: usize,
     },

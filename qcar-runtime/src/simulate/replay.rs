@@ -1,0 +1,124 @@
+//! A model driven by what was recorded: sweeps of a rig, and any other time history.
+
+use super::failure::SimulateError;
+use super::recorded::Recorded;
+use super::sampling::{AntiAlias, Grid};
+use super::settings::Settings;
+use crate::model::{Model, StateKind};
+use crate::solver::{Effort, Step, System};
+
+/// What a model does under recorded inputs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Replay {
+    /// Each output of the model at the samples of the record, through [`AntiAlias`].
+    pub outputs: Vec<Vec<f64>>,
+    /// Each state at the samples of the record.
+    pub states: Vec<Vec<f64>>,
+    /// What the integration cost.
+    pub effort: Effort,
+}
+
+/// Drives a model, with a value for each of its parameters, by recorded inputs.
+///
+/// It begins at rest, or where a road was recorded, moving along with it; what the first instants do to it then is a
+/// transient of the model, not of the measurement.
+///
+/// # Errors
+/// Too few parameters, and an integration that stops early.
+pub fn replay<M: Model + ?Sized>(
+    model: &M,
+    parameters: &[f64],
+    recorded: &Recorded,
+    settings: &Settings,
+) -> Result<Replay, SimulateError> {
+    let about = model.about();
+    let (found, expected) = (parameters.len(), about.parameters.len());
+    if found != expected {
+        return Err(SimulateError::Count {
+            name: "the parameter set",
+            found,
+            expected,
+        });
+    }
+    let mut constants = vec![0.0; about.constants];
+    model.prepare(parameters, &mut constants);
+    let grid = Grid::new(recorded.rate(), recorded.samples());
+    let span = (grid.start(), grid.end());
+    let mut x = riding(model, recorded, span.0);
+    let mut rig = Rig {
+        model,
+        constants,
+        recorded,
+        inputs: vec![0.0; about.inputs.len()],
+        leg: span.0,
+        grid,
+        fine: vec![Vec::new(); about.outputs.len()],
+        states: vec![Vec::new(); about.states.len()],
+        room: (vec![0.0; about.states.len()], vec![0.0; about.outputs.len()]),
+    };
+    let longest_step = 1.0 / recorded.rate();
+    let effort = settings.integrate(about, &mut rig, span, (longest_step, &recorded.jumps()), &mut x)?;
+    let filter = AntiAlias::new();
+    Ok(Replay {
+        outputs: rig.fine.iter().map(|fine| filter.decimate(fine)).collect(),
+        states: rig.states,
+        effort,
+    })
+}
+
+/// All that moves along an axis rides on the road that was recorded there.
+fn riding<M: Model + ?Sized>(model: &M, recorded: &Recorded, t: f64) -> Vec<f64> {
+    let states = model.about().states.iter();
+    let riding = states.map(|state| {
+        let [height, velocity] = recorded.road(&state.axis, t).unwrap_or_default();
+        match state.kind {
+            StateKind::Position => height,
+            StateKind::Velocity => velocity,
+            StateKind::Inner => 0.0,
+        }
+    });
+    riding.collect()
+}
+
+/// A model on its rig, with its records.
+struct Rig<'a, M: ?Sized> {
+    model: &'a M,
+    constants: Vec<f64>,
+    recorded: &'a Recorded,
+    inputs: Vec<f64>,
+    /// When the present leg began, s: until its end, held inputs stay as they were then.
+    leg: f64,
+    grid: Grid,
+    /// Each output on the fine grid.
+    fine: Vec<Vec<f64>>,
+    /// Each state at the samples.
+    states: Vec<Vec<f64>>,
+    /// Room for one state and for its outputs.
+    room: (Vec<f64>, Vec<f64>),
+}
+
+impl<M: Model + ?Sized> System for Rig<'_, M> {
+    fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        self.recorded.at(t, self.leg, &mut self.inputs);
+        self.model.derivative(&self.constants, x, &self.inputs, dx);
+    }
+
+    fn enter(&mut self, t: f64, _x: &mut [f64]) {
+        self.leg = t;
+    }
+
+    fn accept(&mut self, step: &Step<'_>) {
+        let (x, y) = &mut self.room;
+        for (t, is_sample) in self.grid.on(step) {
+            step.at(t, x);
+            self.recorded.at(t, self.leg, &mut self.inputs);
+            self.model.outputs(&self.constants, x, &self.inputs, y);
+            for (fine, y) in self.fine.iter_mut().zip(y.iter()) {
+                fine.push(*y);
+            }
+            if is_sample {
+                self.states.iter_mut().zip(x.iter()).for_each(|(row, x)| row.push(*x));
+            }
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! Recorded rig motions, replayed in the time domain through compiled models, against what is known in closed form.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use std::path::Path;
+
+use models::find;
+use nalgebra::Complex;
+use qcar_runtime::campaign::{Axis, Campaign, Quantity, Test, Truth};
+use qcar_runtime::model::{self, Model, SignalKind};
+use qcar_runtime::response::Response;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::{Between, Method, Record, Recorded, Replay, Settings, replay};
+use qcar_runtime::spectrum::{synthesize, transform};
+use qcar_runtime::transmissibility::{Point, signal};
+
+const ACCELERATION: SignalKind = SignalKind::Motion(model::Quantity::Acceleration);
+
+fn axle_a() -> (&'static dyn Model, Values) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    let truth = Truth::read(&folder.join("truth.toml")).unwrap();
+    let campaign = Campaign::open(folder).unwrap();
+    let model = find("axle_a").unwrap().model;
+    let given: BTreeMap<String, f64> = truth.parameters.into_iter().collect();
+    let vehicle: BTreeMap<String, f64> = campaign.vehicle.into_iter().collect();
+    (model, Values::resolve(model.about(), &given, &vehicle).unwrap())
+}
+
+/// The mean pad acceleration of the first sweep of the shipped campaign, and its rate.
+fn measured_pad() -> (Vec<f64>, f64) {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    let campaign = Campaign::open(folder).unwrap();
+    let run = campaign
+        .runs
+        .iter()
+        .find(|run| matches!(run.test, Test::Sweep(_)))
+        .unwrap();
+    let history = campaign.history(run).unwrap();
+    let pad = Point {
+        location: "pad".into(),
+        axis: Axis::Z,
+        quantity: Quantity::Acceleration,
+    };
+    (signal(&history, &pad).unwrap(), history.sample_rate)
+}
+
+fn replayed(model: &dyn Model, p: &[f64], kind: SignalKind, samples: &[f64], rate: f64) -> Replay {
+    let record = Record {
+        excitation: 0,
+        kind,
+        samples,
+    };
+    let recorded = Recorded::new(model.about(), &[record], rate, Between::BandLimited).unwrap();
+    replay(model, p, &recorded, &Settings::default()).unwrap()
+}
+
+/// The periodic response of each output to a periodic pad acceleration, by the frequency response of the model.
+fn steady(model: &dyn Model, p: &[f64], samples: &[f64], rate: f64) -> Vec<Vec<f64>> {
+    let lines = transform(samples);
+    let below_half = samples.len().div_ceil(2);
+    let line = |k: usize| k as f64 * rate / samples.len() as f64;
+    let mut response = Response::new(model, 0, &(1..below_half).map(line).collect::<Vec<_>>());
+    response.evaluate(p);
+    let row = |output: usize| response.layout().outputs.iter().position(|&o| usize::from(o) == output);
+    let of = |output: usize| {
+        let Some(row) = row(output) else {
+            return vec![0.0; samples.len()];
+        };
+        let (re, im) = response.row(row);
+        let answer = |k: usize| Complex::new(re[k - 1], im[k - 1]) * lines[k] / -(TAU * line(k)).powi(2);
+        let answers = std::iter::once(Complex::ZERO).chain((1..below_half).map(answer));
+        synthesize(&answers.collect::<Vec<_>>(), samples.len())
+    };
+    (0..model.about().outputs.len()).map(of).collect()
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64).sqrt()
+}
+
+fn relative(found: &[f64], expected: &[f64]) -> f64 {
+    let difference: Vec<f64> = found.iter().zip(expected).map(|(a, b)| a - b).collect();
+    rms(&difference) / rms(expected)
+}
+
+#[test]
+fn a_measured_sweep_gives_what_the_frequency_response_says() {
+    let (model, values) = axle_a();
+    let (pad, rate) = measured_pad();
+    let replay = replayed(model, values.as_slice(), ACCELERATION, &pad, rate);
+    let steady = steady(model, values.as_slice(), &pad, rate);
+    // After ten seconds nothing is left of how the body began to move.
+    let settled = (10.0 * rate) as usize;
+    for (place, output) in model
+        .about()
+        .outputs
+        .iter()
+        .enumerate()
+        .filter(|(_, o)| o.signal.axis == "z")
+    {
+        let error = relative(&replay.outputs[place][settled..], &steady[place][settled..]);
+        assert!(error < 1e-3, "{}: {error}", output.name);
+    }
+}
+
+#[test]
+fn it_does_not_matter_what_was_recorded_of_a_motion() {
+    let (model, values) = axle_a();
+    let (n, rate, f) = (8000, 1000.0, 5.0);
+    let wave = |amplitude: f64, phase: f64| -> Vec<f64> {
+        let angle = |k: usize| TAU * f * k as f64 / rate + phase;
+        (0..n).map(|k| amplitude * angle(k).sin()).collect()
+    };
+    let (omega, quarter) = (TAU * f, TAU / 4.0);
+    let records = [
+        (model::Quantity::Position, wave(0.002, 0.0)),
+        (model::Quantity::Velocity, wave(0.002 * omega, quarter)),
+        (
+            model::Quantity::Acceleration,
+            wave(0.002 * omega * omega, 2.0 * quarter),
+        ),
+    ];
+    let [position, velocity, acceleration] = records
+        .map(|(quantity, samples)| replayed(model, values.as_slice(), SignalKind::Motion(quantity), &samples, rate));
+    for other in [velocity, acceleration] {
+        for (a, b) in position
+            .outputs
+            .iter()
+            .zip(&other.outputs)
+            .filter(|(a, _)| rms(a) > 0.0)
+        {
+            assert!(relative(b, a) < 1e-3, "{}", relative(b, a));
+        }
+    }
+}
+
+#[test]
+fn both_methods_agree_on_a_replay() {
+    let (model, values) = axle_a();
+    let (pad, rate) = measured_pad();
+    let record = Record {
+        excitation: 0,
+        kind: ACCELERATION,
+        samples: &pad[..5000],
+    };
+    let recorded = Recorded::new(model.about(), &[record], rate, Between::BandLimited).unwrap();
+    let with = |method| {
+        let settings = Settings {
+            method,
+            ..Settings::default()
+        };
+        replay(model, values.as_slice(), &recorded, &settings).unwrap()
+    };
+    let (adaptive, fixed) = (with(Method::Adaptive(1e-7)), with(Method::Fixed(1e-4)));
+    for (a, b) in adaptive
+        .outputs
+        .iter()
+        .zip(&fixed.outputs)
+        .filter(|(a, _)| rms(a) > 0.0)
+    {
+        assert!(relative(b, a) < 1e-4, "{}", relative(b, a));
+    }
+}
+
+/// One mass on a spring and damper under a force that steps at a sample: the step response in closed form.
+#[test]
+fn a_held_force_acts_from_its_sample_on() {
+    let model = find("one_mass").unwrap().model;
+    let (m, c, k, rate, first) = (2.0, 3.0, 800.0, 200.0, 40);
+    let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name).unwrap();
+    let mut p = vec![0.0; 3];
+    (p[place("m_body")], p[place("c_body")], p[place("k_body")]) = (m, c, k);
+    let samples: Vec<f64> = (0..400).map(|n| if n < first { 0.0 } else { 5.0 }).collect();
+    let record = Record {
+        excitation: 0,
+        kind: SignalKind::Force,
+        samples: &samples,
+    };
+    let recorded = Recorded::new(model.about(), &[record], rate, Between::Held).unwrap();
+    let replay = replay(model, &p, &recorded, &Settings::default()).unwrap();
+    let position = model.about().states.iter().position(|s| s.name == "z_body").unwrap();
+    let (decay, omega) = (c / (2.0 * m), (k / m - (c / (2.0 * m)).powi(2)).sqrt());
+    let step = |t: f64| {
+        let swing = (omega * t).cos() + decay / omega * (omega * t).sin();
+        if t > 0.0 {
+            5.0 / k * (1.0 - (-decay * t).exp() * swing)
+        } else {
+            0.0
+        }
+    };
+    for (n, z) in replay.states[position].iter().enumerate() {
+        let expected = step((n as f64 - first as f64) / rate);
+        assert!((z - expected).abs() < 1e-5 * 5.0 / k, "{n}: {z} {expected}");
+    }
+}
+
+#[test]
+fn records_that_do_not_fit_are_refused() {
+    let (pad, force) = (find("axle_a").unwrap().model, find("one_mass").unwrap().model);
+    let refused = |model: &dyn Model, excitation, kind, samples: &[f64], between| {
+        let record = Record {
+            excitation,
+            kind,
+            samples,
+        };
+        let error = Recorded::new(model.about(), &[record], 100.0, between).expect_err("it does not fit");
+        error.to_string()
+    };
+    let (free, held, zeros) = (Between::BandLimited, Between::Held, &[0.0; 8]);
+    assert!(refused(pad, 9, ACCELERATION, zeros, free).contains("model `axle_a` has 3"));
+    assert!(refused(pad, 0, SignalKind::Force, zeros, free).starts_with("excitation `pad` is a motion"));
+    assert!(refused(force, 0, ACCELERATION, zeros, free).starts_with("excitation `f` is a force"));
+    assert!(refused(pad, 0, ACCELERATION, zeros, held).contains("band_limited = true"));
+    assert!(refused(pad, 0, ACCELERATION, &[0.0, f64::NAN], free).contains("at sample 1"));
+    assert!(refused(pad, 0, ACCELERATION, &[], free).contains("number of samples is 0"));
+}
