@@ -14,6 +14,8 @@ pub(super) struct Unbalanced {
 const MOST_ITERATIONS: usize = 100;
 /// Rates that would move no state by more than this part of its size count as rest.
 const REST: f64 = 1e-9;
+/// Below this part there is nothing but rounding to be improved.
+const ROUNDING: f64 = 1e-14;
 /// Directions in which the scaled Jacobian is flatter than this are free: a model may float in x, and a dry friction
 /// may rest at any force. It lies above the rounding of the difference quotients and below any spring.
 const FREE: f64 = 1e-9;
@@ -32,6 +34,9 @@ pub(super) fn settle(
     for _ in 0..MOST_ITERATIONS {
         let mut jacobian = differences(scales, &mut derivative, x);
         weights = row_weights(&jacobian);
+        if largest(&rate, &weights).1 < ROUNDING {
+            break;
+        }
         for (i, weight) in weights.iter().enumerate() {
             jacobian.row_mut(i).scale_mut(*weight);
         }

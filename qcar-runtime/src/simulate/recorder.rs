@@ -1,7 +1,7 @@
 //! What is recorded of a rolling model.
 
 use super::rolling::Rolling;
-use super::sampling::{AntiAlias, Grid};
+use super::sampling::Grid;
 use crate::model::Model;
 use crate::solver::{After, Event, Step, System};
 
@@ -21,6 +21,8 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     pub lift_offs: Vec<f64>,
     /// When it came back, s.
     pub landings: Vec<f64>,
+    /// Time of the last evaluation, and whether the tyre was on the ground.
+    last: (f64, bool),
 }
 
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
@@ -34,20 +36,20 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             area: samples(),
             lift_offs: Vec::new(),
             landings: Vec::new(),
+            last: (f64::NAN, true),
             grid,
         }
     }
 
     /// Each output at the samples.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
-        let filter = AntiAlias::new();
-        self.fine.iter().map(|fine| filter.decimate(fine)).collect()
+        self.fine.iter().map(|fine| self.grid.decimate(fine)).collect()
     }
 }
 
 impl<M: Model + ?Sized> System for Recorder<'_, M> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.rolling.derivative(t, x, dx);
+        self.last = (t, self.rolling.derivative(t, x, dx));
     }
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
@@ -77,7 +79,13 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 
     fn event_values(&mut self, t: f64, x: &[f64], values: &mut [f64]) {
-        values[0] = if self.rolling.touch(t, x).is_some() { 1.0 } else { -1.0 };
+        // A step's last evaluation is that at its end: there the ground need not be looked for again.
+        let grounded = if t == self.last.0 {
+            self.last.1
+        } else {
+            self.rolling.touch(t, x).is_some()
+        };
+        values[0] = if grounded { 1.0 } else { -1.0 };
         values[1] = self.rolling.to_next_step(t, x);
     }
 

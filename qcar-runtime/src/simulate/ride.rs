@@ -6,7 +6,7 @@ use super::car::Car;
 use super::failure::{SimulateError, positive};
 use super::recorder::Recorder;
 use super::rolling::Rolling;
-use super::sampling::Grid;
+use super::sampling::{AntiAlias, Grid};
 use super::settings::Settings;
 use crate::model::Model;
 use crate::road::Road;
@@ -74,7 +74,7 @@ pub fn ride<M: Model + ?Sized>(
 ) -> Result<Ride, SimulateError> {
     let tyre = car.rolling_tyre();
     drive.check(&tyre)?;
-    let grid = Grid::new(drive.sample_rate, drive.samples);
+    let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
     let start = drive.start(&tyre).min(grid.start());
     let (rolling, mut x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
     let (static_deflection, traction) = (rolling.deflection(start, &x), rolling.traction);
@@ -126,20 +126,38 @@ impl Drive<'_> {
 
     /// The longest step that cannot pass over any part of the road unseen, s.
     ///
-    /// A circle feels what is within its static patch, so a quarter of that; a point feels only the piece of road that
-    /// it is on.
+    /// A circle feels what is within its static patch, so a quarter of that; a point feels an obstacle only while it is
+    /// on it, so that several steps must fall on the shortest.
     fn longest_step(&self, tyre: &Tyre) -> f64 {
-        let piece = || {
-            self.road
-                .vertices()
-                .windows(2)
-                .map(|pair| pair[1][0] - pair[0][0])
-                .filter(|dx| *dx > 0.0)
-        };
         let length = match tyre.geometry() {
-            Geometry::Point => piece().fold(0.25 * tyre.patch(), f64::min),
-            Geometry::Area | Geometry::Radial => 0.25 * tyre.patch(),
+            Geometry::Point => shortest_obstacle(self.road).min(tyre.patch()),
+            Geometry::Area | Geometry::Radial => tyre.patch(),
         };
-        length / self.speed
+        0.25 * length / self.speed
     }
+}
+
+/// A point contact jumps at a vertical step of the road, and the accelerations with it.
+fn oversampling(tyre: &Tyre) -> usize {
+    match tyre.geometry() {
+        Geometry::Point => AntiAlias::JUMPING,
+        Geometry::Area | Geometry::Radial => AntiAlias::CONTINUOUS,
+    }
+}
+
+/// Length of the shortest part of a road that is not level, m; vertical steps aside, where the solver stops by itself.
+fn shortest_obstacle(road: &Road) -> f64 {
+    let (mut start, mut shortest) = (None, f64::INFINITY);
+    for pair in road.vertices().windows(2) {
+        let (from, to) = (pair[0], pair[1]);
+        let level = from[1] == to[1];
+        if level {
+            shortest = start
+                .take()
+                .map_or(shortest, |start: f64| shortest.min(from[0] - start));
+        } else if from[0] < to[0] {
+            start.get_or_insert(from[0]);
+        }
+    }
+    shortest
 }

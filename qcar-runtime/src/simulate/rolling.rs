@@ -103,15 +103,17 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
     }
 
-    /// `dx/dt` at time `t`.
+    /// `dx/dt` at time `t`, and whether the tyre is on the ground.
     #[inline]
-    pub fn derivative(&self, t: f64, x: &[f64], dx: &mut [f64]) {
-        let contact = self.contact(self.touch(t, x).as_ref(), x);
+    pub fn derivative(&self, t: f64, x: &[f64], dx: &mut [f64]) -> bool {
+        let touch = self.touch(t, x);
+        let contact = self.contact(touch.as_ref(), x);
         self.model
             .rolling_derivative(&self.constants, x, &self.inputs, &self.driven(contact), dx);
         for &place in &self.locked {
             dx[place] = 0.0;
         }
+        touch.is_some()
     }
 
     /// The outputs of the model at time `t`, and the contact they stem from.

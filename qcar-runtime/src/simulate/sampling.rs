@@ -4,67 +4,64 @@ use crate::solver::Step;
 
 /// The anti-alias filter: linear phase, without delay, flat within 0.02 % up to 0.4 of the sample rate.
 ///
-/// A signal is computed on a grid [`AntiAlias::OVERSAMPLING`] times finer than the sample rate and low-passed by a sinc
-/// under a Kaiser window (J. F. Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", 1974)
-/// of 80 dB. What lies above 0.6 of the sample rate is stopped, so that aliases stay above 0.4 of it. Measuring
-/// systems do the same in their converters; a model must be sampled alike where its peaks are compared with theirs.
+/// A signal is computed on a grid finer than the sample rate and low-passed by a sinc under a Kaiser window (J. F.
+/// Kaiser, "Nonrecursive digital filter design using the I0-sinh window function", 1974) of 80 dB. What lies above 0.6
+/// of the sample rate is stopped, so that aliases stay above 0.4 of it. Measuring systems do the same in their
+/// converters; a model must be sampled alike where its peaks are compared with theirs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AntiAlias {
+    oversampling: usize,
     taps: Vec<f64>,
 }
 
-impl Default for AntiAlias {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
 impl AntiAlias {
-    /// Points of the fine grid for each sample.
-    pub const OVERSAMPLING: usize = 4;
-    /// Points of the fine grid that the filter needs before and after a sample.
-    pub const REACH: usize = 52;
+    /// Points of the fine grid for each sample: enough for signals that are continuous. Over a cleat the samples stay
+    /// within 0.02 % of those from sixteen points.
+    pub const CONTINUOUS: usize = 2;
+    /// Points of the fine grid for each sample, for signals that jump.
+    pub const JUMPING: usize = 16;
+    /// How many samples the filter looks back and ahead.
+    pub const REACH: usize = 13;
 
     const ATTENUATION: f64 = 80.0;
 
-    /// The filter; it is the same for every sample rate.
-    pub fn new() -> Self {
+    /// The filter for a grid of `oversampling` points (at least 2) for each sample.
+    pub fn new(oversampling: usize) -> Self {
         let beta = 0.1102 * (Self::ATTENUATION - 8.7);
-        let reach = Self::REACH as f64;
+        let reach = (Self::REACH * oversampling) as i32;
         let tap = |i: i32| {
-            let x = f64::from(i);
+            let window = bessel_i0(beta * (1.0 - (f64::from(i) / f64::from(reach)).powi(2)).sqrt());
             // The edge of the ideal low-pass lies at half the sample rate.
-            sinc(x / Self::OVERSAMPLING as f64) * bessel_i0(beta * (1.0 - (x / reach).powi(2)).max(0.0).sqrt())
+            window * sinc(f64::from(i) / oversampling as f64)
         };
-        let taps: Vec<f64> = (-(Self::REACH as i32)..=Self::REACH as i32).map(tap).collect();
+        let taps: Vec<f64> = (-reach..=reach).map(tap).collect();
         let sum: f64 = taps.iter().sum();
-        Self {
-            taps: taps.iter().map(|tap| tap / sum).collect(),
-        }
+        let taps = taps.iter().map(|tap| tap / sum).collect();
+        Self { oversampling, taps }
     }
 
-    /// Samples of a fine signal that begins [`AntiAlias::REACH`] points before the first sample and ends as many after
-    /// the last.
+    /// Samples of a fine signal that begins [`AntiAlias::REACH`] samples before the first and ends as many after the
+    /// last.
     pub fn decimate(&self, fine: &[f64]) -> Vec<f64> {
-        fine.windows(self.taps.len())
-            .step_by(Self::OVERSAMPLING)
-            .map(|window| dot(&self.taps, window))
-            .collect()
+        let windows = fine.windows(self.taps.len()).step_by(self.oversampling);
+        windows.map(|window| dot(&self.taps, window)).collect()
     }
 }
 
 /// The fine grid of a recording, gone through step by step.
 pub(super) struct Grid {
-    spacing: f64,
+    filter: AntiAlias,
+    rate: f64,
     samples: usize,
     next: usize,
 }
 
 impl Grid {
     /// The grid for `samples` samples (at least one) at `rate` (Hz), the first at time 0.
-    pub fn new(rate: f64, samples: usize) -> Self {
+    pub fn new(rate: f64, samples: usize, oversampling: usize) -> Self {
         Self {
-            spacing: 1.0 / (rate * AntiAlias::OVERSAMPLING as f64),
+            filter: AntiAlias::new(oversampling),
+            rate,
             samples,
             next: 0,
         }
@@ -77,7 +74,7 @@ impl Grid {
 
     /// Number of points.
     pub fn points(&self) -> usize {
-        (self.samples - 1) * AntiAlias::OVERSAMPLING + 1 + 2 * AntiAlias::REACH
+        (self.samples - 1 + 2 * AntiAlias::REACH) * self.filter.oversampling + 1
     }
 
     /// Time of the first point, s.
@@ -88,6 +85,11 @@ impl Grid {
     /// Time of the last point, s.
     pub fn end(&self) -> f64 {
         self.time(self.points() - 1)
+    }
+
+    /// The samples of a signal at all points.
+    pub fn decimate(&self, fine: &[f64]) -> Vec<f64> {
+        self.filter.decimate(fine)
     }
 
     /// Times of the points that `step` reaches, each given once, and whether each is a sample.
@@ -103,13 +105,13 @@ impl Grid {
     }
 
     fn time(&self, point: usize) -> f64 {
-        self.spacing * (point as f64 - AntiAlias::REACH as f64)
+        (point as f64 / self.filter.oversampling as f64 - AntiAlias::REACH as f64) / self.rate
     }
 
     fn is_sample(&self, point: usize) -> bool {
-        let last = self.points() - 1;
-        let inside = point >= AntiAlias::REACH && point + AntiAlias::REACH <= last;
-        inside && (point - AntiAlias::REACH).is_multiple_of(AntiAlias::OVERSAMPLING)
+        let sample = point / self.filter.oversampling;
+        let inside = (AntiAlias::REACH..AntiAlias::REACH + self.samples).contains(&sample);
+        inside && point.is_multiple_of(self.filter.oversampling)
     }
 }
 
