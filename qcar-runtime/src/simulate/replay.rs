@@ -42,7 +42,14 @@ pub fn replay<M: Model + ?Sized>(
     }
     let mut constants = vec![0.0; about.constants];
     model.prepare(parameters, &mut constants);
-    let grid = Grid::new(recorded.rate(), recorded.samples());
+    let jumps = recorded.jumps();
+    // Inputs that are held make accelerations jump.
+    let oversampling = if jumps.is_empty() {
+        AntiAlias::CONTINUOUS
+    } else {
+        AntiAlias::JUMPING
+    };
+    let grid = Grid::new(recorded.rate(), recorded.samples(), oversampling);
     let span = (grid.start(), grid.end());
     let mut x = riding(model, recorded, span.0);
     let mut rig = Rig {
@@ -57,10 +64,9 @@ pub fn replay<M: Model + ?Sized>(
         room: (vec![0.0; about.states.len()], vec![0.0; about.outputs.len()]),
     };
     let longest_step = 1.0 / recorded.rate();
-    let effort = settings.integrate(about, &mut rig, span, (longest_step, &recorded.jumps()), &mut x)?;
-    let filter = AntiAlias::new();
+    let effort = settings.integrate(about, &mut rig, span, (longest_step, &jumps), &mut x)?;
     Ok(Replay {
-        outputs: rig.fine.iter().map(|fine| filter.decimate(fine)).collect(),
+        outputs: rig.fine.iter().map(|fine| rig.grid.decimate(fine)).collect(),
         states: rig.states,
         effort,
     })
