@@ -173,9 +173,9 @@ fn a_missing_mass_leaves_a_gap_around_its_mode() {
     assert!(gap.fit > 5.0 && gap.held_out > 5.0, "{} {}", gap.fit, gap.held_out);
     let strongest = &gap.tiles[0];
     assert!(
-        strongest.band.1 > 6.0 && strongest.band.0 < 14.0,
+        strongest.span.1 > 6.0 && strongest.span.0 < 14.0,
         "{:?}",
-        strongest.band
+        strongest.span
     );
 }
 

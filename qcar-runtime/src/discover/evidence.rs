@@ -6,6 +6,8 @@
 
 // Swept sines: the first harmonics at each frequency.
 mod sweep;
+// Any other excitation: the responses themselves.
+mod history;
 
 use nalgebra::Complex;
 
@@ -57,6 +59,26 @@ pub enum Stimulus {
         /// First and last frequency of the sweep, Hz.
         band: (f64, f64),
     },
+    /// Anything else, as it was recorded.
+    History {
+        /// What drove the model.
+        inputs: Recordings,
+        /// Hz.
+        rate: f64,
+        /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
+        band_limited: bool,
+        /// What sensors of position and velocity saw at first.
+        initial: Vec<(Point, f64)>,
+    },
+}
+
+/// Signals of one record; at least one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Recordings {
+    /// Time of the first sample, s.
+    pub start: f64,
+    /// The sensors with their samples.
+    pub signals: Vec<(Point, Vec<f64>)>,
 }
 
 impl Stimulus {
@@ -64,6 +86,7 @@ impl Stimulus {
     pub fn reference(&self) -> &Point {
         match self {
             Stimulus::Sweep { reference, .. } => reference,
+            Stimulus::History { inputs, .. } => &inputs.signals[0].0,
         }
     }
 }
@@ -90,6 +113,8 @@ pub struct Series {
 pub enum Kind {
     /// Responses at `order` times the frequency (Hz) of the excitation at which they stand, over its amplitude there.
     Harmonic(usize),
+    /// Samples at a time (s).
+    Time,
 }
 
 impl Kind {
@@ -97,6 +122,7 @@ impl Kind {
     pub fn complex(self) -> bool {
         match self {
             Kind::Harmonic(_) => true,
+            Kind::Time => false,
         }
     }
 
@@ -104,6 +130,7 @@ impl Kind {
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
+            Kind::Time => None,
         }
     }
 }
@@ -168,6 +195,7 @@ impl Evidence {
     fn add(&mut self, campaign: &Campaign, about: &About, run: &crate::campaign::Run) -> Result<(), InputError> {
         match &run.test {
             Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
+            Test::TimeHistory { band_limited, .. } => self.add_history(campaign, about, run, *band_limited),
             _ => Ok(()),
         }
     }
@@ -206,6 +234,15 @@ pub fn signal_of(about: &About, point: &Point) -> Signal {
         location: point.location.clone().into(),
         axis: point.axis.name().into(),
         kind,
+    }
+}
+
+/// How many times a motion has been differentiated where a sensor measures it.
+pub fn order_of(point: &Point) -> i32 {
+    match point.quantity {
+        Quantity::Acceleration => 2,
+        Quantity::Velocity => 1,
+        Quantity::Displacement | Quantity::Force => 0,
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::evidence::{Evidence, Kind};
+use super::evidence::{Evidence, Kind, Series};
 use super::predict::{PredictError, predict};
 use super::refit::{Refit, scaled};
 use crate::campaign::Role;
@@ -35,8 +35,8 @@ pub struct Tile {
     pub level: f64,
     /// Their role.
     pub role: Role,
-    /// From where to where: Hz for harmonics, a sixth of an octave wide.
-    pub band: (f64, f64),
+    /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history.
+    pub span: (f64, f64),
     /// RMS of the residuals.
     pub strength: f64,
     /// Number of the residuals.
@@ -81,36 +81,68 @@ pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
 
 /// Tiles of an octave.
 const PER_OCTAVE: f64 = 6.0;
+/// Tiles of a record.
+const PER_RECORD: f64 = 20.0;
 
 fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {
-    let mut sums: BTreeMap<(usize, i64), (f64, usize)> = BTreeMap::new();
-    for (place, series) in evidence.series.iter().enumerate() {
+    let mut tiles = Vec::new();
+    for (series, residuals) in evidence.series.iter().zip(residuals) {
+        let mut sums: BTreeMap<i64, (f64, usize)> = BTreeMap::new();
         let parts = if series.kind.complex() { 2 } else { 1 };
-        for (at, of_value) in series.at.iter().zip(residuals[place].chunks(parts)) {
-            let sum = sums
-                .entry((place, (PER_OCTAVE * at.log2()).floor() as i64))
-                .or_default();
+        for (at, of_value) in series.at.iter().zip(residuals.chunks(parts)) {
+            let sum = sums.entry(scale(series).place(*at).floor() as i64).or_default();
             sum.0 += of_value.iter().map(|residual| residual * residual).sum::<f64>();
             sum.1 += of_value.len();
         }
+        tiles.extend(sums.into_iter().map(|(place, sum)| tile(evidence, series, place, sum)));
     }
-    let tile = |((place, octave), (sum, count)): ((usize, i64), (f64, usize))| {
-        let series = &evidence.series[place];
-        let run = &evidence.runs[series.run];
-        Tile {
-            sensor: series.sensor.clone(),
-            kind: series.kind,
-            level: run.level,
-            role: run.role,
-            band: (
-                (octave as f64 / PER_OCTAVE).exp2(),
-                ((octave + 1) as f64 / PER_OCTAVE).exp2(),
-            ),
-            strength: (sum / count as f64).sqrt(),
-            count,
-        }
-    };
-    let mut tiles: Vec<Tile> = sums.into_iter().map(tile).collect();
     tiles.sort_by(|a, b| b.strength.total_cmp(&a.strength));
     tiles
+}
+
+fn tile(evidence: &Evidence, series: &Series, place: i64, (sum, count): (f64, usize)) -> Tile {
+    let run = &evidence.runs[series.run];
+    let scale = scale(series);
+    Tile {
+        sensor: series.sensor.clone(),
+        kind: series.kind,
+        level: run.level,
+        role: run.role,
+        span: (scale.value(place), scale.value(place + 1)),
+        strength: (sum / count as f64).sqrt(),
+        count,
+    }
+}
+
+/// Which tile a value belongs to.
+enum Scale {
+    Octaves,
+    /// First value and width of a tile.
+    Even(f64, f64),
+}
+
+fn scale(series: &Series) -> Scale {
+    match series.kind {
+        Kind::Harmonic(_) => Scale::Octaves,
+        Kind::Time => {
+            let (first, last) = (series.at[0], series.at[series.at.len() - 1]);
+            Scale::Even(first, ((last - first) / PER_RECORD).max(f64::MIN_POSITIVE))
+        }
+    }
+}
+
+impl Scale {
+    fn place(&self, at: f64) -> f64 {
+        match self {
+            Scale::Octaves => PER_OCTAVE * at.log2(),
+            Scale::Even(first, width) => (at - first) / width,
+        }
+    }
+
+    fn value(&self, place: i64) -> f64 {
+        match self {
+            Scale::Octaves => (place as f64 / PER_OCTAVE).exp2(),
+            Scale::Even(first, width) => first + width * place as f64,
+        }
+    }
 }

@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Series};
+use super::evidence::{Evidence, Kind, Series};
 use crate::transmissibility::Point;
 
 /// A way in which a sensor may be wrong.
@@ -120,8 +120,11 @@ impl Nuisance {
     /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
     pub fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
         let mut slopes = self.of_sensor(&series.sensor, series, 1.0, |at| series.kind.frequency(at));
-        let reference = evidence.runs[series.run].stimulus.reference();
-        slopes.extend(self.of_sensor(reference, series, -1.0, Some));
+        // What a wrong input does to a history is no factor, and parameters take it up.
+        if let Kind::Harmonic(_) = series.kind {
+            let reference = evidence.runs[series.run].stimulus.reference();
+            slopes.extend(self.of_sensor(reference, series, -1.0, Some));
+        }
         slopes
     }
 

@@ -4,6 +4,12 @@
 mod linear;
 // Swept sines by harmonic balance, where laws bend.
 mod nonlinear;
+// Recorded inputs at the nodes of an integration.
+mod input;
+// A model driven by them.
+mod replay;
+// Time histories.
+mod history;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -86,5 +92,6 @@ fn of_run(
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
         Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
+        Stimulus::History { .. } => history::history(model, values, free, evidence, run),
     }
 }

@@ -3,8 +3,8 @@
 use nalgebra::Complex;
 
 use super::{PredictError, Prediction, excitation};
-use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, signal_of};
-use crate::model::{About, Model, Quantity, SignalKind};
+use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
+use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
@@ -25,9 +25,12 @@ pub(super) fn sweep(
         frequency,
         amplitude,
         ..
-    } = &evidence.runs[run].stimulus;
+    } = &evidence.runs[run].stimulus
+    else {
+        return Ok(Vec::new());
+    };
     let excitation = excitation(model, evidence, run)?;
-    let power = order(signal_of(about, reference).kind);
+    let power = order_of(reference);
     let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
         frequency,
         amplitude,
@@ -66,14 +69,6 @@ fn groups(about: &About, values: &Values, free: &[usize]) -> Vec<Vec<usize>> {
     free.iter().map(with).collect()
 }
 
-fn order(kind: SignalKind) -> i32 {
-    match kind {
-        SignalKind::Motion(Quantity::Acceleration) => 2,
-        SignalKind::Motion(Quantity::Velocity) => 1,
-        SignalKind::Motion(Quantity::Position) | SignalKind::Force | SignalKind::Stretch => 0,
-    }
-}
-
 /// How a series is read from the cycles.
 struct Reading<'a> {
     place: usize,
@@ -87,7 +82,9 @@ struct Reading<'a> {
 impl Reading<'_> {
     /// From cycles that have its output at `column`.
     fn prediction(&self, column: usize, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
-        let Kind::Harmonic(harmonic) = self.series.kind;
+        let Kind::Harmonic(harmonic) = self.series.kind else {
+            unreachable!("a sweep has no other series")
+        };
         let at = |f: &f64| drives.iter().position(|drive| drive.frequency == *f).unwrap_or(0);
         let places: Vec<usize> = self.series.at.iter().map(at).collect();
         let scale = |place: usize| {

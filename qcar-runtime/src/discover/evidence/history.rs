@@ -1,0 +1,106 @@
+//! A time history as evidence: the responses themselves, sample by sample.
+
+use nalgebra::Complex;
+
+use super::{Evidence, Kind, Recordings, Run, Series, Stimulus, excitation_of};
+use crate::campaign::{Campaign, Quantity};
+use crate::error::InputError;
+use crate::model::About;
+use crate::spectrum::transform;
+use crate::transmissibility::{Point, points, signal};
+
+/// Share of a record at its start in which a model that started from rest has yet to find its way.
+const RUN_IN: f64 = 0.05;
+/// Values of a series: more tell the same, since neighbours in time are alike.
+const MOST: usize = 2000;
+/// Share of a response's RMS value that no calibration and no model of a real system gets right.
+const FLOOR: f64 = 0.005;
+
+impl Evidence {
+    pub(super) fn add_history(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+        band_limited: bool,
+    ) -> Result<(), InputError> {
+        let history = campaign.history(run)?;
+        let known = self.known(about, &run.file, points(&history));
+        let (inputs, responses): (Vec<_>, Vec<_>) = known
+            .into_iter()
+            .partition(|point| excitation_of(about, point).is_some());
+        if inputs.is_empty() || responses.is_empty() {
+            let missing = if inputs.is_empty() {
+                "input of the model"
+            } else {
+                "response"
+            };
+            self.notices
+                .push(format!("{}: no {missing} was recorded; the run is left out", run.file));
+            return Ok(());
+        }
+        let mut signals = Vec::new();
+        for point in inputs {
+            let samples = signal(&history, &point)?;
+            signals.push((point, samples));
+        }
+        let (place, rate) = (self.runs.len(), history.sample_rate);
+        let mut initial = Vec::new();
+        for sensor in responses {
+            let samples = signal(&history, &sensor)?;
+            if matches!(sensor.quantity, Quantity::Displacement | Quantity::Velocity) {
+                initial.push((sensor.clone(), samples[0]));
+            }
+            self.series.push(series(place, sensor, &samples, (history.start, rate)));
+        }
+        self.runs.push(Run {
+            name: run.file.clone(),
+            role: run.role,
+            level: rms(&signals[0].1),
+            stimulus: Stimulus::History {
+                inputs: Recordings {
+                    start: history.start,
+                    signals,
+                },
+                rate,
+                band_limited,
+                initial,
+            },
+        });
+        Ok(())
+    }
+}
+
+fn series(run: usize, sensor: Point, samples: &[f64], (start, rate): (f64, f64)) -> Series {
+    let first = (RUN_IN * samples.len() as f64) as usize;
+    let step = (samples.len() - first).div_ceil(MOST);
+    let places: Vec<usize> = (first..samples.len()).step_by(step).collect();
+    let sigma = noise(samples).hypot(FLOOR * rms(samples));
+    Series {
+        run,
+        sensor,
+        kind: Kind::Time,
+        at: places.iter().map(|&k| start + k as f64 / rate).collect(),
+        value: places.iter().map(|&k| Complex::from(samples[k])).collect(),
+        sigma: vec![sigma; places.len()],
+    }
+}
+
+/// The standard deviation of white noise with the power of the highest tenth of the spectrum.
+fn noise(samples: &[f64]) -> f64 {
+    const HIGHEST: f64 = 0.9;
+    let lines = transform(samples);
+    let mut power: Vec<f64> = lines[(HIGHEST * lines.len() as f64) as usize..]
+        .iter()
+        .map(|line| line.norm_sqr())
+        .collect();
+    let middle = power.len() / 2;
+    // Powers of lines of noise are distributed exponentially: their median is ln 2 of their mean.
+    let mean = *power.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2;
+    (mean / samples.len() as f64).sqrt()
+}
+
+fn rms(samples: &[f64]) -> f64 {
+    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
+    (samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
+}

@@ -1,0 +1,159 @@
+//! Time histories: the model is driven by what was recorded, and its sensors are read at the same instants.
+
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+use super::input::{Between, Recorded};
+use super::replay::{Reading, Replay, reading};
+use super::{PredictError, Prediction};
+use crate::campaign::Quantity;
+use crate::discover::evidence::{Evidence, Stimulus, excitation_of, order_of, signal_of};
+use crate::model::{About, Model, StateKind};
+use crate::response::parameters::Values;
+use crate::response::signal::SignalError;
+use crate::transmissibility::Point;
+
+/// Relative change of a parameter for its difference: the root of what rounding leaves of a replay.
+const DIFFERENCE: f64 = 1e-5;
+
+pub(super) fn history(
+    model: &dyn Model,
+    values: &Values,
+    free: &[usize],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let Stimulus::History { inputs, rate, .. } = &evidence.runs[run].stimulus else {
+        return Ok(Vec::new());
+    };
+    let series: Vec<_> = evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| series.run == run)
+        .collect();
+    let replay = prepare(
+        model,
+        evidence,
+        run,
+        &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
+    )?;
+    let start = inputs.start;
+    let shifts: Vec<Option<usize>> = std::iter::once(None).chain(free.iter().copied().map(Some)).collect();
+    let runs: Vec<(f64, Vec<Vec<f64>>)> = shifts
+        .par_iter()
+        .map(|shift| {
+            let mut values = values.clone();
+            let step = shift.map_or(1.0, |parameter| {
+                let value = values.as_slice()[parameter];
+                let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE.sqrt());
+                values.set(parameter, value + step);
+                step
+            });
+            (step, replay.run(values.as_slice()))
+        })
+        .collect();
+    let at = |t: &f64| ((t - start) * rate).round() as usize;
+    let predict = |(column, (place, series)): (usize, &(usize, &crate::discover::evidence::Series))| {
+        let read = |signal: &[f64]| -> Vec<f64> { series.at.iter().map(|t| signal[at(t)]).collect() };
+        let value = read(&runs[0].1[column]);
+        let slope = |(step, signals): &(f64, Vec<Vec<f64>>)| {
+            let moved = read(&signals[column]);
+            moved
+                .iter()
+                .zip(&value)
+                .map(|(moved, value)| Complex::from((moved - value) / step))
+                .collect()
+        };
+        Prediction {
+            series: *place,
+            slopes: runs[1..].iter().map(slope).collect(),
+            value: value.iter().map(|&value| Complex::from(value)).collect(),
+        }
+    };
+    Ok(series.iter().enumerate().map(predict).collect())
+}
+
+/// The replay of a run, read by some sensors.
+fn prepare<'m>(
+    model: &'m dyn Model,
+    evidence: &Evidence,
+    run: usize,
+    sensors: &[&Point],
+) -> Result<Replay<'m>, PredictError> {
+    let about = model.about();
+    let Stimulus::History {
+        inputs,
+        rate,
+        band_limited,
+        initial,
+    } = &evidence.runs[run].stimulus
+    else {
+        return Err(no_input(
+            about,
+            evidence,
+            run,
+            &evidence.runs[run].stimulus.reference().location,
+        ));
+    };
+    let mut recorded = Vec::new();
+    for (point, samples) in &inputs.signals {
+        let excitation = excitation_of(about, point).ok_or_else(|| no_input(about, evidence, run, &point.location))?;
+        recorded.push(Recorded {
+            excitation,
+            power: order_of(point),
+            samples,
+        });
+    }
+    let readings: Vec<Reading> = sensors
+        .iter()
+        .map(|sensor| reading(about, &signal_of(about, sensor)))
+        .collect::<Result<_, SignalError>>()?;
+    let how = Between {
+        rate: *rate,
+        band_limited: *band_limited,
+        band: (0.0, *rate),
+        nodes: 0,
+    };
+    Ok(Replay::new(
+        model,
+        &recorded,
+        how,
+        steps(*rate),
+        start(about, initial),
+        readings,
+    ))
+}
+
+/// Steps of at most a millisecond, and at least two a sample.
+fn steps(rate: f64) -> usize {
+    const LONGEST: f64 = 1e-3;
+    ((1.0 / (rate * LONGEST)).ceil() as usize).max(2)
+}
+
+/// At rest, each mass where its sensor saw it at first.
+fn start(about: &About, initial: &[(Point, f64)]) -> Vec<f64> {
+    let value = |state: &crate::model::State| {
+        let here = |point: &Point| {
+            let kind = match point.quantity {
+                Quantity::Displacement => StateKind::Position,
+                Quantity::Velocity => StateKind::Velocity,
+                Quantity::Acceleration | Quantity::Force => return false,
+            };
+            kind == state.kind && point.location == state.location && point.axis.name() == state.axis
+        };
+        initial
+            .iter()
+            .find(|(point, _)| here(point))
+            .map_or(0.0, |(_, value)| *value)
+    };
+    about.states.iter().map(value).collect()
+}
+
+fn no_input(about: &About, evidence: &Evidence, run: usize, location: &str) -> PredictError {
+    PredictError::NoInput {
+        model: about.name.to_string(),
+        location: location.to_owned(),
+        run: evidence.runs[run].name.clone(),
+    }
+}
