@@ -17,4 +17,5 @@ pub mod gap;
 
 pub use evidence::Evidence;
 pub use gap::Gap;
-pub use refit::{Free, Refit, refit};
+pub use predict::Free;
+pub use refit::{Refit, refit};

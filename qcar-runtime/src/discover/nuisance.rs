@@ -3,7 +3,8 @@
 //! A calibrated accelerometer is off by 0.5 to 1 % in gain and by a few tenths of a degree in phase, smoothly in
 //! frequency. Taken as noise, such an error would look like a hundred independent proofs of some small effect; taken as
 //! an unknown of the sensor, it is estimated along with the parameters, and only what no calibration can explain is a
-//! gap. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`.
+//! gap. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
+//! in a time history there is an offset too.
 
 use std::f64::consts::TAU;
 
@@ -30,13 +31,16 @@ pub enum Form {
     Phase(usize),
     /// A delay, s.
     Delay,
+    /// What the sensor of a time history reads at zero, relative to the RMS value of what it reads.
+    Offset,
 }
 
-/// Prior of a sensor: 0.7 % of gain in all, its half in what varies with frequency; 0.2° of phase and 50 µs of delay.
+/// Prior of a sensor: 0.7 % of gain in all, its half in what varies with frequency; 0.2° of phase and 50 µs of delay; a
+/// tenth of what is read for the offset of a history.
 ///
 /// Thesis section 3.4 has capacitive accelerometers; their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
-pub const SENSOR: [Shape; 6] = [
+pub const SENSOR: [Shape; 7] = [
     Shape {
         form: Form::Gain(0),
         sigma: 0.007,
@@ -61,7 +65,22 @@ pub const SENSOR: [Shape; 6] = [
         form: Form::Delay,
         sigma: 5e-5,
     },
+    Shape {
+        form: Form::Offset,
+        sigma: 0.1,
+    },
 ];
+
+/// A predicted series as a sensor with errors shows it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    /// The values.
+    pub value: Vec<Complex<f64>>,
+    /// By how much the prediction counts in each of them.
+    pub factor: Vec<Complex<f64>>,
+    /// Their derivatives along the coefficients, by place.
+    pub slopes: Vec<(usize, Vec<Complex<f64>>)>,
+}
 
 /// The systematic errors of all sensors of the evidence.
 #[derive(Clone, Debug, PartialEq)]
@@ -115,45 +134,79 @@ impl Nuisance {
             .collect()
     }
 
+    /// What a sensor with errors of these coefficients shows of a predicted series.
+    pub fn show(&self, evidence: &Evidence, series: &Series, value: &[Complex<f64>], coefficients: &[f64]) -> Shown {
+        let logarithmic = self.slopes(evidence, series);
+        let mut exponent = vec![Complex::ZERO; value.len()];
+        for (k, slope) in &logarithmic {
+            exponent
+                .iter_mut()
+                .zip(slope)
+                .for_each(|(sum, slope)| *sum += slope * coefficients[*k]);
+        }
+        let factor: Vec<Complex<f64>> = exponent.into_iter().map(|exponent| exponent.exp()).collect();
+        let scaled: Vec<Complex<f64>> = value
+            .iter()
+            .zip(&factor)
+            .map(|(value, factor)| value * factor)
+            .collect();
+        let along = |slope: Vec<Complex<f64>>| slope.iter().zip(&scaled).map(|(slope, value)| slope * value).collect();
+        let mut slopes: Vec<_> = logarithmic.into_iter().map(|(k, slope)| (k, along(slope))).collect();
+        let offset = self.offset(series);
+        let added = offset.map_or(0.0, |(k, unit)| unit * coefficients[k]);
+        slopes.extend(offset.map(|(k, unit)| (k, vec![Complex::from(unit); value.len()])));
+        Shown {
+            value: scaled.iter().map(|value| value + added).collect(),
+            factor,
+            slopes,
+        }
+    }
+
+    /// The coefficient of a history's offset, and what one of it adds.
+    fn offset(&self, series: &Series) -> Option<(usize, f64)> {
+        let place = self.sensors.iter().position(|s| *s == series.sensor)?;
+        let form = SENSOR.iter().position(|shape| shape.form == Form::Offset)?;
+        let power: f64 = series.value.iter().map(|value| value.norm_sqr()).sum();
+        let rms = (power / series.value.len() as f64).sqrt();
+        (series.kind == Kind::Time).then_some((place * SENSOR.len() + form, rms))
+    }
+
     /// For each value of a series, what each of the coefficients adds to its logarithm.
     ///
     /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
-    pub fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
-        let mut slopes = self.of_sensor(&series.sensor, series, 1.0, |at| series.kind.frequency(at));
-        // What a wrong input does to a history is no factor, and parameters take it up.
-        if let Kind::Harmonic(_) = series.kind {
-            let reference = evidence.runs[series.run].stimulus.reference();
-            slopes.extend(self.of_sensor(reference, series, -1.0, Some));
-        }
+    fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
+        // Over time a gain is what parameters are too: it stays with the uncertainty of the values.
+        let Kind::Harmonic(order) = series.kind else {
+            return Vec::new();
+        };
+        let reference = evidence.runs[series.run].stimulus.reference();
+        let mut slopes = self.of_sensor(&series.sensor, series, 1.0, order as f64);
+        slopes.extend(self.of_sensor(reference, series, -1.0, 1.0));
         slopes
     }
 
-    fn of_sensor(
-        &self,
-        sensor: &Point,
-        series: &Series,
-        sign: f64,
-        frequency: impl Fn(f64) -> Option<f64>,
-    ) -> Vec<(usize, Vec<Complex<f64>>)> {
+    /// Of the errors of one sensor, read at so many times the frequency of the series.
+    fn of_sensor(&self, sensor: &Point, series: &Series, sign: f64, times: f64) -> Vec<(usize, Vec<Complex<f64>>)> {
         let Some(place) = self.sensors.iter().position(|s| s == sensor) else {
             return Vec::new();
         };
         let column = |(k, shape): (usize, &Shape)| {
-            let slope = series.at.iter().map(|&at| sign * self.shape(shape.form, frequency(at)));
+            let slope = series.at.iter().map(|&at| sign * self.shape(shape.form, times * at));
             (place * SENSOR.len() + k, slope.collect())
         };
-        SENSOR.iter().enumerate().map(column).collect()
+        let factors = SENSOR
+            .iter()
+            .enumerate()
+            .filter(|(_, shape)| shape.form != Form::Offset);
+        factors.map(column).collect()
     }
 
-    /// Without a frequency, as in a time history, only a gain remains.
-    fn shape(&self, form: Form, frequency: Option<f64>) -> Complex<f64> {
-        let Some(f) = frequency else {
-            return Complex::from(if form == Form::Gain(0) { 1.0 } else { 0.0 });
-        };
+    fn shape(&self, form: Form, f: f64) -> Complex<f64> {
         match form {
             Form::Gain(degree) => Complex::from(self.chebyshev(degree, f)),
             Form::Phase(degree) => Complex::I * self.chebyshev(degree, f),
             Form::Delay => -Complex::I * TAU * f,
+            Form::Offset => unreachable!("an offset is no factor"),
         }
     }
 

@@ -21,6 +21,17 @@ use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
 
+/// A parameter that may move.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Free {
+    /// Its place among the parameters of the model; one that leads its ties.
+    pub parameter: usize,
+    /// Lowest value.
+    pub lower: f64,
+    /// Highest value.
+    pub upper: f64,
+}
+
 /// What a model says of one series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
@@ -52,14 +63,14 @@ pub enum PredictError {
     },
 }
 
-/// Predicts all series of the runs of one role; `free` are the leading parameters along which to differentiate.
+/// Predicts all series of the runs of one role; differentiated along `free`.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
 pub fn predict(
     model: &dyn Model,
     values: &Values,
-    free: &[usize],
+    free: &[Free],
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
@@ -85,7 +96,7 @@ fn excitation(model: &dyn Model, evidence: &Evidence, run: usize) -> Result<usiz
 fn of_run(
     model: &dyn Model,
     values: &Values,
-    free: &[usize],
+    free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {

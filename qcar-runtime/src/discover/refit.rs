@@ -7,23 +7,12 @@ use nalgebra::{Complex, DMatrix};
 
 use super::evidence::{Evidence, Series};
 use super::nuisance::Nuisance;
-use super::predict::{PredictError, Prediction, predict};
+use super::predict::{Free, PredictError, Prediction, predict};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
-
-/// A parameter that may move.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Free {
-    /// Its place among the parameters of the model; one that leads its ties.
-    pub parameter: usize,
-    /// Lowest value.
-    pub lower: f64,
-    /// Highest value.
-    pub upper: f64,
-}
 
 /// The explanation that was found.
 #[derive(Clone, Debug)]
@@ -62,18 +51,10 @@ impl Refit {
 
     /// What the sensors would have shown of a prediction.
     pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
-        let factor = factor(
-            &self.nuisance,
-            &self.coefficients,
-            evidence,
-            &evidence.series[prediction.series],
-        );
-        prediction
+        let series = &evidence.series[prediction.series];
+        self.nuisance
+            .show(evidence, series, &prediction.value, &self.coefficients)
             .value
-            .iter()
-            .zip(factor)
-            .map(|(value, factor)| value * factor)
-            .collect()
     }
 }
 
@@ -134,18 +115,6 @@ fn spread(information: &Information, count: usize) -> DMatrix<f64> {
     })
 }
 
-/// The factor by which the sensors of a series are wrong.
-fn factor(nuisance: &Nuisance, coefficients: &[f64], evidence: &Evidence, series: &Series) -> Vec<Complex<f64>> {
-    let mut exponent = vec![Complex::ZERO; series.at.len()];
-    for (k, slope) in nuisance.slopes(evidence, series) {
-        exponent
-            .iter_mut()
-            .zip(slope)
-            .for_each(|(sum, slope)| *sum += slope * coefficients[k]);
-    }
-    exponent.into_iter().map(|exponent| exponent.exp()).collect()
-}
-
 /// The real residuals of a series: each complex one as its parts, in units of the standard deviation of a part.
 pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
     let complex = series.kind.complex();
@@ -163,7 +132,7 @@ pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>
 struct Posterior<'a> {
     model: &'a dyn Model,
     values: Values,
-    free: Vec<usize>,
+    free: Vec<Free>,
     evidence: &'a Evidence,
     nuisance: Nuisance,
     sigmas: Vec<f64>,
@@ -176,7 +145,7 @@ impl<'a> Posterior<'a> {
         Self {
             model,
             values,
-            free: free.iter().map(|free| free.parameter).collect(),
+            free: free.to_vec(),
             evidence,
             sigmas: nuisance.sigmas(),
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
@@ -185,43 +154,38 @@ impl<'a> Posterior<'a> {
     }
 
     fn move_to(&mut self, x: &[f64]) {
-        for (&parameter, &value) in self.free.iter().zip(x) {
-            self.values.set(parameter, value);
+        for (free, &value) in self.free.iter().zip(x) {
+            self.values.set(free.parameter, value);
         }
     }
 
     /// Adds the rows of one prediction to columns that grow together.
     fn rows(&self, prediction: &Prediction, coefficients: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
-        let factor = factor(&self.nuisance, coefficients, self.evidence, series);
-        let shown: Vec<_> = prediction
-            .value
-            .iter()
-            .zip(&factor)
-            .map(|(value, factor)| value * factor)
-            .collect();
+        let shown = self
+            .nuisance
+            .show(self.evidence, series, &prediction.value, coefficients);
         scaled(
             series,
             series
                 .value
                 .iter()
-                .zip(&shown)
+                .zip(&shown.value)
                 .map(|(measured, shown)| measured - shown),
             residual,
         );
         for (column, slope) in columns.iter_mut().zip(&prediction.slopes) {
             scaled(
                 series,
-                slope.iter().zip(&factor).map(|(slope, factor)| -slope * factor),
+                slope.iter().zip(&shown.factor).map(|(slope, factor)| -slope * factor),
                 column,
             );
         }
-        for (k, slope) in self.nuisance.slopes(self.evidence, series) {
-            let column = &mut columns[self.free.len() + k];
+        for (k, slope) in shown.slopes {
             scaled(
                 series,
-                slope.iter().zip(&shown).map(|(slope, shown)| -slope * shown),
-                column,
+                slope.iter().map(|slope| -slope),
+                &mut columns[self.free.len() + k],
             );
         }
         for column in columns {

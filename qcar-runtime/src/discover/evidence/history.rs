@@ -11,6 +11,8 @@ use crate::transmissibility::{Point, points, signal};
 
 /// Share of a record at its start in which a model that started from rest has yet to find its way.
 const RUN_IN: f64 = 0.05;
+/// Share of a record at its end, beyond which inputs are not known that a band limit needs.
+const RUN_OUT: f64 = 0.02;
 /// Values of a series: more tell the same, since neighbours in time are alike.
 const MOST: usize = 2000;
 /// Share of a response's RMS value that no calibration and no model of a real system gets right.
@@ -73,8 +75,8 @@ impl Evidence {
 
 fn series(run: usize, sensor: Point, samples: &[f64], (start, rate): (f64, f64)) -> Series {
     let first = (RUN_IN * samples.len() as f64) as usize;
-    let step = (samples.len() - first).div_ceil(MOST);
-    let places: Vec<usize> = (first..samples.len()).step_by(step).collect();
+    let last = samples.len() - (RUN_OUT * samples.len() as f64) as usize;
+    let places: Vec<usize> = (first..last).step_by((last - first).div_ceil(MOST)).collect();
     let sigma = noise(samples).hypot(FLOOR * rms(samples));
     Series {
         run,

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::input::{Between, Recorded};
 use super::replay::{Reading, Replay, reading};
-use super::{PredictError, Prediction};
+use super::{Free, PredictError, Prediction};
 use crate::campaign::Quantity;
 use crate::discover::evidence::{Evidence, Stimulus, excitation_of, order_of, signal_of};
 use crate::model::{About, Model, StateKind};
@@ -13,13 +13,15 @@ use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
 use crate::transmissibility::Point;
 
-/// Relative change of a parameter for its difference: the root of what rounding leaves of a replay.
+/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: the root of
+/// what rounding leaves of a replay.
 const DIFFERENCE: f64 = 1e-5;
+const PART_OF_RANGE: f64 = 1e-3;
 
 pub(super) fn history(
     model: &dyn Model,
     values: &Values,
-    free: &[usize],
+    free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
@@ -39,15 +41,15 @@ pub(super) fn history(
         &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
     )?;
     let start = inputs.start;
-    let shifts: Vec<Option<usize>> = std::iter::once(None).chain(free.iter().copied().map(Some)).collect();
+    let shifts: Vec<Option<&Free>> = std::iter::once(None).chain(free.iter().map(Some)).collect();
     let runs: Vec<(f64, Vec<Vec<f64>>)> = shifts
         .par_iter()
         .map(|shift| {
             let mut values = values.clone();
-            let step = shift.map_or(1.0, |parameter| {
-                let value = values.as_slice()[parameter];
-                let step = DIFFERENCE * value.abs().max(f64::MIN_POSITIVE.sqrt());
-                values.set(parameter, value + step);
+            let step = shift.map_or(1.0, |free| {
+                let value = values.as_slice()[free.parameter];
+                let step = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower));
+                values.set(free.parameter, value + step);
                 step
             });
             (step, replay.run(values.as_slice()))
@@ -75,12 +77,12 @@ pub(super) fn history(
 }
 
 /// The replay of a run, read by some sensors.
-fn prepare<'m>(
-    model: &'m dyn Model,
-    evidence: &Evidence,
+fn prepare<'a>(
+    model: &'a dyn Model,
+    evidence: &'a Evidence,
     run: usize,
     sensors: &[&Point],
-) -> Result<Replay<'m>, PredictError> {
+) -> Result<Replay<'a>, PredictError> {
     let about = model.about();
     let Stimulus::History {
         inputs,
@@ -115,20 +117,7 @@ fn prepare<'m>(
         band: (0.0, *rate),
         nodes: 0,
     };
-    Ok(Replay::new(
-        model,
-        &recorded,
-        how,
-        steps(*rate),
-        start(about, initial),
-        readings,
-    ))
-}
-
-/// Steps of at most a millisecond, and at least two a sample.
-fn steps(rate: f64) -> usize {
-    const LONGEST: f64 = 1e-3;
-    ((1.0 / (rate * LONGEST)).ceil() as usize).max(2)
+    Ok(Replay::new(model, recorded, how, start(about, initial), readings))
 }
 
 /// At rest, each mass where its sensor saw it at first.

@@ -9,7 +9,7 @@ use crate::model::{About, InputKind, Quantity};
 use crate::spectrum::transform;
 
 /// What was recorded of an excitation.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct Recorded<'a> {
     /// The model's excitation.
     pub excitation: usize,
@@ -61,21 +61,63 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 
 /// The derivative (or integral, below zero) of this order, by the spectrum.
 ///
-/// An integral begins at zero: a constant of integration moves road and masses alike.
+/// The straight line between the ends goes its own way: without it a record that does not end where it began would
+/// ring. An integral begins at zero, since its constant moves road and masses alike.
 fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
+    let line = if power < 0 {
+        Line::default()
+    } else {
+        Line::through_ends(samples, how.rate)
+    };
+    let bent: Vec<f64> = samples
+        .iter()
+        .enumerate()
+        .map(|(k, y)| y - line.at(k as f64 / how.rate))
+        .collect();
+    let mut row = differentiated(&bent, power, how);
+    let step = 1.0 / (how.rate * how.nodes as f64);
+    let first = if power < 0 { row[0] } else { 0.0 };
+    for (k, value) in row.iter_mut().enumerate() {
+        *value += match power {
+            0 => line.at(k as f64 * step),
+            1 => line.slope,
+            _ => -first,
+        };
+    }
+    row
+}
+
+/// A straight line over time.
+#[derive(Default)]
+struct Line {
+    start: f64,
+    slope: f64,
+}
+
+impl Line {
+    /// Through the first sample and the one that would follow the last, if the record went on as it began.
+    fn through_ends(samples: &[f64], rate: f64) -> Self {
+        let (start, end) = (samples[0], samples[samples.len() - 1]);
+        Self {
+            start,
+            slope: (end - start) * rate / (samples.len() - 1) as f64,
+        }
+    }
+
+    fn at(&self, t: f64) -> f64 {
+        self.start + self.slope * t
+    }
+}
+
+fn differentiated(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
     let line = how.rate / samples.len() as f64;
     let count = samples.len() * how.nodes;
     let mut fine = vec![Complex::ZERO; count / 2 + 1];
     for (k, value) in transform(samples).into_iter().enumerate() {
         let f = k as f64 * line;
-        let inside = f >= how.band.0 && f <= how.band.1 && (k > 0 || power >= 0);
-        if inside {
-            let differentiate = if power == 0 {
-                Complex::ONE
-            } else {
-                Complex::new(0.0, TAU * f).powi(power)
-            };
-            fine[k] = value * differentiate / samples.len() as f64;
+        let rate = Complex::new(0.0, TAU * f);
+        if f >= how.band.0 && f <= how.band.1 && (k > 0 || power == 0) {
+            fine[k] = value / samples.len() as f64 * if power == 0 { Complex::ONE } else { rate.powi(power) };
         }
     }
     let plan = RealFftPlanner::new().plan_fft_inverse(count);
@@ -86,9 +128,5 @@ fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
     }
     plan.process(&mut fine, &mut row)
         .expect("the plan was made for these lengths");
-    if power < 0 {
-        let first = row[0];
-        row.iter_mut().for_each(|value| *value -= first);
-    }
     row
 }

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::{PredictError, Prediction, excitation};
+use super::{Free, PredictError, Prediction, excitation};
 use crate::discover::evidence::{Evidence, Kind, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -11,7 +11,7 @@ use crate::response::ratio::ratio;
 pub(super) fn sweep(
     model: &dyn Model,
     values: &Values,
-    free: &[usize],
+    free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
@@ -31,8 +31,8 @@ pub(super) fn sweep(
         }
         let above = signal_of(about, &series.sensor);
         let ratio = ratio(model, values, excitation, &above, &below, &series.at)?;
-        let slope = |parameter: &usize| {
-            let found = ratio.jacobian.iter().find(|(leader, _)| leader == parameter);
+        let slope = |free: &Free| {
+            let found = ratio.jacobian.iter().find(|(leader, _)| *leader == free.parameter);
             found.map_or_else(|| vec![Complex::ZERO; series.at.len()], |(_, slope)| slope.clone())
         };
         predictions.push(Prediction {

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::{PredictError, Prediction, excitation};
+use super::{Free, PredictError, Prediction, excitation};
 use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -15,7 +15,7 @@ const HARMONICS: usize = 5;
 pub(super) fn sweep(
     model: &dyn Model,
     values: &Values,
-    free: &[usize],
+    free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
@@ -60,10 +60,10 @@ pub(super) fn sweep(
 }
 
 /// For each free parameter those that move with it.
-fn groups(about: &About, values: &Values, free: &[usize]) -> Vec<Vec<usize>> {
-    let with = |&leader: &usize| {
+fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
+    let with = |free: &Free| {
         (0..about.parameters.len())
-            .filter(|&k| values.leader(k) == leader)
+            .filter(|&k| values.leader(k) == free.parameter)
             .collect()
     };
     free.iter().map(with).collect()

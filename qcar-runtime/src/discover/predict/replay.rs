@@ -3,6 +3,8 @@
 //! Inputs are known at nodes that are half a step apart, so that the classical Runge-Kutta method never has to guess
 //! between them, and the same record costs the same time for every parameter set.
 
+use std::sync::OnceLock;
+
 use super::input::{Between, Recorded, rows};
 use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, output_of};
@@ -17,74 +19,113 @@ pub enum Reading {
 }
 
 /// A replay of one record, whatever the parameters.
-pub struct Replay<'m> {
-    model: &'m dyn Model,
-    /// For each node the inputs.
-    inputs: Vec<Vec<f64>>,
-    /// s.
-    step: f64,
-    /// Steps for each sample.
-    steps: usize,
-    samples: usize,
+pub struct Replay<'a> {
+    model: &'a dyn Model,
+    recorded: Vec<Recorded<'a>>,
+    how: Between,
     /// States at the start.
     start: Vec<f64>,
     readings: Vec<Reading>,
+    /// For each fineness that was needed, the inputs at each node.
+    nodes: [OnceLock<Vec<Vec<f64>>>; FINER.len()],
 }
 
-impl<'m> Replay<'m> {
-    /// Prepares a replay in which each sample is `steps` steps long; `how.nodes` is overruled.
+/// How many times finer the steps are taken when a replay runs away: laws may be stiffer than any sampling foresees.
+const FINER: [usize; 3] = [1, 4, 16];
+
+impl<'a> Replay<'a> {
+    /// Prepares a replay; the nodes of `how` are overruled.
     pub fn new(
-        model: &'m dyn Model,
-        recorded: &[Recorded],
+        model: &'a dyn Model,
+        recorded: Vec<Recorded<'a>>,
         how: Between,
-        steps: usize,
         start: Vec<f64>,
         readings: Vec<Reading>,
     ) -> Self {
-        let how = Between {
-            nodes: 2 * steps,
-            ..how
-        };
-        let rows = rows(model.about(), recorded, &how);
-        let nodes = rows.first().map_or(0, Vec::len);
         Self {
             model,
-            inputs: (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect(),
-            step: 1.0 / (how.rate * steps as f64),
-            steps,
-            samples: nodes / how.nodes,
+            recorded,
+            how,
             start,
             readings,
+            nodes: Default::default(),
         }
     }
 
-    /// For each reading its samples; not finite from where the model has run away.
+    /// For each reading its samples; not finite from where the model runs away even at the finest steps.
     pub fn run(&self, p: &[f64]) -> Vec<Vec<f64>> {
+        let mut signals = Vec::new();
+        for (nodes, finer) in self.nodes.iter().zip(FINER) {
+            let steps = steps(self.how.rate) * finer;
+            let inputs = nodes.get_or_init(|| self.inputs(steps));
+            signals = self.advance(p, inputs, steps);
+            if signals
+                .iter()
+                .all(|signal| signal.last().is_some_and(|last| last.is_finite()))
+            {
+                break;
+            }
+        }
+        signals
+    }
+
+    /// For each node the inputs of the model.
+    fn inputs(&self, steps: usize) -> Vec<Vec<f64>> {
+        let how = Between {
+            nodes: 2 * steps,
+            ..self.how
+        };
+        let rows = rows(self.model.about(), &self.recorded, &how);
+        let nodes = rows.first().map_or(0, Vec::len);
+        (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
+    }
+
+    fn advance(&self, p: &[f64], inputs: &[Vec<f64>], steps: usize) -> Vec<Vec<f64>> {
         let about = self.model.about();
         let mut constants = vec![0.0; about.constants];
         self.model.prepare(p, &mut constants);
         let mut x = self.start.clone();
         let mut y = vec![0.0; about.outputs.len()];
         let mut stages = Stages::new(x.len());
-        let mut signals = vec![Vec::with_capacity(self.samples); self.readings.len()];
-        for sample in 0..self.samples {
-            let first = 2 * self.steps * sample;
-            self.model.outputs(&constants, &x, &self.inputs[first], &mut y);
+        let h = 1.0 / (self.how.rate * steps as f64);
+        let mut signals = vec![Vec::new(); self.readings.len()];
+        for sample in inputs.chunks(2 * steps).enumerate() {
+            let first = 2 * steps * sample.0;
+            self.model.outputs(&constants, &x, &inputs[first], &mut y);
             for (signal, reading) in signals.iter_mut().zip(&self.readings) {
                 signal.push(match *reading {
                     Reading::Output(output) => y[output],
                     Reading::State(state) => x[state],
                 });
             }
-            for step in 0..self.steps {
-                let node = first + 2 * step;
-                let end = (node + 2).min(self.inputs.len() - 1);
-                let inputs = [node, node + 1, end].map(|node| self.inputs[node].as_slice());
-                stages.advance(self.model, &constants, inputs, self.step, &mut x);
+            for node in (first..first + sample.1.len()).step_by(2) {
+                let nodes = [node, node + 1, self.end(node, inputs.len())];
+                stages.advance(
+                    self.model,
+                    &constants,
+                    nodes.map(|node| inputs[node].as_slice()),
+                    h,
+                    &mut x,
+                );
             }
         }
         signals
     }
+
+    /// The node at which a step ends; what is held stays until the next sample replaces it.
+    fn end(&self, node: usize, count: usize) -> usize {
+        if self.how.band_limited {
+            (node + 2).min(count - 1)
+        } else {
+            node + 1
+        }
+    }
+}
+
+/// Steps of at most a millisecond, and at least four a sample, whose band may reach up to half its rate.
+fn steps(rate: f64) -> usize {
+    const LONGEST: f64 = 1e-3;
+    ((1.0 / (rate * LONGEST)).ceil() as usize).max(4)
 }
 
 /// Where a sensor's signal is found.
