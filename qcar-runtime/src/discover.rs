@@ -14,8 +14,11 @@ pub mod predict;
 pub mod refit;
 // What is left, in units of uncertainty: how much, and where.
 pub mod gap;
+// What would have to be added, and at which place.
+pub mod kappa;
 
 pub use evidence::Evidence;
 pub use gap::Gap;
+pub use kappa::{Kappa, Place, kappa_map};
 pub use predict::Free;
 pub use refit::{Refit, refit};

@@ -6,7 +6,7 @@ mod strut;
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::evidence::{Evidence, Kind, Run, Series, Stimulus};
-use qcar_runtime::discover::{Free, Gap, Refit, refit};
+use qcar_runtime::discover::{Free, Gap, Place, Refit, kappa_map, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
@@ -190,4 +190,41 @@ fn held_out_runs_are_not_seen_by_the_fit() {
     let (after, gap) = fitted(&model, &evidence);
     assert_eq!(before.estimate, after.estimate);
     assert!(gap.held_out > 100.0);
+}
+
+/// A spring of 30 N/mm in parallel to the sub-spring: κ is 30 N/mm at every frequency, whatever the size of the change.
+#[test]
+fn kappa_is_the_stiffness_that_was_taken_away() {
+    let model = Strut::new(PLAIN);
+    let mut real = TRUTH;
+    real[3] += 30e3;
+    let evidence = evidence(&model, &real, |_, _| 1.0);
+    let base = refit(&model, &resolve(&model, &TRUTH), &[], &evidence.tolerant(0.05)).expect("sensors are there");
+    let base = Refit {
+        coefficients: vec![0.0; base.coefficients.len()],
+        ..base
+    };
+    let map = kappa_map(&model, &base, &evidence).expect("sensors are there");
+    let spring = map
+        .iter()
+        .find(|kappa| kappa.place == Place::Parameter(3))
+        .expect("channels see the spring");
+    assert!(
+        spring.ceiling > 0.99 && spring.ceiling > map[0].ceiling - 0.002,
+        "{}",
+        spring.ceiling
+    );
+    let run = &spring.runs[0];
+    for ((f, kappa), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
+        assert!(
+            (kappa - 30e3).norm() < 4.0 * sigma + 600.0,
+            "{kappa} ± {sigma} N/m at {f} Hz"
+        );
+        assert!(*f > 4.0 || *sigma < 3e3, "± {sigma} N/m at {f} Hz");
+    }
+    let sensor = map
+        .iter()
+        .find(|kappa| kappa.place == Place::Sensor(point("body")))
+        .expect("it was measured");
+    assert!(sensor.ceiling < 0.9, "{}", sensor.ceiling);
 }

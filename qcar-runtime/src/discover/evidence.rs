@@ -177,6 +177,16 @@ impl Evidence {
         series.filter(move |(_, series)| self.runs[series.run].role == role)
     }
 
+    /// The same with this share of every value added to its uncertainty: for a model that is known to lack something.
+    pub fn tolerant(&self, share: f64) -> Self {
+        let mut tolerant = self.clone();
+        for series in &mut tolerant.series {
+            let values = series.value.iter().zip(&mut series.sigma);
+            values.for_each(|(value, sigma)| *sigma = sigma.hypot(share * value.norm()));
+        }
+        tolerant
+    }
+
     /// The same with only the runs that `keep` wants.
     pub fn only(&self, keep: impl Fn(&Run) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(&self.runs[run])).collect();

@@ -1,0 +1,37 @@
+//! A straight line through a few complex values, of which the value in the middle is wanted.
+
+use nalgebra::Complex;
+
+/// Sums of weighted least squares.
+#[derive(Default)]
+pub struct Straight {
+    /// Of `|d|² t^n / σ²`.
+    weight: [f64; 3],
+    /// Of `conj(d) r t^n / σ²`.
+    moment: [Complex<f64>; 2],
+}
+
+impl Straight {
+    /// Adds `r ≈ (a + b t) d` with an error of standard deviation `sigma`.
+    pub fn add(&mut self, t: f64, direction: Complex<f64>, residual: Complex<f64>, sigma: f64) {
+        let scale = 1.0 / (sigma * sigma);
+        let (weight, moment) = (direction.norm_sqr() * scale, direction.conj() * residual * scale);
+        (0..3).for_each(|n| self.weight[n] += weight * t.powi(n as i32));
+        (0..2).for_each(|n| self.moment[n] += moment * t.powi(n as i32));
+    }
+
+    /// `a` and its standard deviation; zero and infinite where nothing tells of it.
+    pub fn solve(&self) -> (Complex<f64>, f64) {
+        const ONE_PLACE: f64 = 1e-12;
+        let [w0, w1, w2] = self.weight;
+        let determinant = w0 * w2 - w1 * w1;
+        if determinant > ONE_PLACE * w0 * w2 {
+            let value = (self.moment[0] * w2 - self.moment[1] * w1) / determinant;
+            (value, (w2 / determinant).sqrt())
+        } else if w0 > 0.0 {
+            (self.moment[0] / w0, w0.sqrt().recip())
+        } else {
+            (Complex::ZERO, f64::INFINITY)
+        }
+    }
+}

@@ -1,0 +1,99 @@
+//! The shipped campaigns of real measurements as evidence: what a base model leaves, and what the missing law closes.
+
+use qcar::catalogue::load;
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
+use qcar_runtime::model::Model;
+use qcar_runtime::response::parameters::Values;
+use std::path::{Path, PathBuf};
+
+fn campaign(name: &str) -> Campaign {
+    Campaign::open(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("models/campaigns")
+            .join(name),
+    )
+    .expect("it is shipped")
+}
+
+/// Refits what the campaign fits, and `extra` parameters with their start and bounds.
+fn fitted(campaign: &Campaign, model: &dyn Model, extra: &[(&str, f64, f64, f64)]) -> (Refit, Gap) {
+    let about = model.about();
+    let place = |name: &str| {
+        about
+            .parameters
+            .iter()
+            .position(|p| p.name == name)
+            .expect("the model has it")
+    };
+    let evidence = Evidence::from_campaign(campaign, about).expect("the runs can be read");
+    let known = campaign.parameters.iter().filter(|p| p.fit).map(|p| {
+        let (lower, upper) = p.range.expect("it has bounds");
+        (p.name.as_str(), p.value, lower, upper)
+    });
+    let all: Vec<_> = known.chain(extra.iter().copied()).collect();
+    let given = all.iter().map(|(name, value, ..)| (name.to_string(), *value)).collect();
+    let values = Values::resolve(about, &given, &Default::default()).expect("all are given");
+    let free: Vec<Free> = all
+        .iter()
+        .map(|&(name, _, lower, upper)| Free {
+            parameter: place(name),
+            lower,
+            upper,
+        })
+        .collect();
+    let refit = refit(model, &values, &free, &evidence).expect("the model has the sensors");
+    let gap = Gap::of(model, &refit, &evidence).expect("the model has the sensors");
+    (refit, gap)
+}
+
+/// The shipped model with a term added to the force of its only link.
+fn with_law(folder: &Path, model: &str, parameters: &str, law: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("models/axles/{model}.axle"));
+    let text = std::fs::read_to_string(path).expect("it is shipped");
+    let text = text.replace("force = f_offset;", &format!("force = f_offset; {law}"));
+    let direction = text.find("    direction").expect("it has one");
+    let file = folder.join(format!("{model}.axle"));
+    std::fs::write(
+        &file,
+        format!("{}{parameters}\n{}", &text[..direction], &text[direction..]),
+    )
+    .expect("a new file");
+    file
+}
+
+/// Published: M 95.11 kg, Fv 203.5 N s/m, Fc 20.39 N, offset -3.16 N (Janot, Gautier and Brunot 2019).
+#[test]
+fn the_drive_lacks_its_dry_friction() {
+    let campaign = campaign("emps");
+    let (base, before) = fitted(&campaign, &*load("drive").expect("shipped"), &[]);
+    assert!(before.fit > 5.0 && base.estimate[1] > 380.0);
+    let folder = tempfile::tempdir().expect("a place for files");
+    let parameters = "param f_c: N = 10 \"friction\"; param k_p: N/m = 1e5 \"presliding\";";
+    let law = "state z_f: N; rate z_f = k_p*v - k_p*abs(v)*z_f/f_c; force = z_f;";
+    let file = with_law(folder.path(), "drive", parameters, law);
+    let model = load(&file.to_string_lossy()).expect("a valid model");
+    let (found, after) = fitted(&campaign, &*model, &[("f_c", 5.0, 0.1, 100.0), ("k_p", 1e5, 1e3, 1e6)]);
+    assert!(after.fit < 0.5 * before.fit, "{} to {}", before.fit, after.fit);
+    for (found, published) in found.estimate.iter().zip([95.11, 203.5, -3.16, 20.39]) {
+        assert!((found / published - 1.0).abs() < 0.03, "{found}, published {published}");
+    }
+}
+
+/// A linear model leaves 7 mV; the circuit's noise and the rest of its law leave less than 0.4.
+#[test]
+fn the_silverbox_lacks_its_cubic_spring() {
+    let campaign = campaign("silverbox");
+    let (_, before) = fitted(&campaign, &*load("one_mass").expect("shipped"), &[]);
+    assert!(before.held_out > 20.0, "{}", before.held_out);
+    let folder = tempfile::tempdir().expect("a place for files");
+    let file = with_law(
+        folder.path(),
+        "one_mass",
+        "param k3: N/m^3 = 1 \"cubic\";",
+        "force = k3*s^3;",
+    );
+    let model = load(&file.to_string_lossy()).expect("a valid model");
+    let (_, after) = fitted(&campaign, &*model, &[("k3", 0.1, -100.0, 100.0)]);
+    assert!(after.held_out < 1.5, "{}", after.held_out);
+}
