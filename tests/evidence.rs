@@ -66,12 +66,12 @@ fn with_law(folder: &Path, model: &str, parameters: &str, law: &str) -> PathBuf 
 #[test]
 fn the_drive_lacks_its_dry_friction() {
     let campaign = campaign("emps");
-    let (base, before) = fitted(&campaign, &*load("drive").expect("shipped"), &[]);
+    let (base, before) = fitted(&campaign, &*load("screw_drive").expect("shipped"), &[]);
     assert!(before.fit > 5.0 && base.estimate[1] > 380.0);
     let folder = tempfile::tempdir().expect("a place for files");
     let parameters = "param f_c: N = 10 \"friction\"; param k_p: N/m = 1e5 \"presliding\";";
     let law = "state z_f: N; rate z_f = k_p*v - k_p*abs(v)*z_f/f_c; force = z_f;";
-    let file = with_law(folder.path(), "drive", parameters, law);
+    let file = with_law(folder.path(), "screw_drive", parameters, law);
     let model = load(&file.to_string_lossy()).expect("a valid model");
     let (found, after) = fitted(&campaign, &*model, &[("f_c", 5.0, 0.1, 100.0), ("k_p", 1e5, 1e3, 1e6)]);
     assert!(after.fit < 0.5 * before.fit, "{} to {}", before.fit, after.fit);
