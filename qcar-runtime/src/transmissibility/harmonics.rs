@@ -8,10 +8,9 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
-use realfft::RealFftPlanner;
 
 use super::local::{neighbourhood, pseudo_inverse};
-use crate::spectrum::transform;
+use crate::spectrum::{synthesize, transform};
 
 /// How the neighbourhood of a frequency is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -189,21 +188,7 @@ fn analytic(signal: &[f64], rate: f64, band: (f64, f64)) -> (Vec<f64>, Vec<f64>)
         })
         .collect();
     let quarter: Vec<_> = spectrum.iter().map(|line| line * -Complex::I).collect();
-    (inverse(spectrum, signal.len()), inverse(quarter, signal.len()))
-}
-
-fn inverse(mut spectrum: Vec<Complex<f64>>, samples: usize) -> Vec<f64> {
-    let plan = RealFftPlanner::new().plan_fft_inverse(samples);
-    let mut signal = plan.make_output_vec();
-    // The ends of the spectrum of a real signal are real.
-    spectrum[0].im = 0.0;
-    if samples.is_multiple_of(2) {
-        spectrum[samples / 2].im = 0.0;
-    }
-    plan.process(&mut spectrum, &mut signal)
-        .expect("the plan was made for these lengths");
-    signal.iter_mut().for_each(|sample| *sample /= samples as f64);
-    signal
+    (synthesize(&spectrum, signal.len()), synthesize(&quarter, signal.len()))
 }
 
 fn unwrap(angle: &[f64]) -> Vec<f64> {

@@ -3,10 +3,9 @@
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
-use realfft::RealFftPlanner;
 
 use crate::model::{About, InputKind, Quantity};
-use crate::spectrum::transform;
+use crate::spectrum::{synthesize, transform};
 
 /// What was recorded of an excitation.
 #[derive(Clone, Debug)]
@@ -110,23 +109,22 @@ impl Line {
 }
 
 fn differentiated(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
-    let line = how.rate / samples.len() as f64;
-    let count = samples.len() * how.nodes;
-    let mut fine = vec![Complex::ZERO; count / 2 + 1];
-    for (k, value) in transform(samples).into_iter().enumerate() {
-        let f = k as f64 * line;
-        let rate = Complex::new(0.0, TAU * f);
-        if f >= how.band.0 && f <= how.band.1 && (k > 0 || power == 0) {
-            fine[k] = value / samples.len() as f64 * if power == 0 { Complex::ONE } else { rate.powi(power) };
+    let spacing = how.rate / samples.len() as f64;
+    let of_line = |(k, line): (usize, Complex<f64>)| {
+        let f = k as f64 * spacing;
+        let factor = match power {
+            0 => Complex::ONE,
+            _ if k == 0 => Complex::ZERO,
+            _ => Complex::new(0.0, TAU * f).powi(power),
+        };
+        let inside = f >= how.band.0 && f <= how.band.1;
+        // More samples share the same lines.
+        if inside {
+            line * factor * how.nodes as f64
+        } else {
+            Complex::ZERO
         }
-    }
-    let plan = RealFftPlanner::new().plan_fft_inverse(count);
-    let mut row = plan.make_output_vec();
-    fine[0].im = 0.0;
-    if count.is_multiple_of(2) {
-        fine[count / 2].im = 0.0;
-    }
-    plan.process(&mut fine, &mut row)
-        .expect("the plan was made for these lengths");
-    row
+    };
+    let lines: Vec<Complex<f64>> = transform(samples).into_iter().enumerate().map(of_line).collect();
+    synthesize(&lines, samples.len() * how.nodes)
 }
