@@ -11,28 +11,43 @@ use qcar_dsl::front::{Member, check_members};
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::error::{Place, Problem};
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
 use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
+use crate::inertias::Inertias;
 
-/// A model that can run: compiled into this program, or interpreted.
-pub enum Loaded {
-    /// A shipped one.
+/// A model that can run.
+pub struct Loaded {
+    program: Program,
+    inertias: Inertias,
+}
+
+/// Compiled into qcar, or interpreted.
+enum Program {
     Shipped(&'static dyn Model),
-    /// One from a file.
     File(Box<Evaluated>),
+}
+
+impl Loaded {
+    /// Checks what the masses are at the values `p` of all parameters.
+    ///
+    /// # Errors
+    /// Every mass that is not above zero.
+    pub fn check_inertias(&self, p: &[f64]) -> Result<(), InputError> {
+        self.inertias.check(&self.about().name, p)
+    }
 }
 
 impl Deref for Loaded {
     type Target = dyn Model;
 
     fn deref(&self) -> &Self::Target {
-        match self {
-            Loaded::Shipped(model) => *model,
-            Loaded::File(model) => &**model,
+        match &self.program {
+            Program::Shipped(model) => *model,
+            Program::File(model) => &**model,
         }
     }
 }
@@ -52,13 +67,18 @@ fn listed() -> String {
 /// # Errors
 /// As [`compiled`].
 pub fn load(model: &str) -> Result<Loaded, Failure> {
-    match models::find(model) {
-        Some(shipped) => Ok(Loaded::Shipped(shipped.model)),
-        None => Ok(Loaded::File(Box::new(Evaluated::new(&compiled(model)?)))),
-    }
+    let compiled = compiled(model)?;
+    let program = match models::find(model) {
+        Some(shipped) => Program::Shipped(shipped.model),
+        None => Program::File(Box::new(Evaluated::new(&compiled))),
+    };
+    Ok(Loaded {
+        program,
+        inertias: Inertias::of(&compiled),
+    })
 }
 
-/// The model that the user wants, else the campaign's.
+/// The model that the user wants, else the campaign's: a shipped one, or a file relative to the campaign's folder.
 ///
 /// # Errors
 /// As [`load`]; a name that is not known is a mistake of the campaign where the user names none.
@@ -68,7 +88,11 @@ pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, 
         let remedy = format!("choose among {}, or give the path of a file with --model", listed());
         return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
     }
-    load(wanted.unwrap_or(&campaign.model))
+    match wanted {
+        Some(model) => load(model),
+        None if looks_like_a_path(&campaign.model) => load(&campaign.folder.join(&campaign.model).to_string_lossy()),
+        None => load(&campaign.model),
+    }
 }
 
 /// All that the compiler derives of a model.
@@ -88,7 +112,7 @@ pub fn compile(model: &str) -> Result<Result<Compiled, Report>, Failure> {
         Some(shipped) => Ok(compile_shipped(shipped)),
         None if looks_like_a_path(model) => {
             let from_disk = compile_file(Path::new(""), model).map_err(|reason| {
-                let remedy = "correct the path, or put the file there";
+                let remedy = "correct the path, put the file there, or save it as UTF-8";
                 Problem::new(Path::new(model), Place::File, reason, "a model file", remedy)
             })?;
             Ok(from_disk.compiled)

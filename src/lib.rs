@@ -17,6 +17,8 @@ pub mod progress;
 pub mod parameters;
 // A model, compiled in or read at run time.
 pub mod evaluated;
+// What a parameter set must not do to a model.
+pub mod inertias;
 // Models by name or path.
 pub mod catalogue;
 // Dense and named matrices.

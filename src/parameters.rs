@@ -57,6 +57,21 @@ pub fn resolve<'a>(
     InputError::unless_empty(problems, values.ok())
 }
 
+/// What is computed from parameter values is a number.
+///
+/// # Errors
+/// Where it is not.
+pub fn require_finite<'a>(mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
+    match computed.find(|value| !value.is_finite()) {
+        None => Ok(()),
+        Some(value) => {
+            let (place, found) = (Place::Name("parameters".into()), format!("a result that is {value}"));
+            let remedy = "correct the values, of which one is too large or makes the model divide by zero";
+            Err(Problem::new("command line", place, found, "values that give finite numbers", remedy).into())
+        }
+    }
+}
+
 /// A mistake at the place in the file where the parameter stands, or on the command line.
 fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
     let of_file = error.problem(&file.path);

@@ -105,6 +105,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let measure = || levels(&campaign, model.about(), wanted, &Options::default());
     let levels = while_showing(format!("{}: estimating transmissibilities", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
+    model.check_inertias(setup.values())?;
     let fit = while_showing(format!("{}: fitting {}", campaign.name, model.about().name), || {
         setup.fit()
     });

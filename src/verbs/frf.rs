@@ -90,6 +90,7 @@ impl Frequencies {
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let model = catalogue::load(&arguments.model.model)?;
     let values = parameters::resolve(model.about(), arguments.model.params.as_deref(), &arguments.model.set)?;
+    model.check_inertias(values.as_slice())?;
     let frequency = arguments.frequencies.values();
     let channels = chosen(model.about(), &arguments.channels)?;
     let responses = channels
@@ -99,6 +100,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         model: model.about().name.to_string(),
         channels: responses.collect::<Result<_, Failure>>()?,
     };
+    let values = response.channels.0.iter().map(|(_, channel)| channel);
+    parameters::require_finite(values.flat_map(|channel| channel.re.iter().chain(&channel.im)))?;
     Ok(match arguments.format {
         Format::Text => text(&response, &frequency),
         Format::Json => json::line(&response),
@@ -113,7 +116,7 @@ struct FrequencyResponse {
     channels: Ordered<ChannelResponse>,
 }
 
-/// The ratio of a channel's two signals, and its derivatives by the parameters that it sees.
+/// The ratio of a channel's two signals, and its derivatives by every parameter.
 #[derive(Serialize)]
 struct ChannelResponse {
     /// Hz.
@@ -171,10 +174,14 @@ fn respond(
         frequency,
     )
     .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
+    let leaders = (0..about.parameters.len()).filter(|&k| values.leader(k) == k);
     let derivatives = |part: fn(&Complex<f64>) -> f64| {
-        let rows = ratio.jacobian.iter();
-        rows.map(|(k, row)| (about.parameters[*k].name.to_string(), row.iter().map(part).collect()))
-            .collect()
+        let row = |k: usize| {
+            let seen = ratio.jacobian.iter().find(|(parameter, _)| *parameter == k);
+            let row = seen.map_or(vec![0.0; frequency.len()], |(_, row)| row.iter().map(part).collect());
+            (about.parameters[k].name.to_string(), row)
+        };
+        leaders.clone().map(row).collect()
     };
     let response = ChannelResponse {
         frequency: frequency.into(),

@@ -72,6 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let manifest = campaign.manifest();
     let files = std::iter::once(manifest.as_path()).chain(arguments.params.as_deref());
     let values = parameters::resolve(model.about(), files, &arguments.set)?;
+    model.check_inertias(values.as_slice())?;
     let car = Car {
         model: &*model,
         parameters: values.as_slice(),

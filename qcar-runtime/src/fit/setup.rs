@@ -79,6 +79,11 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
         start(&self.values, &self.free)
     }
 
+    /// The start values of all parameters, in the order of the model.
+    pub fn values(&self) -> &[f64] {
+        self.values.as_slice()
+    }
+
     /// Places of the free parameters in the model.
     pub fn free(&self) -> &[usize] {
         &self.free
