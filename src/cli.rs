@@ -11,7 +11,8 @@ use crate::verbs::{check, fit, frf, kc, matrices, score, show, simulate};
 /// Results go to standard output, progress and errors to standard error.
 /// The exit status is 0 when all is well, 1 for a finding, 2 for an input that cannot be used.
 #[derive(Parser)]
-#[command(name = "qcar", version, verbatim_doc_comment)]
+// The same width everywhere, so that help reads in a terminal as it does in the tests.
+#[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
     #[command(subcommand)]
     verb: Verb,
