@@ -142,9 +142,13 @@ fn history(test: Test, signals: Vec<(Channel, Vec<f64>)>) -> History {
 }
 
 fn sweep_test() -> Test {
+    sweep_of(0.1)
+}
+
+fn sweep_of(peak_velocity: f64) -> Test {
     let spacing = Spacing::Logarithmic;
     let sweep = Sweep {
-        peak_velocity: 0.1,
+        peak_velocity,
         start_frequency: 0.5,
         end_frequency: 30.0,
         spacing,
@@ -266,6 +270,7 @@ fn the_variance_is_that_of_the_errors() {
     let mut measured = [Vec::new(), Vec::new()];
     for _ in 0..24 {
         let mut history = record(pad.clone(), noise.added(&body_signal, 0.02));
+        history.test = sweep_of(0.025);
         history
             .signals
             .push((channel("wheel", Side::Centre), noise.added(&wheel_signal, 0.02)));
@@ -443,6 +448,12 @@ fn what_a_record_cannot_tell_is_refused() {
     let late = record(pad[20_000..].to_vec(), pad[20_000..].to_vec());
     assert!(refusal(&late, &all).contains("expected a sweep from `start_frequency = 0.5`"));
     assert!(refusal(&record(vec![0.0; 9000], vec![1.0; 9000]), &all).contains("found a signal that is zero"));
+    let in_g: Vec<f64> = pad.iter().map(|a| a / 9.81).collect();
+    let said = refusal(&record(in_g, pad.clone()), &all);
+    assert!(
+        said.contains("found a peak velocity of 9.9") && said.contains("`peak_velocity = 0.1`"),
+        "{said}"
+    );
     let dead = record(pad.clone(), vec![0.2; pad.len()]);
     assert!(refusal(&dead, &all).contains("found a signal that never changes"));
     let mut without_body = cut(43.0);

@@ -1,7 +1,10 @@
 //! Bad input: exit status 2, nothing on standard output, and a message that says where and what to do.
 
 use std::fs;
+use std::io::Read;
 use std::path::Path;
+
+use flate2::read::GzDecoder;
 
 use crate::common::qcar;
 
@@ -94,6 +97,17 @@ fn parameters_without_a_value_are_all_named() {
 }
 
 #[test]
+fn values_that_make_no_sense_are_refused() {
+    let set = |setting: &str, said: &[&str]| {
+        refused("", &["frf", "quarter_car", "--set", setting], said);
+        refused("", &["matrices", "quarter_car", "--set", setting], said);
+    };
+    set("m_wheel=500", &["`mass body = m_body;`", "-100"]);
+    set("m_corner=40", &["`mass body = m_body;`", "found 0"]);
+    refused("", &["frf", "quarter_car", "--set", "k_tire=1e308"], &["finite"]);
+}
+
+#[test]
 fn models_are_found_or_missed_by_name() {
     refused("", &["matrices", "axle_q"], &["`axle_q`", "`axle_a`"]);
     refused("", &["matrices", "nowhere/my.axle"], &["nowhere/my.axle"]);
@@ -105,4 +119,109 @@ fn models_are_found_or_missed_by_name() {
 fn campaigns_are_read_with_care() {
     refused("", &["fit", "nowhere"], &["nowhere", "campaign.toml"]);
     assert!(!Path::new("nowhere").exists());
+}
+
+/// A copy of the campaign whose first sweep has been through `change`, line by line; empty lines go.
+fn damaged(change: impl Fn(usize, Vec<&str>) -> String) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    copy(&shipped, folder.path());
+    let manifest = fs::read_to_string(shipped.join("campaign.toml")).unwrap();
+    let manifest = manifest.replace("rig/sweep_025.csv.gz", "sweep.csv");
+    fs::write(folder.path().join("campaign.toml"), manifest).unwrap();
+    let packed = fs::File::open(shipped.join("rig/sweep_025.csv.gz")).unwrap();
+    let mut text = String::new();
+    GzDecoder::new(packed).read_to_string(&mut text).unwrap();
+    let lines = text.lines().enumerate();
+    let changed: Vec<String> = lines.map(|(at, line)| change(at, line.split(',').collect())).collect();
+    let kept: Vec<String> = changed.into_iter().filter(|line| !line.is_empty()).collect();
+    fs::write(folder.path().join("sweep.csv"), kept.join("\n")).unwrap();
+    folder
+}
+
+fn copy(from: &Path, to: &Path) {
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        if entry.path().is_dir() {
+            fs::create_dir(&target).unwrap();
+            copy(&entry.path(), &target);
+        } else {
+            fs::copy(entry.path(), target).unwrap();
+        }
+    }
+}
+
+/// Multiplies a column of a table.
+fn scaled(column: usize, factor: f64) -> impl Fn(usize, Vec<&str>) -> String {
+    move |line, cells| {
+        let cell = |(at, text): (usize, &str)| match at == column && line > 0 {
+            true => (text.parse::<f64>().unwrap() * factor).to_string(),
+            false => text.to_string(),
+        };
+        cells.into_iter().enumerate().map(cell).collect::<Vec<_>>().join(",")
+    }
+}
+
+fn fit_refused(folder: &Path, said: &[&str]) {
+    refused("", &["fit", folder.to_str().unwrap()], said);
+}
+
+#[test]
+fn sensors_that_contradict_each_other_are_refused() {
+    let unchanged = damaged(scaled(3, 1.0));
+    assert_eq!(
+        qcar(&["fit", unchanged.path().to_str().unwrap(), "--starts", "1"]).status,
+        0
+    );
+    // time, pad_left_z, pad_right_z, wheel_left_z, ...
+    let (wheel_in_g, wheel_flipped, pad_flipped) = (
+        damaged(scaled(3, 1.0 / 9.81)),
+        damaged(scaled(3, -1.0)),
+        damaged(scaled(1, -1.0)),
+    );
+    let sides = [
+        "sweep.csv",
+        "`wheel_left_z`, `wheel_right_z`",
+        "unit, sign or calibration",
+    ];
+    fit_refused(wheel_in_g.path(), &sides);
+    fit_refused(wheel_flipped.path(), &sides);
+    fit_refused(
+        pad_flipped.path(),
+        &["sweep.csv", "`pad z acceleration`", "`peak_velocity = 0.025`"],
+    );
+}
+
+#[test]
+fn records_with_holes_are_refused() {
+    let lost = damaged(|line, mut cells| {
+        if line == 99 {
+            cells[3] = "NaN";
+        }
+        cells.join(",")
+    });
+    fit_refused(lost.path(), &["sweep.csv, line 100, column `wheel_left_z`", "NaN"]);
+    let gap = damaged(|line, cells| {
+        if (500..520).contains(&line) {
+            String::new()
+        } else {
+            cells.join(",")
+        }
+    });
+    fit_refused(
+        gap.path(),
+        &["sweep.csv, line 501, column `time`", "a gap cannot be guessed"],
+    );
+    let renamed = damaged(|line, cells| {
+        let text = cells.join(",");
+        if line == 0 {
+            text.replace("wheel_left_z", "hub_left_z")
+        } else {
+            text
+        }
+    });
+    fit_refused(
+        renamed.path(),
+        &["sweep.csv, line 1, column `hub_left_z`", "an unknown column"],
+    );
 }

@@ -257,7 +257,10 @@ fn cleat(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Test> {
         && !roads.iter().any(|road| road.name == cleat)
     {
         let names: Vec<_> = roads.iter().map(|road| format!("\"{}\"", road.name)).collect();
-        let expected = format!("the name of a [[road]]: {}", names.join(", "));
+        let expected = match names.as_slice() {
+            [] => "the name of a [[road]], of which there is none".to_string(),
+            names => format!("the name of a [[road]]: {}", names.join(", ")),
+        };
         section.wrong(
             "cleat",
             format!("\"{cleat}\""),

@@ -74,6 +74,7 @@ fn level(
         .collect();
     let ratios = transmissibilities(&history, &reference, &pairs, options)?;
     let differences = differences(&history, &reference, &pairs, options)?;
+    sides_agree(&history, &reference, &pairs, &differences)?;
     let observations = all.iter().zip(ratios).zip(differences);
     let observations = observations
         .map(|(((channel, fitted), ratio), differences)| observation(&history, channel, *fitted, ratio, differences));
@@ -237,6 +238,45 @@ fn differences(
         }
     }
     Ok(all)
+}
+
+/// Sensors of two sides are averaged, which means nothing where one of them has another unit or sign than the other.
+fn sides_agree(
+    history: &History,
+    reference: &Point,
+    pairs: &[(Point, Point)],
+    differences: &[Vec<Difference>],
+) -> Result<(), InputError> {
+    /// A factor of two or 40 degrees at half of the lines: the sides of an axle differ by percents.
+    const CONTRADICTION: f64 = std::f64::consts::LN_2;
+    let typical = |difference: &Difference| {
+        let mut sizes: Vec<f64> = difference.half.iter().map(|half| 2.0 * half.norm()).collect();
+        sizes.sort_by(f64::total_cmp);
+        sizes.get(sizes.len() / 2).copied().unwrap_or(0.0)
+    };
+    let contradict = |of: &Vec<Difference>| of.iter().any(|difference| typical(difference) > CONTRADICTION);
+    let problem = |((from, to), of): (&(Point, Point), &Vec<Difference>)| {
+        let has = |sensor: &Sensor| [from, to].iter().any(|&point| point != reference && point.has(sensor));
+        let sensors = history.signals.iter().filter(|(sensor, _)| has(sensor));
+        let names: Vec<String> = sensors.map(|(sensor, _)| format!("`{}`", sensor.name)).collect();
+        let wrong = || {
+            let found = "sensors of two sides that differ by more than a factor of two or by 40 degrees";
+            let remedy = format!(
+                "correct unit, sign or calibration among {}, or leave one out",
+                names.join(", ")
+            );
+            Problem::new(
+                &history.file,
+                Place::Name(format!("{} to {}", from.location, to.location)),
+                found,
+                "sides of an axle that move alike",
+                remedy,
+            )
+        };
+        contradict(of).then(wrong)
+    };
+    let problems = pairs.iter().zip(differences).filter_map(problem).collect();
+    InputError::unless_empty(problems, Some(()))
 }
 
 /// The points that both sides have a sensor at. The reference stays the mean of its sensors: the virtual centre pad.

@@ -41,6 +41,7 @@ pub(super) fn frequencies(
     }
     if let Test::Sweep(sweep) = &history.test {
         reaches_its_ends(history, reference, sweep, &bands)?;
+        has_its_velocity(history, reference, sweep, &bands)?;
     }
     let frequencies = options.frequencies.clone().unwrap_or_else(|| match &history.test {
         Test::Sweep(sweep) => logarithmic(sweep.start_frequency, sweep.end_frequency, COUNT),
@@ -126,6 +127,38 @@ fn reaches_its_ends(
         return wrong(format!("an excitation that starts at {first:.2} Hz"), expected);
     }
     Ok(())
+}
+
+/// A sweep of another size than declared is in another unit, or the mean of sensors with opposite signs.
+fn has_its_velocity(
+    history: &History,
+    reference: &Point,
+    sweep: &Sweep,
+    bands: &[(f64, f64)],
+) -> Result<(), InputError> {
+    /// Rigs deviate from what they are told; units and signs from each other by more.
+    const DEVIATION: f64 = 2.0;
+    if reference.quantity == Quantity::Force {
+        return Ok(());
+    }
+    // The power spectrum of a sine of amplitude V whose frequency passes f at the rate r is V²/(4 r).
+    let pace = match sweep.spacing {
+        Spacing::Logarithmic => (sweep.end_frequency / sweep.start_frequency).ln(),
+        Spacing::Linear => sweep.end_frequency - sweep.start_frequency,
+    };
+    let duration = history.len() as f64 / history.sample_rate;
+    let velocity = 2.0 * (typical(sweep, bands) * pace / duration).sqrt() / history.sample_rate;
+    let ratio = velocity / sweep.peak_velocity;
+    if (1.0 / DEVIATION..=DEVIATION).contains(&ratio) {
+        return Ok(());
+    }
+    let (place, found) = (
+        Place::Name(reference.to_string()),
+        format!("a peak velocity of {velocity:.2e} m/s"),
+    );
+    let expected = format!("one near `peak_velocity = {}`", sweep.peak_velocity);
+    let remedy = "correct the unit, sign or calibration of its sensors, or the peak velocity in campaign.toml";
+    Err(Problem::new(&history.file, place, found, expected, remedy).into())
 }
 
 fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) -> Result<(), InputError> {
