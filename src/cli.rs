@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::failure::Failure;
-use crate::verbs::{check, fit, frf, kc, matrices, score, show, simulate};
+use crate::verbs::{check, diff, effects, fit, frf, kc, matrices, patch, score, show, simulate};
 
 /// Quarter-car axle models: compile them, fit them to rig data
 ///
@@ -28,6 +28,9 @@ enum Verb {
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
     Score(score::Arguments),
+    Effects(effects::Arguments),
+    Patch(patch::Arguments),
+    Diff(diff::Arguments),
 }
 
 impl Cli {
@@ -42,6 +45,9 @@ impl Cli {
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Score(arguments) => score::run(&arguments),
+            Verb::Effects(arguments) => effects::run(&arguments),
+            Verb::Patch(arguments) => patch::run(&arguments),
+            Verb::Diff(arguments) => diff::run(&arguments),
         }
     }
 }

@@ -21,6 +21,8 @@ pub mod evaluated;
 pub mod inertias;
 // Models by name or path.
 pub mod catalogue;
+// Effects that a model may miss.
+pub mod effects;
 // Dense and named matrices.
 pub mod state_space;
 // What the user can ask for.

@@ -3,6 +3,7 @@
 // What a file gives.
 mod file;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
@@ -70,6 +71,21 @@ pub fn require_finite<'a>(mut computed: impl Iterator<Item = &'a f64>) -> Result
             Err(Problem::new("command line", place, found, "values that give finite numbers", remedy).into())
         }
     }
+}
+
+/// The values that a file and settings give, whatever model they are for.
+///
+/// # Errors
+/// A file that cannot be read or understood.
+pub fn given(path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<String, f64>, InputError> {
+    let mut values = BTreeMap::new();
+    if let Some(path) = path {
+        let file = ParameterFile::read(path)?;
+        values.extend(numbers(&file.vehicle));
+        values.extend(numbers(&file.parameters));
+    }
+    values.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
+    Ok(values)
 }
 
 /// A mistake at the place in the file where the parameter stands, or on the command line.

@@ -7,10 +7,13 @@ use clap::Args;
 use crate::parameters::Setting;
 
 pub mod check;
+pub mod diff;
+pub mod effects;
 pub mod fit;
 pub mod frf;
 pub mod kc;
 pub mod matrices;
+pub mod patch;
 pub mod score;
 pub mod show;
 pub mod simulate;

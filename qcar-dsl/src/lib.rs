@@ -57,6 +57,8 @@ pub mod evaluate;
 pub mod notation;
 // Equations as an engineer writes them.
 pub mod equations;
+// Two models side by side.
+pub mod difference;
 // Programs printed as Rust.
 pub mod rust;
 // For people: equations, matrices, LaTeX, dot.

@@ -22,7 +22,7 @@ mod start;
 // What it must say.
 mod rules;
 
-use base::Base;
+pub(crate) use base::Base;
 use bind::Bindings;
 pub use start::Values;
 

@@ -202,6 +202,11 @@ fn declaration(one: &Asked, ([start, low, high], unit): ([f64; 3], Unit), base: 
 fn number(e: &Expression, value: f64) -> Number {
     match &e.kind {
         ExpressionKind::Number(number) => number.clone(),
+        ExpressionKind::Negative(inner) if matches!(inner.kind, ExpressionKind::Number(_)) => Number {
+            digits: format!("-{}", number(inner, -value).digits),
+            value,
+            ..number(inner, -value)
+        },
         _ => Number {
             digits: format!("{value}"),
             ..Number::new(value)

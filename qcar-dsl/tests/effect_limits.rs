@@ -1,0 +1,396 @@
+//! An effect of no strength changes nothing, and an effect's law is what its parameters say, measured on the equations.
+
+use std::path::{Path, PathBuf};
+
+use qcar_dsl::check::Checked;
+use qcar_dsl::compile::derive;
+use qcar_dsl::evaluate::Evaluator;
+use qcar_dsl::front::check_text;
+use qcar_dsl::patch::Patch;
+use qcar_dsl::source::Source;
+
+fn read(path: &Path) -> Source {
+    let text = std::fs::read_to_string(path).unwrap();
+    let name = path.display().to_string();
+    Source { name, text }
+}
+
+fn models() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../models")
+}
+
+fn model(name: &str) -> Checked {
+    let load = |from: &str, path: &str| Ok(read(&Path::new(from).parent().unwrap().join(path)));
+    check_text(read(&models().join(format!("axles/{name}.axle"))), &load).unwrap_or_else(|report| panic!("{report}"))
+}
+
+fn patched(model: &Checked, effect: &str, place: &str) -> Checked {
+    let patch = Patch::read(read(&models().join(format!("effects/{effect}.axle")))).unwrap();
+    patch
+        .apply(model, place, &value)
+        .unwrap_or_else(|report| panic!("{report}"))
+        .model
+}
+
+/// Parameters of a car.
+fn value(name: &str) -> Option<f64> {
+    let known = [
+        ("m_corner", 430.0),
+        ("m_wheel", 42.0),
+        ("m_tm", 3.0),
+        ("m_sf", 15.0),
+        ("m_pwt", 60.0),
+        ("m_half_vehicle", 840.0),
+        ("m_wheel_other_axle", 40.0),
+        ("k_wheel_z", 26e3),
+        ("c_wheel_z", 1900.0),
+        ("mr_spring", 0.7),
+        ("mr_damper", 0.8),
+        ("k_tm", 6e5),
+        ("c_tm", 900.0),
+        ("k_sf_z", 2e6),
+        ("c_sf_z", 1500.0),
+        ("k_pwt_z", 3e5),
+        ("c_pwt_z", 600.0),
+        ("k_tire", 230e3),
+        ("c_tire", 150.0),
+        ("static_tire_load", 4300.0),
+        ("static_tire_def", 0.019),
+        ("k_wheel_x", 4e5),
+        ("c_wheel_x", 900.0),
+        ("k_wheel_x_other", 4e5),
+        ("c_wheel_x_other", 900.0),
+        ("k_sf_x", 2e6),
+        ("c_sf_x", 1500.0),
+        ("k_pwt_x", 3e5),
+        ("c_pwt_x", 600.0),
+    ];
+    known.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
+}
+
+/// A compiled model at given parameters: those of the effect first, then those of the car.
+struct Running {
+    evaluator: Evaluator,
+    constants: Vec<f64>,
+}
+
+impl Running {
+    fn new(model: &Checked, of_effect: &[(&str, f64)]) -> Running {
+        let evaluator = Evaluator::new(&derive(model.clone()));
+        let given = |name: &str| of_effect.iter().find(|(own, _)| *own == name).map(|(_, value)| *value);
+        let value = |name: &str| {
+            given(name)
+                .or_else(|| value(name))
+                .unwrap_or_else(|| panic!("no value of {name}"))
+        };
+        let p: Vec<f64> = evaluator
+            .about()
+            .parameters
+            .iter()
+            .map(|parameter| value(&parameter.name))
+            .collect();
+        let mut constants = vec![0.0; evaluator.about().constants];
+        evaluator.prepare(&p, &mut constants);
+        Running { evaluator, constants }
+    }
+
+    /// The rate of each state with the given values; what is not given is zero.
+    fn rates(&self, state: &dyn Fn(&str) -> f64, rolling: bool) -> Vec<(String, f64)> {
+        let about = self.evaluator.about();
+        let x: Vec<f64> = about.states.iter().map(|own| state(&own.name)).collect();
+        let u: Vec<f64> = about.inputs.iter().map(|own| state(&own.name)).collect();
+        let mut dx = vec![0.0; x.len()];
+        match rolling {
+            false => self.evaluator.derivative(&self.constants, &x, &u, &mut dx),
+            true => dx.fill(
+                self.evaluator
+                    .contact_force(&self.constants, &x, state("s"), state("v")),
+            ),
+        }
+        about.states.iter().map(|own| own.name.clone()).zip(dx).collect()
+    }
+
+    fn rate(&self, of: &str, state: &dyn Fn(&str) -> f64) -> f64 {
+        self.rates(state, false)
+            .into_iter()
+            .find(|(own, _)| own == of)
+            .unwrap()
+            .1
+    }
+}
+
+/// Some motion, the same for every name that two models share. A part that an effect has split off moves with its whole.
+fn motion(name: &str) -> f64 {
+    let whole = [
+        ("z_belt", "z_wheel"),
+        ("z_resonator", "z_wheel"),
+        ("x_pwt", "x_body"),
+        ("z_pwt", "z_body"),
+    ];
+    let (speed, place) = if let Some(rest) = name.strip_prefix('v') {
+        (true, rest)
+    } else {
+        (false, name)
+    };
+    let place = whole
+        .iter()
+        .find(|(part, _)| *part == place)
+        .map_or(place, |(_, whole)| whole);
+    let moves = [
+        "z_body", "z_wheel", "z_tm", "z_sf", "z_pad", "x_body", "x_wheel", "x_sf",
+    ]
+    .iter()
+    .position(|own| *own == place);
+    let Some(number) = moves else { return 0.0 };
+    let number = number as f64 + if speed { 10.0 } else { 0.0 };
+    (if speed { 0.3 } else { 0.01 }) * (1.0 + 1.7 * number).sin()
+}
+
+/// Effect, model, place, and the parameters at which nothing is changed.
+type Case = (&'static str, &'static str, &'static str, &'static [(&'static str, f64)]);
+
+const NOTHING: [Case; 19] = [
+    (
+        "apparent_mass",
+        "axle_a",
+        "body",
+        &[
+            ("wheelbase", 2.7),
+            ("dynamic_index", 1.0),
+            ("k_wheel_z_other", 3e4),
+            ("c_wheel_z_other", 2e3),
+        ],
+    ),
+    (
+        "asymmetric_damper",
+        "axle_b",
+        "damper",
+        &[("rebound_over_compression", 1.0)],
+    ),
+    ("bump_stop", "axle_b", "spring", &[("gap", 0.1), ("k_stop", 1e5)]),
+    (
+        "bushing_relaxation",
+        "axle_c",
+        "top_mount",
+        &[("k_maxwell", 0.0), ("relaxation_frequency", 10.0)],
+    ),
+    (
+        "bushing_saturation",
+        "axle_d",
+        "wheel_bushing_x",
+        &[("linear_travel", 1e-3), ("rate_increase_at_twice_travel", 0.0)],
+    ),
+    (
+        "coulomb_friction",
+        "axle_d",
+        "damper",
+        &[("f_coulomb", 1e-9), ("k_presliding", 1.0)],
+    ),
+    ("digressive_damper", "axle_d", "damper", &[("c0", 1900.0), ("v0", 1e12)]),
+    ("drag_to_ground", "axle_c", "wheel", &[("c_drag", 0.0)]),
+    ("free_play", "axle_b", "damper", &[("gap", 1e-7)]),
+    (
+        "hydraulic_mount",
+        "axle_a",
+        "powertrain_mount",
+        &[("k_volume", 0.0), ("inertance", 1.0), ("c_track", 1.0)],
+    ),
+    ("inerter", "axle_b", "damper", &[("inertance", 0.0)]),
+    (
+        "progressive_spring",
+        "axle_b",
+        "spring",
+        &[("rate_increase_at_40mm", 0.0)],
+    ),
+    (
+        "secondary_resonator",
+        "axle_c",
+        "wheel",
+        &[("m_resonator", 1e-12), ("k_resonator", 1e5), ("c_resonator", 50.0)],
+    ),
+    (
+        "segmented_polynomial_damper",
+        "axle_d",
+        "damper",
+        &[
+            ("c_rebound", 1900.0),
+            ("q_rebound", 0.0),
+            ("c_compression", 1900.0),
+            ("q_compression", 0.0),
+        ],
+    ),
+    (
+        "subframe_pitch",
+        "axle_d",
+        "subframe",
+        &[
+            ("inertia", 1.0),
+            ("half_length", 0.3),
+            ("front_share", 0.5),
+            ("arm_offset", 0.0),
+        ],
+    ),
+    (
+        "suspended_mass",
+        "axle_c",
+        "body",
+        &[
+            ("m_pwt", 1e-12),
+            ("k_pwt_z", 3e5),
+            ("c_pwt_z", 100.0),
+            ("k_pwt_x", 3e5),
+            ("c_pwt_x", 100.0),
+        ],
+    ),
+    (
+        "tire_dynamic_stiffness",
+        "axle_c",
+        "tire",
+        &[("stiffness_ratio", 1.0), ("relaxation_frequency", 10.0)],
+    ),
+    (
+        "tire_progressive_stiffness",
+        "axle_c",
+        "tire",
+        &[("tangent_increase_at_twice_static", 0.0)],
+    ),
+    (
+        "bouc_wen_hysteresis",
+        "axle_b",
+        "damper",
+        &[("f_hysteresis", 1e-9), ("k_hysteresis", 1.0), ("loop_shape", 0.7)],
+    ),
+];
+
+#[test]
+fn an_effect_of_no_strength_changes_nothing() {
+    for (effect, name, place, parameters) in &NOTHING {
+        let base = model(name);
+        let (without, with) = (
+            Running::new(&base, &[]),
+            Running::new(&patched(&base, effect, place), parameters),
+        );
+        for rolling in [false, true] {
+            let state = |name: &str| match (name, rolling) {
+                ("s", _) => -0.025,
+                ("v", _) => 0.4,
+                _ => motion(name),
+            };
+            let (before, after) = (without.rates(&state, rolling), with.rates(&state, rolling));
+            for (own, rate) in before {
+                let found = after.iter().find(|(other, _)| *other == own).unwrap().1;
+                assert!(
+                    (rate - found).abs() <= 1e-6 * (1.0 + rate.abs()),
+                    "{effect}: the rate of {own} is {found}, not {rate}"
+                );
+            }
+        }
+    }
+}
+
+/// The slope of a force over something that moves, by central differences.
+fn slope(force: impl Fn(f64) -> f64, at: f64) -> f64 {
+    let step = 1e-6;
+    (force(at + step) - force(at - step)) / (2.0 * step)
+}
+
+/// The force on the body of a model whose wheel is at a place and speed, while all else rests.
+fn on_body(running: &Running, mass: f64, z: f64, v: f64) -> f64 {
+    let state = |name: &str| match name {
+        "z_wheel" => z,
+        "vz_wheel" => v,
+        _ => 0.0,
+    };
+    mass * running.rate("vz_body", &state)
+}
+
+/// Of axle_b_rigid_tm, where spring and damper act on the body through levers.
+const BODY: f64 = 430.0 - 42.0 - 60.0;
+
+#[test]
+fn a_progressive_spring_has_its_rate_at_40_mm_of_wheel_travel() {
+    let model = patched(&model("axle_b_rigid_tm"), "progressive_spring", "spring");
+    let running = Running::new(&model, &[("rate_increase_at_40mm", 0.5)]);
+    for travel in [-0.04, 0.04] {
+        let rate = slope(|z| on_body(&running, BODY, z, 0.0), travel);
+        assert!((rate / (1.5 * 26e3) - 1.0).abs() < 1e-6, "{rate}");
+    }
+    let rest = slope(|z| on_body(&running, BODY, z, 0.0), 0.0);
+    assert!((rest / 26e3 - 1.0).abs() < 1e-6, "{rest}");
+}
+
+#[test]
+fn a_digressive_damper_has_half_its_damping_at_v0_of_the_wheel() {
+    let model = patched(&model("axle_b_rigid_tm"), "digressive_damper", "damper");
+    let running = Running::new(&model, &[("c0", 3000.0), ("v0", 0.5)]);
+    let force = on_body(&running, BODY, 0.0, 0.5);
+    assert!((force - 3000.0 * 0.5 / 2.0).abs() < 1e-9 * force, "{force}");
+}
+
+#[test]
+fn dry_friction_reaches_its_level_at_the_wheel() {
+    let model = patched(&model("axle_b_rigid_tm"), "coulomb_friction", "damper");
+    let running = Running::new(&model, &[("f_coulomb", 80.0), ("k_presliding", 5e5)]);
+    // Rebound: the wheel falls, the damper stretches, and the friction that has built up no longer grows.
+    let state = |name: &str| match name {
+        "vz_wheel" => -0.2,
+        "z_damper_f_dry" => 80.0,
+        _ => 0.0,
+    };
+    assert!(running.rate("z_damper_f_dry", &state).abs() < 1e-6);
+    let force = BODY * running.rate("vz_body", &state);
+    assert!((force - (-1900.0 * 0.2 - 80.0)).abs() < 1e-9 * force.abs(), "{force}");
+}
+
+#[test]
+fn a_progressive_tyre_has_its_tangent_at_twice_the_static_deflection() {
+    let model = patched(&model("axle_c"), "tire_progressive_stiffness", "tire");
+    let running = Running::new(&model, &[("tangent_increase_at_twice_static", 0.4)]);
+    let static_def = 0.019;
+    // Standing, from the static deflection; the wheel moves down on a pad that rests.
+    let on_wheel = |z: f64| {
+        let state = |name: &str| if name == "z_wheel" { z } else { 0.0 };
+        // All but the tyre is linear.
+        -42.0 * running.rate("vz_wheel", &state) - 26e3 * z
+    };
+    for (z, tangent) in [(0.0, 230e3), (-static_def, 1.4 * 230e3)] {
+        let found = slope(on_wheel, z);
+        assert!((found / tangent - 1.0).abs() < 1e-6, "{found} at {z}");
+    }
+    // Rolling, the whole deflection: nothing at first contact, and the static load where it stood.
+    let force = |s: f64| running.rates(&|name| if name == "s" { s } else { 0.0 }, true)[0].1;
+    assert!(force(0.0).abs() < 1e-9);
+    assert!(
+        (force(-static_def).abs() - 4300.0).abs() < 1e-6,
+        "{}",
+        force(-static_def)
+    );
+}
+
+#[test]
+fn a_rigid_body_over_two_axles_has_its_own_pitch_inertia() {
+    let model = patched(&model("axle_c_rigid_tm"), "apparent_mass", "body");
+    let index = 0.8;
+    let parameters = [
+        ("wheelbase", 2.7),
+        ("dynamic_index", index),
+        ("k_wheel_z_other", 3e4),
+        ("c_wheel_z_other", 2e3),
+    ];
+    let running = Running::new(&model, &parameters);
+    // A force on the front end alone, from a wheel that is held 10 mm high; mass matrix of heave and pitch by hand.
+    let state = |name: &str| if name == "z_wheel" { 0.01 } else { 0.0 };
+    let (front, rear) = (430.0 - 42.0, 840.0 - 430.0 - 40.0);
+    let (total, force) = (front + rear, 26e3 * 0.01);
+    let (a, b) = (2.7 * rear / total, 2.7 * front / total);
+    let inertia = index * total * a * b;
+    let (heave, pitch) = (force / total, force * a / inertia);
+    let (front_wanted, rear_wanted) = (heave + a * pitch, heave - b * pitch);
+    for (name, wanted) in [("vz_body", front_wanted), ("vz_body_other", rear_wanted)] {
+        let found = running.rate(name, &state);
+        assert!(
+            (found - wanted).abs() < 1e-9 * front_wanted.abs(),
+            "{name}: {found}, not {wanted}"
+        );
+    }
+}

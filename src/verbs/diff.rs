@@ -1,0 +1,66 @@
+//! `qcar diff`: in what two models differ.
+
+use clap::{Args, ValueEnum};
+use qcar_dsl::difference::{Changed, Difference, difference};
+use serde::Serialize;
+
+use crate::catalogue;
+use crate::failure::Failure;
+use crate::json::{self, Ordered};
+
+/// Show what a model has that another has not: parameters, masses, links, equations
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar diff axle_c axle_c_rigid_tm")]
+pub struct Arguments {
+    /// Name of a shipped model, or path of a model file
+    first: String,
+    /// The model to compare with it
+    second: String,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+#[derive(Serialize)]
+struct Change<'a> {
+    name: &'a str,
+    before: Option<&'a str>,
+    after: Option<&'a str>,
+}
+
+impl Change<'_> {
+    fn of(changed: &Changed) -> Change<'_> {
+        Change {
+            name: &changed.name,
+            before: changed.before.as_deref(),
+            after: changed.after.as_deref(),
+        }
+    }
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let (first, second) = (
+        catalogue::compiled(&arguments.first)?,
+        catalogue::compiled(&arguments.second)?,
+    );
+    let difference = difference(&first.model, &second.model);
+    Ok(match arguments.format {
+        Format::Text => difference.to_string(),
+        Format::Json => in_json(&difference),
+    })
+}
+
+fn in_json(difference: &Difference) -> String {
+    let parts = difference.parts.iter().map(|part| {
+        let changes: Vec<Change> = part.changes.iter().map(Change::of).collect();
+        (part.heading.replace(' ', "_"), changes)
+    });
+    json::line(&parts.collect::<Ordered<_>>())
+}

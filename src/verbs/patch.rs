@@ -1,0 +1,51 @@
+//! `qcar patch`: a model with an effect in it, as a model file.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use super::ModelArguments;
+use crate::catalogue;
+use crate::effects;
+use crate::failure::Failure;
+use crate::files::put;
+use crate::parameters;
+
+/// Write a model with an effect in it
+///
+/// The new file holds all of the model, its options taken, and compiles like any other. Ranges and start values that
+/// depend on the model's own parameters are taken at the values that are given, at the defaults, or else in the middle
+/// of the ranges.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar patch axle_c coulomb_friction --at damper")]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+    /// Name of a shipped effect (`qcar effects` lists them), or path of an effect's file
+    effect: String,
+    /// The place: a link, mass or sensor location of the model
+    #[arg(long, value_name = "PLACE")]
+    at: String,
+    /// File to write; standard output where none is given
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+}
+
+/// What stands where a discovery would say why the effect is there.
+const NO_EVIDENCE: &str = "Evidence: none yet.";
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let compiled = catalogue::compiled(&arguments.model.model)?;
+    let values = parameters::given(arguments.model.params.as_deref(), &arguments.model.set)?;
+    let patched = effects::find(&arguments.effect)?
+        .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())
+        .map_err(|report| Failure::Input(report.to_string()))?;
+    let text = patched.text(NO_EVIDENCE);
+    let Some(path) = &arguments.out else {
+        return Ok(text);
+    };
+    let name = path.file_name().unwrap_or_default().to_string_lossy();
+    put(path.parent().unwrap_or("".as_ref()), &name, &text)?;
+    Ok(format!("{} written to {}\n", patched.model.name, path.display()))
+}
