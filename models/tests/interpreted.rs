@@ -12,6 +12,8 @@ mod zoo {
     qcar_derive::axle_file!("tests/zoo/laws.axle");
     qcar_derive::axle_file!("tests/zoo/mechanisms.axle");
     qcar_derive::axle_file!("tests/zoo/names.axle");
+    // With an effect in it.
+    qcar_derive::axle_file!("tests/zoo/axle_b_with_coulomb_friction.axle");
 }
 
 /// Every compiled model with the file it comes from.
@@ -19,10 +21,14 @@ fn all() -> Vec<(String, &'static dyn Model)> {
     let shipped = models::all()
         .iter()
         .map(|shipped| (shipped.file.to_string(), shipped.model));
-    let zoo: [(&str, &'static dyn Model); 3] = [
+    let zoo: [(&str, &'static dyn Model); 4] = [
         ("tests/zoo/laws.axle", &zoo::laws::Laws),
         ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms),
         ("tests/zoo/names.axle", &zoo::names::Names),
+        (
+            "tests/zoo/axle_b_with_coulomb_friction.axle",
+            &zoo::axle_b_with_coulomb_friction::AxleBWithCoulombFriction,
+        ),
     ];
     shipped
         .chain(zoo.map(|(file, model)| (file.to_string(), model)))

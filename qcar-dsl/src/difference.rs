@@ -39,8 +39,11 @@ pub struct Changed {
 /// Names with their lines.
 type Lines = Vec<(String, String)>;
 
+/// Whether a statement belongs to a part.
+type Belongs = fn(&Statement) -> bool;
+
 /// The parts of a text, with what belongs to them.
-const PARTS: [(&str, fn(&Statement) -> bool); 5] = [
+const PARTS: [(&str, Belongs); 5] = [
     ("parameters", |statement| matches!(statement, Statement::Parameter(_))),
     ("derived quantities", |statement| matches!(statement, Statement::Let(_))),
     ("masses and points", |statement| {
@@ -70,7 +73,7 @@ pub fn difference(first: &Checked, second: &Checked) -> Difference {
 }
 
 /// The statements of a kind, each with the direction that it stands in.
-fn lines(tree: &Base, belongs: fn(&Statement) -> bool) -> Lines {
+fn lines(tree: &Base, belongs: Belongs) -> Lines {
     let outside = tree.axle.body.iter().map(|statement| (String::new(), statement));
     let inside = tree.directions().flat_map(|direction| {
         let home = format!("{}.", direction.name.text);

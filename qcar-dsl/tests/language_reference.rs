@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 
 /// The fenced blocks of a language.
@@ -37,5 +38,28 @@ fn the_examples_compile() {
             let checked = checked.unwrap_or_else(|report| panic!("{report}"));
             assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
         }
+    }
+}
+
+#[test]
+fn the_effects_apply_to_an_example() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/language.md");
+    let text = std::fs::read_to_string(path).unwrap();
+    let source = |text: String| Source {
+        name: "docs/language.md".to_string(),
+        text,
+    };
+    let load = |_: &str, _: &str| Err("the example loads no file".to_string());
+    let family = blocks(&text, "axle")
+        .into_iter()
+        .find(|text| text.starts_with("family"))
+        .unwrap();
+    let (_, member) = check_members(source(family), &load).unwrap().remove(0);
+    let effects = blocks(&text, "effect");
+    assert!(!effects.is_empty());
+    for effect in effects {
+        let patch = Patch::read(source(effect)).unwrap_or_else(|report| panic!("{report}"));
+        let patched = patch.apply(member.as_ref().unwrap(), "damper", &|_| None);
+        patched.unwrap_or_else(|report| panic!("{report}"));
     }
 }

@@ -8,7 +8,9 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 8] = ["check", "show", "matrices", "frf", "fit", "kc", "simulate", "score"];
+const VERBS: [&str; 11] = [
+    "check", "show", "matrices", "frf", "fit", "kc", "simulate", "score", "effects", "patch", "diff",
+];
 
 #[test]
 fn every_verb_explains_itself_with_an_example() {

@@ -1,0 +1,53 @@
+//! A model with an effect in it is a file like any other: the same bytes every time, and code that the compiler takes.
+
+use std::path::Path;
+
+use qcar_derive::axle_file;
+use qcar_dsl::disk::compile_file;
+use qcar_dsl::patch::Patch;
+use qcar_dsl::rust::module;
+use qcar_dsl::source::Source;
+use qcar_runtime::model::Model;
+
+axle_file!("tests/zoo/axle_b_with_coulomb_friction.axle");
+
+const FILE: &str = "tests/zoo/axle_b_with_coulomb_friction.axle";
+
+fn patched(model: &str, effect: &str, place: &str) -> qcar_dsl::patch::Patched {
+    let model = compile_file(Path::new(""), model).unwrap().compiled.unwrap().model;
+    let shipped = models::effects().iter().find(|shipped| shipped.name == effect).unwrap();
+    let source = Source {
+        name: shipped.file.into(),
+        text: shipped.text.into(),
+    };
+    Patch::read(source).unwrap().apply(&model, place, &|_| None).unwrap()
+}
+
+#[test]
+fn a_patch_writes_the_same_file_every_time() {
+    let kept = std::fs::read_to_string(FILE).unwrap();
+    let patched = patched("axles/axle_b.axle", "coulomb_friction", "damper");
+    assert_eq!(patched.text("Evidence: none yet."), kept);
+}
+
+#[test]
+fn rustc_compiles_a_patched_file_as_any_other() {
+    let generated = module(&compile_file(Path::new(""), FILE).unwrap().compiled.unwrap());
+    let fingerprint = format!(
+        "FINGERPRINT: u64 = {:#018x};",
+        axle_b_with_coulomb_friction::FINGERPRINT
+    );
+    assert!(generated.contains(&fingerprint));
+    let about = axle_b_with_coulomb_friction::AxleBWithCoulombFriction.about();
+    assert!(about.states.iter().any(|state| state.name == "z_damper_f_dry"));
+}
+
+#[test]
+fn a_second_effect_goes_on_top_of_the_first() {
+    let first = patched(FILE, "tire_dynamic_stiffness", "tire");
+    assert_eq!(
+        first.model.name,
+        "axle_b_with_coulomb_friction_and_tire_dynamic_stiffness"
+    );
+    assert!(first.model.text().contains("f_dry") && first.model.text().contains("f_relax"));
+}
