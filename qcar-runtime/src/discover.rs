@@ -17,6 +17,13 @@ pub mod gap;
 // What would have to be added, and at which place.
 pub mod kappa;
 
+// What might be missing.
+pub mod candidate;
+// How well a model explains the evidence.
+pub mod explain;
+// Which effect is missing.
+pub mod search;
+
 pub use evidence::Evidence;
 pub use gap::Gap;
 pub use kappa::{Kappa, Place, kappa_map};

@@ -11,6 +11,7 @@ use std::f64::consts::TAU;
 use nalgebra::Complex;
 
 use super::evidence::{Evidence, Kind, Series};
+use crate::campaign::Axis;
 use crate::transmissibility::Point;
 
 /// A way in which a sensor may be wrong.
@@ -89,6 +90,8 @@ pub struct Nuisance {
     pub sensors: Vec<Point>,
     /// The lowest and highest frequency of the polynomials, Hz.
     pub band: (f64, f64),
+    /// A coefficient that may be anything: its place, and its standard deviation before any measurement.
+    pub suspect: Option<(usize, f64)>,
 }
 
 impl Nuisance {
@@ -113,7 +116,18 @@ impl Nuisance {
                 frequencies().fold(f64::INFINITY, f64::min),
                 frequencies().fold(0.0, f64::max),
             ),
+            suspect: None,
         }
+    }
+
+    /// The same with a sensor under suspicion: its error of this form may be of the size `sigma`. `None` where no such
+    /// sensor is in the evidence.
+    pub fn suspecting(mut self, location: &str, axis: Axis, form: Form, sigma: f64) -> Option<Self> {
+        let is_it = |sensor: &Point| sensor.location == location && sensor.axis == axis;
+        let sensor = self.sensors.iter().position(is_it)?;
+        let shape = SENSOR.iter().position(|shape| shape.form == form)?;
+        self.suspect = Some((sensor * SENSOR.len() + shape, sigma));
+        Some(self)
     }
 
     /// Number of coefficients: [`SENSOR`] for each sensor in turn.
@@ -128,10 +142,12 @@ impl Nuisance {
 
     /// The standard deviation of each coefficient before any measurement.
     pub fn sigmas(&self) -> Vec<f64> {
-        self.sensors
-            .iter()
-            .flat_map(|_| SENSOR.map(|shape| shape.sigma))
-            .collect()
+        let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
+        let mut sigmas: Vec<f64> = priors.collect();
+        if let Some((place, sigma)) = self.suspect {
+            sigmas[place] = sigma;
+        }
+        sigmas
     }
 
     /// What a sensor with errors of these coefficients shows of a predicted series.

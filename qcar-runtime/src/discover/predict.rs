@@ -18,7 +18,7 @@ use thiserror::Error;
 use super::evidence::{Evidence, Stimulus, excitation_of};
 use crate::campaign::Role;
 use crate::model::Model;
-use crate::response::parameters::Values;
+use crate::response::parameters::{ParameterError, Values};
 use crate::response::signal::SignalError;
 
 /// A parameter that may move.
@@ -49,6 +49,9 @@ pub enum PredictError {
     /// A sensor measures what the model cannot give.
     #[error(transparent)]
     Signal(#[from] SignalError),
+    /// A parameter has no value.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
+    Parameters(Vec<ParameterError>),
     /// What drove a run is no input of the model.
     #[error(
         "model `{model}` has no input `{location}`, which drives {run}; choose a model that has it, or leave the run out"

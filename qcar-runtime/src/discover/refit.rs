@@ -64,15 +64,33 @@ impl Refit {
 /// # Errors
 /// Where the model lacks what was measured.
 pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evidence) -> Result<Refit, PredictError> {
-    const OPTIONS: Options = Options {
+    refit_with(model, values, free, evidence, Nuisance::of(evidence), MOST_EVALUATIONS)
+}
+
+/// How often a refit may evaluate the model unless told otherwise.
+const MOST_EVALUATIONS: usize = 60;
+
+/// The same with sensors that may be wrong as `nuisance` says, and at most so many evaluations.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn refit_with(
+    model: &dyn Model,
+    values: &Values,
+    free: &[Free],
+    evidence: &Evidence,
+    nuisance: Nuisance,
+    evaluations: usize,
+) -> Result<Refit, PredictError> {
+    let options = Options {
         gradient: 1e-5,
         cost: 1e-6,
         step: 1e-6,
-        evaluations: 60,
+        evaluations,
     };
     // What cannot be predicted at all is found before the search, in which nothing can fail.
     predict(model, values, &[], evidence, Role::Fit)?;
-    let mut posterior = Posterior::new(model, values.clone(), free, evidence);
+    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let count = posterior.nuisance.len();
     let start: Vec<f64> = free
         .iter()
@@ -88,7 +106,7 @@ pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evide
             .collect(),
         upper: free.iter().map(|f| f.upper).chain(unbounded(f64::INFINITY)).collect(),
     };
-    let outcome = minimize(&mut posterior, &start, &bounds, &OPTIONS);
+    let outcome = minimize(&mut posterior, &start, &bounds, &options);
     let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
     let information = Information::new(&outcome.jacobian, &inside);
     posterior.move_to(&outcome.x);
@@ -140,8 +158,7 @@ struct Posterior<'a> {
 }
 
 impl<'a> Posterior<'a> {
-    fn new(model: &'a dyn Model, values: Values, free: &[Free], evidence: &'a Evidence) -> Self {
-        let nuisance = Nuisance::of(evidence);
+    fn new(model: &'a dyn Model, values: Values, free: &[Free], evidence: &'a Evidence, nuisance: Nuisance) -> Self {
         Self {
             model,
             values,

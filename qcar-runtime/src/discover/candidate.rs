@@ -1,0 +1,63 @@
+//! What might be missing: a changed model, or a sensor that is wrong. Where candidates come from, the engine does not
+//! know: a [`Workshop`] makes them from files.
+
+use super::nuisance::Form;
+use crate::campaign::Axis;
+use crate::model::Model;
+
+/// Something that might be missing, at a place.
+pub struct Candidate {
+    /// The name of the effect.
+    pub effect: String,
+    /// The link, mass or sensor location.
+    pub at: String,
+    /// What it would change.
+    pub change: Change,
+}
+
+/// What a candidate changes.
+pub enum Change {
+    /// The equations: another model with parameters of its own.
+    Model {
+        /// The changed model.
+        model: Box<dyn Model>,
+        /// What is to be found beside the parameters of the base model.
+        parameters: Vec<Added>,
+    },
+    /// What a sensor shows.
+    Sensor {
+        /// Its location.
+        location: String,
+        /// Its axis.
+        axis: Axis,
+        /// How it is wrong.
+        form: Form,
+        /// The number that says by how much.
+        parameter: Added,
+    },
+}
+
+/// A parameter that an effect brings along.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Added {
+    /// Its name in the changed model.
+    pub name: String,
+    /// Its name in the effect.
+    pub effect_name: String,
+    /// Where a search begins, SI.
+    pub start: f64,
+    /// What is plausible, SI, lower below upper.
+    pub range: (f64, f64),
+}
+
+/// A model and what might be missing in it.
+pub trait Workshop: Sync {
+    /// The model.
+    fn model(&self) -> &dyn Model;
+
+    /// Every effect at every place where it applies.
+    fn candidates(&self) -> Vec<Candidate>;
+
+    /// The same with an effect in the model; `None` for one of a sensor, which changes no model.
+    fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>>;
+}
