@@ -23,6 +23,8 @@ pub mod inertias;
 pub mod catalogue;
 // Effects that a model may miss.
 pub mod effects;
+// Models with effects in them.
+pub mod workshop;
 // Dense and named matrices.
 pub mod state_space;
 // What the user can ask for.

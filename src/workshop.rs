@@ -1,0 +1,105 @@
+//! Models with effects in them, for the search of what is missing: patched, compiled and ready to run.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use qcar_dsl::check::Checked;
+use qcar_dsl::compile::derive;
+use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
+use qcar_runtime::campaign::Axis;
+use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
+use qcar_runtime::discover::nuisance::Form;
+use qcar_runtime::model::Model;
+use rayon::prelude::*;
+
+use crate::evaluated::Evaluated;
+
+/// A model on the bench, and the catalogue beside it.
+#[derive(Clone)]
+pub struct Bench {
+    model: Checked,
+    running: Arc<Evaluated>,
+    catalogue: Arc<Vec<Patch>>,
+    values: Arc<BTreeMap<String, f64>>,
+}
+
+impl Bench {
+    /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
+    pub fn new(model: Checked, catalogue: Arc<Vec<Patch>>, values: Arc<BTreeMap<String, f64>>) -> Self {
+        Bench {
+            running: Arc::new(Evaluated::new(&derive(model.clone()))),
+            model,
+            catalogue,
+            values,
+        }
+    }
+
+    /// The model as it lies there.
+    pub fn checked(&self) -> &Checked {
+        &self.model
+    }
+
+    /// The model with an effect in it; `None` where that does not apply.
+    pub fn patched(&self, effect: &str, at: &str) -> Option<Patched> {
+        let patch = self.catalogue.iter().find(|patch| patch.effect().name.text == effect)?;
+        self.apply(patch, at)
+    }
+
+    fn apply(&self, patch: &Patch, at: &str) -> Option<Patched> {
+        patch.apply(&self.model, at, &|name| self.values.get(name).copied()).ok()
+    }
+}
+
+impl Workshop for Bench {
+    fn model(&self) -> &dyn Model {
+        &*self.running
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let places = self.catalogue.par_iter().flat_map_iter(|patch| {
+            let places = patch.places(&self.model).into_iter();
+            places.filter_map(|place| self.apply(patch, &place.label))
+        });
+        places.filter_map(candidate).collect()
+    }
+
+    fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>> {
+        let patched = self.patched(effect, at)?;
+        let changes_model = patched.signals.is_empty();
+        let bench = || Bench::new(patched.model, Arc::clone(&self.catalogue), Arc::clone(&self.values));
+        changes_model.then(|| Box::new(bench()) as Box<dyn Workshop>)
+    }
+}
+
+/// What the search needs of a patched model.
+fn candidate(patched: Patched) -> Option<Candidate> {
+    let change = match patched.signals.first() {
+        None => Change::Model {
+            parameters: patched.parameters.iter().map(added).collect(),
+            model: Box::new(Evaluated::new(&derive(patched.model))),
+        },
+        Some(signal) => Change::Sensor {
+            location: signal.location.clone(),
+            axis: if signal.axis == "x" { Axis::X } else { Axis::Z },
+            form: match signal.kind {
+                Signal::Delay => Form::Delay,
+                Signal::Gain => Form::Gain(0),
+            },
+            parameter: added(patched.parameters.first()?),
+        },
+    };
+    Some(Candidate {
+        effect: patched.effect,
+        at: patched.place,
+        change,
+    })
+}
+
+fn added(parameter: &NewParameter) -> Added {
+    Added {
+        name: parameter.name.clone(),
+        effect_name: parameter.effect_name.clone(),
+        start: parameter.start,
+        range: parameter.range,
+    }
+}
