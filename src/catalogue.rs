@@ -83,16 +83,28 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// # Errors
 /// As [`load`]; a name that is not known is a mistake of the campaign where the user names none.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
+    load(&wanted_or_campaigns(campaign, wanted)?)
+}
+
+/// All that the compiler derives of the model that the user wants, else of the campaign's.
+///
+/// # Errors
+/// As [`compiled`]; a name that is not known is a mistake of the campaign where the user names none.
+pub fn compiled_of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Compiled, Failure> {
+    compiled(&wanted_or_campaigns(campaign, wanted)?)
+}
+
+fn wanted_or_campaigns(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
         let remedy = format!("choose among {}, or give the path of a file with --model", listed());
         return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
     }
-    match wanted {
-        Some(model) => load(model),
-        None if looks_like_a_path(&campaign.model) => load(&campaign.folder.join(&campaign.model).to_string_lossy()),
-        None => load(&campaign.model),
-    }
+Ok(match wanted {
+        Some(model) => model.into(),
+        None if looks_like_a_path(&campaign.model) => campaign.folder.join(&campaign.model).display().to_string(),
+        None => campaign.model.clone(),
+    })
 }
 
 /// All that the compiler derives of a model.

@@ -3,7 +3,7 @@
 use clap::{Parser, Subcommand};
 
 use crate::failure::Failure;
-use crate::verbs::{check, diff, effects, fit, frf, kc, matrices, patch, score, show, simulate};
+use crate::verbs::{check, diff, discover, effects, fit, frf, kc, matrices, patch, score, show, simulate};
 
 /// Quarter-car axle models: compile them, fit them to rig data
 ///
@@ -27,6 +27,7 @@ enum Verb {
     Fit(fit::Arguments),
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
+    Discover(discover::Arguments),
     Score(score::Arguments),
     Effects(effects::Arguments),
     Patch(patch::Arguments),
@@ -44,6 +45,7 @@ impl Cli {
             Verb::Fit(arguments) => fit::run(&arguments),
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
+            Verb::Discover(arguments) => discover::run(&arguments),
             Verb::Score(arguments) => score::run(&arguments),
             Verb::Effects(arguments) => effects::run(&arguments),
             Verb::Patch(arguments) => patch::run(&arguments),

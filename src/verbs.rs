@@ -8,6 +8,7 @@ use crate::parameters::Setting;
 
 pub mod check;
 pub mod diff;
+pub mod discover;
 pub mod effects;
 pub mod fit;
 pub mod frf;

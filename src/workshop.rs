@@ -39,6 +39,11 @@ impl Bench {
         &self.model
     }
 
+    /// Another model beside the same catalogue.
+    pub fn holding(&self, model: Checked) -> Self {
+        Bench::new(model, Arc::clone(&self.catalogue), Arc::clone(&self.values))
+    }
+
     /// The model with an effect in it; `None` where that does not apply.
     pub fn patched(&self, effect: &str, at: &str) -> Option<Patched> {
         let patch = self.catalogue.iter().find(|patch| patch.effect().name.text == effect)?;
@@ -46,7 +51,9 @@ impl Bench {
     }
 
     fn apply(&self, patch: &Patch, at: &str) -> Option<Patched> {
-        patch.apply(&self.model, at, &|name| self.values.get(name).copied()).ok()
+        patch
+            .apply(&self.model, at, &|name| self.values.get(name).copied())
+            .ok()
     }
 }
 
@@ -66,8 +73,7 @@ impl Workshop for Bench {
     fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>> {
         let patched = self.patched(effect, at)?;
         let changes_model = patched.signals.is_empty();
-        let bench = || Bench::new(patched.model, Arc::clone(&self.catalogue), Arc::clone(&self.values));
-        changes_model.then(|| Box::new(bench()) as Box<dyn Workshop>)
+        changes_model.then(|| Box::new(self.holding(patched.model)) as Box<dyn Workshop>)
     }
 }
 

@@ -118,6 +118,14 @@ pub enum Kind {
 }
 
 impl Kind {
+    /// Which harmonic the values are; `None` for other than harmonics.
+    pub fn order(self) -> Option<usize> {
+        match self {
+            Kind::Harmonic(order) => Some(order),
+            _ => None,
+        }
+    }
+
     /// True where values have an imaginary part.
     pub fn complex(self) -> bool {
         match self {
@@ -185,6 +193,17 @@ impl Evidence {
             values.for_each(|(value, sigma)| *sigma = sigma.hypot(share * value.norm()));
         }
         tolerant
+    }
+
+    /// The same with every so many-th value of each series, for a first look.
+    pub fn thinned(&self, step: usize) -> Self {
+        let mut thinned = self.clone();
+        for series in &mut thinned.series {
+            series.at = series.at.iter().copied().step_by(step).collect();
+            series.value = series.value.iter().copied().step_by(step).collect();
+            series.sigma = series.sigma.iter().copied().step_by(step).collect();
+        }
+        thinned
     }
 
     /// The same with only the runs that `keep` wants.

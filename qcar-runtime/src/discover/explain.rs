@@ -40,6 +40,8 @@ pub struct Setting {
 /// A model's explanation.
 #[derive(Clone, Debug)]
 pub struct Explanation {
+    /// The parameters of its model by name.
+    pub named: Vec<(String, f64)>,
     /// Its parameters and sensor errors.
     pub refit: Refit,
     /// What it leaves.
@@ -48,62 +50,96 @@ pub struct Explanation {
 
 /// Tolerance of the coarse fit, as a share of every value.
 const TOLERANCE: f64 = 0.1;
+/// A coarse fit looks at every so many-th value.
+const THINNED: usize = 3;
 /// Evaluations of a coarse fit.
-const COARSE: usize = 25;
+const COARSE: usize = 15;
 /// Evaluations of a sharp fit.
-const SHARP: usize = 60;
+const SHARP: usize = 40;
 
-/// Explains the evidence by a model, with parameters beside those of the base model, from the base model's start values
-/// and from `known`, those of an earlier explanation.
-///
-/// # Errors
-/// Where the model lacks what was measured, or a parameter has no value.
-pub fn explain(
-    model: &dyn Model,
-    added: &[Added],
-    setting: &Setting,
-    known: Option<&BTreeMap<String, f64>>,
-    evidence: &Evidence,
-    nuisance: &Nuisance,
-) -> Result<Explanation, PredictError> {
-    let tolerant = evidence.tolerant(TOLERANCE);
-    let starts = starts(model, added, setting, known)?;
-    let coarse: Result<Vec<(Refit, Vec<Free>)>, PredictError> = starts
-        .into_par_iter()
-        .map(|values| {
-            let free = free(model, added, setting);
-            let refit = refit_with(model, &values, &free, &tolerant, nuisance.clone(), COARSE)?;
-            Ok((refit, free))
-        })
-        .collect();
-    let (coarse, free) = coarse?
-        .into_iter()
-        .min_by(|a, b| a.0.chi2.total_cmp(&b.0.chi2))
-        .expect("there is at least the campaign's start");
-    let refit = refit_with(model, &coarse.values, &free, evidence, nuisance.clone(), SHARP)?;
-    let gap = Gap::of(model, &refit, evidence)?;
-    Ok(Explanation { refit, gap })
+/// A model with what it brings along, put before the evidence.
+pub struct Explanandum<'a> {
+    /// The model.
+    pub model: &'a dyn Model,
+    /// Its parameters beside those of the base model.
+    pub added: &'a [Added],
+    /// What is given.
+    pub setting: &'a Setting,
+    /// Values of an earlier explanation, from which to start too.
+    pub known: Option<&'a BTreeMap<String, f64>>,
+    /// What sensors may be wrong by.
+    pub nuisance: Nuisance,
 }
 
-/// The starts: the campaign's values and the known ones, each with the added parameters low, at their start, and high.
-fn starts(
-    model: &dyn Model,
-    added: &[Added],
-    setting: &Setting,
-    known: Option<&BTreeMap<String, f64>>,
-) -> Result<Vec<Values>, PredictError> {
-    let campaign: BTreeMap<String, f64> = setting.given.iter().map(|p| (p.name.clone(), p.value)).collect();
-    let bases = [Some(campaign), known.map(|known| within(known, setting))];
-    let shifts: &[f64] = if added.is_empty() { &[0.0] } else { &[0.0, -0.5, 0.5] };
-    let mut starts = Vec::new();
-    for base in bases.into_iter().flatten() {
-        for &shift in shifts {
-            let mut given = base.clone();
-            given.extend(added.iter().map(|p| (p.name.clone(), towards(p, shift))));
-            starts.push(Values::resolve(model.about(), &given, &setting.vehicle).map_err(PredictError::Parameters)?);
-        }
+impl Explanandum<'_> {
+    /// The best coarse fit of all starts, with tolerance.
+    ///
+    /// # Errors
+    /// Where the model lacks what was measured, or a parameter has no value.
+    pub fn coarse(&self, evidence: &Evidence) -> Result<Refit, PredictError> {
+        let tolerant = evidence.thinned(THINNED).tolerant(TOLERANCE);
+        let free = self.free();
+        let fits = self
+            .starts()?
+            .into_par_iter()
+            .map(|values| refit_with(self.model, &values, &free, &tolerant, self.nuisance.clone(), COARSE));
+        let fits = fits.collect::<Result<Vec<_>, _>>()?;
+        let best = fits.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
+        Ok(best.expect("there is at least the campaign's start"))
     }
-    Ok(starts)
+
+    /// The sharp fit that starts from a coarse one.
+    ///
+    /// # Errors
+    /// As [`Explanandum::coarse`].
+    pub fn sharp(&self, coarse: &Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
+        let nuisance = self.nuisance.clone();
+        let refit = refit_with(self.model, &coarse.values, &coarse.free, evidence, nuisance, SHARP)?;
+        let gap = Gap::of(self.model, &refit, evidence)?;
+        let names = self.model.about().parameters.iter().map(|p| p.name.to_string());
+        let named = names.zip(refit.values.as_slice().iter().copied()).collect();
+        Ok(Explanation { named, refit, gap })
+    }
+
+    /// The starts: the campaign's values and the known ones, each with the added parameters at their start, low and high.
+    fn starts(&self) -> Result<Vec<Values>, PredictError> {
+        let given = self.setting.given.iter();
+        let campaign: BTreeMap<String, f64> = given.map(|p| (p.name.clone(), p.value)).collect();
+        let bases = [Some(campaign), self.known.map(|known| within(known, self.setting))];
+        let shifts: &[f64] = if self.added.is_empty() {
+            &[0.0]
+        } else {
+            &[0.0, -0.5, 0.5]
+        };
+        let mut starts = Vec::new();
+        for base in bases.into_iter().flatten() {
+            for &shift in shifts {
+                let mut given = base.clone();
+                given.extend(self.added.iter().map(|p| (p.name.clone(), towards(p, shift))));
+                let values = Values::resolve(self.model.about(), &given, &self.setting.vehicle);
+                starts.push(values.map_err(PredictError::Parameters)?);
+            }
+        }
+        Ok(starts)
+    }
+
+    fn free(&self) -> Vec<Free> {
+        let place = |name: &str| self.model.about().parameters.iter().position(|p| p.name == name);
+        let given = self
+            .setting
+            .given
+            .iter()
+            .filter_map(|p| Some((p.name.as_str(), p.range?)));
+        let added = self.added.iter().map(|p| (p.name.as_str(), p.range));
+        let free = |(name, (lower, upper))| {
+            place(name).map(|parameter| Free {
+                parameter,
+                lower,
+                upper,
+            })
+        };
+        given.chain(added).filter_map(free).collect()
+    }
 }
 
 /// A value on the way from the start (0) to the lower (-1) or the upper end (1) of the range, by ratio where it can be.
@@ -126,20 +162,4 @@ fn within(known: &BTreeMap<String, f64>, setting: &Setting) -> BTreeMap<String, 
         value.clamp(low + margin, high - margin)
     };
     setting.given.iter().map(|p| (p.name.clone(), inside(p))).collect()
-}
-
-fn free(model: &dyn Model, added: &[Added], setting: &Setting) -> Vec<Free> {
-    let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name);
-    let given = setting.given.iter().filter_map(|p| Some((p.name.as_str(), p.range?)));
-    let added = added.iter().map(|p| (p.name.as_str(), p.range));
-    given
-        .chain(added)
-        .filter_map(|(name, (lower, upper))| {
-            Some(Free {
-                parameter: place(name)?,
-                lower,
-                upper,
-            })
-        })
-        .collect()
 }

@@ -11,9 +11,10 @@ use rayon::prelude::*;
 
 use super::candidate::{Added, Candidate, Change, Workshop};
 use super::evidence::Evidence;
-use super::explain::{Explanation, Given, Setting, explain};
+use super::explain::{Explanandum, Explanation, Given, Setting};
 use super::nuisance::{Form, Nuisance};
 use super::predict::PredictError;
+use super::refit::Refit;
 use crate::campaign::Role;
 
 /// The answer.
@@ -88,6 +89,8 @@ const ALL_CLOSED: f64 = 0.97;
 const ALIKE: f64 = 20.0;
 /// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
 const SUSPECT: [f64; 2] = [1.0, 0.02];
+/// Candidates that are fitted sharply, the best of the coarse fits.
+const LOOKED_INTO: usize = 8;
 /// Rivals that are listed.
 const LISTED: usize = 6;
 
@@ -102,11 +105,19 @@ pub fn discover(
     progress: &(dyn Fn(&str) + Sync),
 ) -> Result<Discovery, PredictError> {
     progress("fitting the base model");
-    let before = explain(workshop.model(), &[], setting, None, evidence, &Nuisance::of(evidence))?;
+    let nuisance = Nuisance::of(evidence);
+    let base = Explanandum {
+        model: workshop.model(),
+        added: &[],
+        setting,
+        known: None,
+        nuisance: nuisance.clone(),
+    };
+    let before = base.sharp(&base.coarse(evidence)?, evidence)?;
     let mut state = State {
         workshop,
         setting: setting.clone(),
-        nuisance: Nuisance::of(evidence),
+        nuisance,
         explanation: before.clone(),
     };
     let mut findings = Vec::new();
@@ -202,9 +213,18 @@ impl State {
         let candidates = self.workshop.candidates();
         let count = candidates.len();
         progress(&format!("trying {count} effects at their places"));
-        let trials = candidates
-            .into_par_iter()
-            .filter_map(|candidate| self.try_out(candidate, evidence));
+        let known = self.known();
+        let looks = candidates.into_par_iter().filter_map(|candidate| {
+            let coarse = self.explanandum(&candidate, &known)?.coarse(evidence).ok();
+            let coarse = coarse.filter(|coarse| coarse.chi2.is_finite())?;
+            Some((candidate, coarse))
+        });
+        let mut looks: Vec<(Candidate, Refit)> = looks.collect();
+        looks.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
+        looks.truncate(LOOKED_INTO);
+        progress(&format!("looking into the best {} of them", looks.len()));
+        let trials = looks.into_par_iter();
+        let trials = trials.filter_map(|(candidate, coarse)| self.try_out(candidate, &coarse, &known, evidence));
         let mut trials: Vec<Trial> = trials.collect();
         trials.sort_by(|a, b| a.score.total_cmp(&b.score));
         let Some(best) = trials.first() else { return Ok(None) };
@@ -234,32 +254,39 @@ impl State {
         }))
     }
 
-    fn try_out(&self, candidate: Candidate, evidence: &Evidence) -> Option<Trial> {
-        let known = Some(self.known());
-        let explanation = match &candidate.change {
-            Change::Model { model, parameters } => explain(
-                &**model,
-                parameters,
-                &self.setting,
-                known.as_ref(),
-                evidence,
-                &self.nuisance,
-            ),
+    /// A candidate with what is known; `None` for a sensor that the evidence does not have.
+    fn explanandum<'a>(
+        &'a self,
+        candidate: &'a Candidate,
+        known: &'a BTreeMap<String, f64>,
+    ) -> Option<Explanandum<'a>> {
+        let (model, added, nuisance) = match &candidate.change {
+            Change::Model { model, parameters } => (&**model, parameters.as_slice(), self.nuisance.clone()),
             Change::Sensor {
                 location, axis, form, ..
             } => {
                 let sigma = SUSPECT[usize::from(*form == Form::Delay)];
-                let nuisance = Nuisance::of(evidence).suspecting(location, *axis, *form, sigma)?;
-                explain(
-                    self.workshop.model(),
-                    &[],
-                    &self.setting,
-                    known.as_ref(),
-                    evidence,
-                    &nuisance,
-                )
+                let nuisance = self.nuisance.clone().suspecting(location, *axis, *form, sigma)?;
+                (self.workshop.model(), &[][..], nuisance)
             }
         };
+        Some(Explanandum {
+            model,
+            added,
+            setting: &self.setting,
+            known: Some(known),
+            nuisance,
+        })
+    }
+
+    fn try_out(
+        &self,
+        candidate: Candidate,
+        coarse: &Refit,
+        known: &BTreeMap<String, f64>,
+        evidence: &Evidence,
+    ) -> Option<Trial> {
+        let explanation = self.explanandum(&candidate, known)?.sharp(coarse, evidence);
         // A candidate that predicts no number where others do is no explanation.
         let explanation = explanation.ok().filter(|e| e.refit.chi2.is_finite())?;
         let penalty = (explanation.refit.residuals as f64).ln();
@@ -273,12 +300,7 @@ impl State {
 
     /// Values of the parameters that the last explanation has found.
     fn known(&self) -> BTreeMap<String, f64> {
-        let parameters = self.workshop.model().about().parameters.iter();
-        let values = self.explanation.refit.values.as_slice();
-        parameters
-            .zip(values)
-            .map(|(p, &value)| (p.name.to_string(), value))
-            .collect()
+        self.explanation.named.iter().cloned().collect()
     }
 
     /// The rules by which an effect may be named.

@@ -1,0 +1,166 @@
+//! `qcar discover`: where a model and a campaign disagree, and which effect is missing.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use qcar_dsl::patch::Patch;
+use qcar_dsl::source::Source;
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::candidate::Workshop;
+use qcar_runtime::discover::explain::{Given, Setting};
+use qcar_runtime::discover::search::{Discovery, Verdict, discover};
+
+use crate::catalogue;
+use crate::failure::Failure;
+use crate::files::put;
+use crate::progress::Showing;
+use crate::workshop::Bench;
+
+// The answer as text and JSON.
+mod render;
+// The gap as a figure.
+mod figure;
+
+/// Find the effect that a campaign has and its model lacks
+///
+/// Fits the model to the runs with the role `fit`, looks at what is left in units of its uncertainty, tries the effects
+/// of the catalogue at every place where they apply, and judges them on the runs that are `held_out`.
+/// The verdict is `none` where the gap is noise, `found`, `class` where several effects explain it alike, or `unknown`.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out results")]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    /// Start from this model, by name or path, in place of the campaign's
+    #[arg(long)]
+    model: Option<String>,
+    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// A campaign, and what was found in it.
+struct Answer {
+    campaign: String,
+    evidence: Evidence,
+    discovery: Discovery,
+    model: Option<Written>,
+    seconds: f64,
+}
+
+/// The model with the effects in it.
+struct Written {
+    name: String,
+    text: String,
+    file: Option<PathBuf>,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let mut answer = answer(&arguments.campaign, arguments.model.as_deref())?;
+    if let Some(folder) = &arguments.out {
+        write(&mut answer, folder)?;
+    }
+    Ok(match arguments.format {
+        Format::Text => render::text(&answer),
+        Format::Json => render::json(&answer),
+    })
+}
+
+fn answer(folder: &Path, model: Option<&str>) -> Result<Answer, Failure> {
+    let begun = Instant::now();
+    let campaign = Campaign::open(folder)?;
+    let bench = bench(&campaign, model)?;
+    let evidence = Evidence::from_campaign(&campaign, bench.model().about())?;
+    let showing = Showing::new();
+    let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));
+    let found = discover(Box::new(bench.clone()), &setting(&campaign), &evidence, &told);
+    drop(showing);
+    let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    Ok(Answer {
+        model: patched(bench, &discovery),
+        campaign: campaign.name,
+        evidence,
+        discovery,
+        seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// The campaign's model beside the catalogue.
+fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
+    let compiled = catalogue::compiled_of_campaign(campaign, model)?;
+    let effects = models::effects().iter().map(|effect| {
+        Patch::read(Source {
+            name: effect.file.into(),
+            text: effect.text.into(),
+        })
+    });
+    let effects: Result<Vec<Patch>, _> = effects.collect();
+    let effects = effects.map_err(|report| Failure::Input(report.to_string()))?;
+    let vehicle = campaign.vehicle.iter().cloned();
+    let values: BTreeMap<String, f64> = vehicle
+        .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
+        .collect();
+    Ok(Bench::new(compiled.model, Arc::new(effects), Arc::new(values)))
+}
+
+fn setting(campaign: &Campaign) -> Setting {
+    let given = campaign.parameters.iter().map(|p| Given {
+        name: p.name.clone(),
+        value: p.value,
+        range: p.range.filter(|_| p.fit),
+    });
+    Setting {
+        given: given.collect(),
+        vehicle: campaign.vehicle.iter().cloned().collect(),
+    }
+}
+
+/// The model file with all that was found.
+fn patched(mut bench: Bench, discovery: &Discovery) -> Option<Written> {
+    if discovery.verdict != Verdict::Found {
+        return None;
+    }
+    let mut written = None;
+    for finding in &discovery.findings {
+        let patched = bench.patched(&finding.effect, &finding.at)?;
+        if !patched.signals.is_empty() {
+            continue;
+        }
+        let (before, after) = (&discovery.before.gap, &discovery.after.gap);
+        let evidence = format!(
+            "Evidence: the gap of held-out runs over their uncertainty fell from {:.2} to {:.2}.",
+            before.held_out, after.held_out
+        );
+        let text = patched.text(&evidence);
+        bench = bench.holding(patched.model);
+        let name = bench.checked().name.clone();
+        written = Some(Written { name, text, file: None });
+    }
+    written
+}
+
+fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
+    if let Some(model) = &mut answer.model {
+        let name = format!("{}.axle", model.name);
+        put(folder, &name, &model.text)?;
+        model.file = Some(folder.join(name));
+    }
+    put(folder, "parameters.toml", &render::parameters(answer))?;
+    put(folder, "gap.svg", &figure::gap(answer).svg())?;
+    put(folder, "discovery.json", &render::json(answer))?;
+    Ok(())
+}

@@ -1,0 +1,46 @@
+//! The gap over frequency before and after, a panel for each sensor.
+
+use qcar_runtime::discover::gap::Gap;
+use qcar_runtime::transmissibility::Point;
+
+use super::Answer;
+use crate::figure::{Curve, Figure, Panel, Style};
+
+pub(super) fn gap(of: &Answer) -> Figure {
+    let tiles = &of.discovery.before.gap.tiles;
+    let mut sensors: Vec<&Point> = tiles.iter().map(|tile| &tile.sensor).collect();
+    sensors.sort();
+    sensors.dedup();
+    let panel = |sensor: &Point| Panel {
+        title: sensor.location.clone(),
+        vertical: "gap over uncertainty, dB".into(),
+        curves: vec![
+            curve("before", Style::Before, &of.discovery.before.gap, sensor),
+            curve("after", Style::After, &of.discovery.after.gap, sensor),
+        ],
+    };
+    Figure {
+        title: format!("{}: what the model leaves, 0 dB being the noise", of.campaign),
+        panels: sensors.into_iter().map(panel).collect(),
+    }
+}
+
+/// The first harmonics' tiles of all levels, in the order of frequency.
+fn curve(label: &'static str, style: Style, gap: &Gap, sensor: &Point) -> Curve {
+    let of_sensor = gap
+        .tiles
+        .iter()
+        .filter(|tile| tile.sensor == *sensor && tile.kind.order() == Some(1));
+    let mut points: Vec<(f64, f64)> = of_sensor
+        .map(|tile| ((tile.span.0 * tile.span.1).sqrt(), 20.0 * tile.strength.log10()))
+        .collect();
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    points.dedup_by(|later, earlier| {
+        let same = later.0 == earlier.0;
+        if same {
+            earlier.1 = earlier.1.max(later.1);
+        }
+        same
+    });
+    Curve { label, style, points }
+}

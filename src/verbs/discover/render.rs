@@ -1,0 +1,257 @@
+//! What was discovered, as text for people and as JSON for programs.
+
+use std::fmt::Write;
+
+use qcar_runtime::discover::gap::Tile;
+use qcar_runtime::discover::search::{Finding, Rival, Verdict};
+use qcar_runtime::transmissibility::Point;
+use serde::Serialize;
+
+use super::Answer;
+use crate::json::{self, Ordered};
+use crate::table::{Table, number};
+
+#[derive(Serialize)]
+struct Result<'a> {
+    verdict: Verdict,
+    effects: Vec<Effect<'a>>,
+    r#where: Vec<Where>,
+    gap: Gaps,
+    by_channel: Ordered<BeforeAfter>,
+    model_file: Option<String>,
+    notices: &'a [String],
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Effect<'a> {
+    name: &'a str,
+    at: &'a str,
+    parameters: Ordered<f64>,
+    stderr: Ordered<Option<f64>>,
+    evidence: Evidence,
+    rivals: &'a [Rival],
+}
+
+#[derive(Serialize)]
+struct Evidence {
+    /// Fall of the sum of squares of the fitted runs.
+    chi2_lowered_by: f64,
+    /// Share of the excess of the held-out gap.
+    gap_closed: f64,
+}
+
+#[derive(Serialize)]
+struct Where {
+    channel: String,
+    harmonic: Option<usize>,
+    band_hz: Option<(f64, f64)>,
+    /// Where the values are no harmonics.
+    window_s: Option<(f64, f64)>,
+    level: f64,
+    strength: f64,
+}
+
+#[derive(Serialize)]
+struct Gaps {
+    fit: BeforeAfter,
+    held_out: BeforeAfter,
+}
+
+/// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
+#[derive(Serialize)]
+struct BeforeAfter {
+    before: Option<f64>,
+    after: Option<f64>,
+}
+
+impl BeforeAfter {
+    fn new(before: f64, after: f64) -> Self {
+        let finite = |value: f64| value.is_finite().then_some(value);
+        BeforeAfter {
+            before: finite(before),
+            after: finite(after),
+        }
+    }
+}
+
+/// Tiles that are listed.
+const LISTED: usize = 24;
+
+pub(super) fn json(of: &Answer) -> String {
+    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    json::line(&Result {
+        verdict: of.discovery.verdict,
+        effects: of.discovery.findings.iter().map(effect).collect(),
+        r#where: before.tiles.iter().take(LISTED).map(place).collect(),
+        gap: Gaps {
+            fit: BeforeAfter::new(before.fit, after.fit),
+            held_out: BeforeAfter::new(before.held_out, after.held_out),
+        },
+        by_channel: by_channel(of),
+        model_file: of
+            .model
+            .as_ref()
+            .and_then(|model| model.file.as_ref())
+            .map(|file| file.display().to_string()),
+        notices: &of.evidence.notices,
+        seconds: of.seconds,
+    })
+}
+
+fn effect(finding: &Finding) -> Effect<'_> {
+    let of = |value: fn(&(String, f64, f64)) -> f64| {
+        let named = finding.parameters.iter().map(move |p| (p.0.clone(), value(p)));
+        named.collect::<Vec<_>>()
+    };
+    Effect {
+        name: &finding.effect,
+        at: &finding.at,
+        parameters: of(|p| p.1).into_iter().collect(),
+        stderr: of(|p| p.2)
+            .into_iter()
+            .map(|(name, e)| (name, e.is_finite().then_some(e)))
+            .collect(),
+        evidence: Evidence {
+            chi2_lowered_by: finding.evidence,
+            gap_closed: finding.closed,
+        },
+        rivals: &finding.rivals,
+    }
+}
+
+fn place(tile: &Tile) -> Where {
+    Where {
+        channel: channel(&tile.sensor),
+        harmonic: tile.kind.order(),
+        band_hz: tile.kind.order().map(|_| tile.span),
+        window_s: tile.kind.order().is_none().then_some(tile.span),
+        level: tile.level,
+        strength: tile.strength,
+    }
+}
+
+fn channel(sensor: &Point) -> String {
+    let axis = format!("{:?}", sensor.axis).to_lowercase();
+    format!("{}_{axis}", sensor.location)
+}
+
+/// The gap of each sensor over all runs.
+fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
+    let mut sensors: Vec<&Point> = of.evidence.series.iter().map(|series| &series.sensor).collect();
+    sensors.sort();
+    sensors.dedup();
+    let gap = |sensor: &Point, residuals: &[Vec<f64>]| {
+        let of_sensor = of
+            .evidence
+            .series
+            .iter()
+            .zip(residuals)
+            .filter(|(series, _)| series.sensor == *sensor);
+        qcar_runtime::discover::gap::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
+    };
+    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    let named = sensors.into_iter().map(|sensor| {
+        let gaps = BeforeAfter::new(gap(sensor, &before.residuals), gap(sensor, &after.residuals));
+        (channel(sensor), gaps)
+    });
+    named.collect()
+}
+
+/// A parameter file as `--params` takes it.
+pub(super) fn parameters(of: &Answer) -> String {
+    let mut out = format!("# {}: what explains its runs best\n\n[parameters]\n", of.campaign);
+    for (name, value) in &of.discovery.after.named {
+        let _ = writeln!(out, "{name} = {value:?}");
+    }
+    out
+}
+
+pub(super) fn text(of: &Answer) -> String {
+    let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
+    let mut out = format!("{}: {}\n\n", of.campaign, sentence(of));
+    let mut gaps = Table::new(["gap_over_uncertainty", "before", "after"]);
+    for (name, before, after) in [
+        ("fit", before.fit, after.fit),
+        ("held_out", before.held_out, after.held_out),
+    ] {
+        gaps.row(vec![name.into(), number(before, 3), number(after, 3)]);
+    }
+    out += &gaps.text();
+    for finding in &of.discovery.findings {
+        out += &format!("\n{}", described(finding));
+    }
+    if of.discovery.verdict != Verdict::None {
+        out += &format!("\nwhere the model of the campaign is wrong\n{}", places(of));
+    }
+    if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
+        let _ = writeln!(out, "\nthe model with it: {}", file.display());
+    }
+    out
+}
+
+fn sentence(of: &Answer) -> String {
+    let names: Vec<String> = of
+        .discovery
+        .findings
+        .iter()
+        .map(|f| format!("{} at {}", f.effect, f.at))
+        .collect();
+    match of.discovery.verdict {
+        Verdict::None => "nothing is missing, what is left is noise".into(),
+        Verdict::Found => format!("found {}", names.join(" and ")),
+        Verdict::Class => format!("these data cannot tell apart {}", names.join(", ")),
+        Verdict::Unknown => "something is missing, and no effect of the catalogue explains it".into(),
+    }
+}
+
+fn described(finding: &Finding) -> String {
+    let mut table = Table::new(["parameter", "value", "stderr"]);
+    for (name, value, error) in &finding.parameters {
+        let error = if error.is_finite() {
+            number(*error, 2)
+        } else {
+            "-".into()
+        };
+        table.row(vec![name.clone(), number(*value, 4), error]);
+    }
+    let share = 100.0 * finding.closed;
+    let mut out = format!(
+        "{} at {} closes {share:.1} % of the gap\n{}",
+        finding.effect,
+        finding.at,
+        table.text()
+    );
+    for rival in finding.rivals.iter().take(3) {
+        let _ = writeln!(
+            out,
+            "behind it by {}: {} at {}",
+            number(rival.behind, 3),
+            rival.effect,
+            rival.at
+        );
+    }
+    out
+}
+
+fn places(of: &Answer) -> String {
+    let mut table = Table::new([
+        "channel",
+        "harmonic",
+        "from_Hz",
+        "to_Hz",
+        "level",
+        "times_the_uncertainty",
+    ]);
+    for tile in of.discovery.before.gap.tiles.iter().take(8) {
+        table.row(vec![
+            channel(&tile.sensor),
+            tile.kind.order().map_or("-".into(), |order| order.to_string()),
+            number(tile.span.0, 3),
+            number(tile.span.1, 3),
+            number(tile.level, 3),
+            number(tile.strength, 3),
+        ]);
+    }
+    table.text()
+}
