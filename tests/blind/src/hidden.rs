@@ -34,7 +34,7 @@ impl Hidden {
     }
 }
 
-/// The hidden effects as the equations of motion need them: what is absent is `None`.
+/// The hidden effects as the equations of motion need them: what is absent is `None`. Names are those of the catalogue.
 #[derive(Clone, Debug, Default)]
 pub struct Laws {
     pub friction: Option<Friction>,
