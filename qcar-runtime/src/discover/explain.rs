@@ -56,6 +56,8 @@ const THINNED: usize = 3;
 const COARSE: usize = 15;
 /// Evaluations of a sharp fit.
 const SHARP: usize = 40;
+/// Coarse fits that are sharpened: the best of them may end in a poor minimum.
+const SHARPENED: usize = 3;
 
 /// A model with what it brings along, put before the evidence.
 pub struct Explanandum<'a> {
@@ -72,29 +74,38 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// The best coarse fit of all starts, with tolerance.
+    /// The coarse fits of all starts, with tolerance, the best first.
     ///
     /// # Errors
     /// Where the model lacks what was measured, or a parameter has no value.
-    pub fn coarse(&self, evidence: &Evidence) -> Result<Refit, PredictError> {
+    pub fn coarse(&self, evidence: &Evidence) -> Result<Vec<Refit>, PredictError> {
         let tolerant = evidence.thinned(THINNED).tolerant(TOLERANCE);
         let free = self.free();
         let fits = self
             .starts()?
             .into_par_iter()
             .map(|values| refit_with(self.model, &values, &free, &tolerant, self.nuisance.clone(), COARSE));
-        let fits = fits.collect::<Result<Vec<_>, _>>()?;
-        let best = fits.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
-        Ok(best.expect("there is at least the campaign's start"))
+        let mut fits = fits.collect::<Result<Vec<_>, _>>()?;
+        fits.retain(|fit| fit.chi2.is_finite());
+        fits.sort_by(|a, b| a.chi2.total_cmp(&b.chi2));
+        Ok(fits)
     }
 
-    /// The sharp fit that starts from a coarse one.
+    /// The best sharp fit that starts from the best coarse ones; `None` where there are none.
     ///
     /// # Errors
     /// As [`Explanandum::coarse`].
-    pub fn sharp(&self, coarse: &Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
-        let nuisance = self.nuisance.clone();
-        let refit = refit_with(self.model, &coarse.values, &coarse.free, evidence, nuisance, SHARP)?;
+    pub fn sharp(&self, coarse: &[Refit], evidence: &Evidence) -> Result<Option<Explanation>, PredictError> {
+        let fits = coarse.par_iter().take(SHARPENED).map(|coarse| {
+            let nuisance = self.nuisance.clone();
+            refit_with(self.model, &coarse.values, &coarse.free, evidence, nuisance, SHARP)
+        });
+        let fits = fits.collect::<Result<Vec<_>, _>>()?;
+        let best = fits.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
+        best.map(|refit| self.explanation(refit, evidence)).transpose()
+    }
+
+    fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
         let gap = Gap::of(self.model, &refit, evidence)?;
         let names = self.model.about().parameters.iter().map(|p| p.name.to_string());
         let named = names.zip(refit.values.as_slice().iter().copied()).collect();
@@ -153,13 +164,14 @@ fn towards(parameter: &Added, shift: f64) -> f64 {
     }
 }
 
-/// Known values, drawn away from the bounds at which an earlier search may have got stuck.
+/// Known values; the campaign's for one near a bound, at which an earlier search got stuck.
 fn within(known: &BTreeMap<String, f64>, setting: &Setting) -> BTreeMap<String, f64> {
     let inside = |p: &Given| {
-        let value = known.get(&p.name).copied().unwrap_or(p.value);
-        let Some((low, high)) = p.range else { return p.value };
-        let margin = 0.05 * (high - low);
-        value.clamp(low + margin, high - margin)
+        let (low, high) = p.range?;
+        let margin = 0.01 * (high - low);
+        let value = *known.get(&p.name)?;
+        (low + margin..=high - margin).contains(&value).then_some(value)
     };
-    setting.given.iter().map(|p| (p.name.clone(), inside(p))).collect()
+    let given = setting.given.iter();
+    given.map(|p| (p.name.clone(), inside(p).unwrap_or(p.value))).collect()
 }

@@ -49,6 +49,9 @@ pub enum PredictError {
     /// A sensor measures what the model cannot give.
     #[error(transparent)]
     Signal(#[from] SignalError),
+    /// The model gives no number anywhere near its start values.
+    #[error("the model gives no finite response near its start values; give it other start values")]
+    NoNumber,
     /// A parameter has no value.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Parameters(Vec<ParameterError>),

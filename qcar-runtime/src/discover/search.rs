@@ -114,6 +114,7 @@ pub fn discover(
         nuisance: nuisance.clone(),
     };
     let before = base.sharp(&base.coarse(evidence)?, evidence)?;
+    let before = before.ok_or(PredictError::NoNumber)?;
     let mut state = State {
         workshop,
         setting: setting.clone(),
@@ -215,12 +216,11 @@ impl State {
         progress(&format!("trying {count} effects at their places"));
         let known = self.known();
         let looks = candidates.into_par_iter().filter_map(|candidate| {
-            let coarse = self.explanandum(&candidate, &known)?.coarse(evidence).ok();
-            let coarse = coarse.filter(|coarse| coarse.chi2.is_finite())?;
-            Some((candidate, coarse))
+            let coarse = self.explanandum(&candidate, &known)?.coarse(evidence).ok()?;
+            (!coarse.is_empty()).then_some((candidate, coarse))
         });
-        let mut looks: Vec<(Candidate, Refit)> = looks.collect();
-        looks.sort_by(|a, b| a.1.chi2.total_cmp(&b.1.chi2));
+        let mut looks: Vec<(Candidate, Vec<Refit>)> = looks.collect();
+        looks.sort_by(|a, b| a.1[0].chi2.total_cmp(&b.1[0].chi2));
         looks.truncate(LOOKED_INTO);
         progress(&format!("looking into the best {} of them", looks.len()));
         let trials = looks.into_par_iter();
@@ -282,13 +282,13 @@ impl State {
     fn try_out(
         &self,
         candidate: Candidate,
-        coarse: &Refit,
+        coarse: &[Refit],
         known: &BTreeMap<String, f64>,
         evidence: &Evidence,
     ) -> Option<Trial> {
-        let explanation = self.explanandum(&candidate, known)?.sharp(coarse, evidence);
+        let explanation = self.explanandum(&candidate, known)?.sharp(coarse, evidence).ok()?;
         // A candidate that predicts no number where others do is no explanation.
-        let explanation = explanation.ok().filter(|e| e.refit.chi2.is_finite())?;
+        let explanation = explanation.filter(|e| e.refit.chi2.is_finite())?;
         let penalty = (explanation.refit.residuals as f64).ln();
         let score = explanation.refit.chi2 + penalty * candidate.unknowns().len() as f64;
         Some(Trial {

@@ -1,6 +1,9 @@
 //! A second axle simulator that shares nothing with qcar: it makes campaigns in which effects are hidden.
 
-#![allow(missing_docs, reason = "fields have the names of the campaign format, the axle tables and the catalogue")]
+#![allow(
+    missing_docs,
+    reason = "fields have the names of the campaign format, the axle tables and the catalogue"
+)]
 
 mod axle;
 mod campaign;
