@@ -47,10 +47,6 @@ impl Bench {
     /// The model with an effect in it; `None` where that does not apply.
     pub fn patched(&self, effect: &str, at: &str) -> Option<Patched> {
         let patch = self.catalogue.iter().find(|patch| patch.effect().name.text == effect)?;
-        self.apply(patch, at)
-    }
-
-    fn apply(&self, patch: &Patch, at: &str) -> Option<Patched> {
         patch
             .apply(&self.model, at, &|name| self.values.get(name).copied())
             .ok()
@@ -63,11 +59,10 @@ impl Workshop for Bench {
     }
 
     fn candidates(&self) -> Vec<Candidate> {
-        let places = self.catalogue.par_iter().flat_map_iter(|patch| {
-            let places = patch.places(&self.model).into_iter();
-            places.filter_map(|place| self.apply(patch, &place.label))
-        });
-        places.filter_map(candidate).collect()
+        let values = |name: &str| self.values.get(name).copied();
+        let patched = self.catalogue.par_iter();
+        let patched = patched.flat_map_iter(|patch| patch.candidates(&self.model, &values));
+        patched.filter_map(candidate).collect()
     }
 
     fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>> {
