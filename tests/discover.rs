@@ -1,0 +1,64 @@
+//! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
+
+use std::path::Path;
+use std::process::Command;
+
+use qcar_blind::hidden::Hidden;
+use qcar_blind::{Order, make};
+use serde_json::Value;
+
+/// Runs `qcar discover` on a campaign.
+fn discover(campaign: &Path, out: Option<&Path>) -> Value {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+    command.arg("discover").arg(campaign).args(["--format", "json"]);
+    if let Some(out) = out {
+        command.arg("--out").arg(out);
+    }
+    let output = command.output().expect("qcar runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    serde_json::from_slice(&output.stdout).expect("JSON")
+}
+
+#[test]
+fn what_is_left_of_a_clean_campaign_is_noise() {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "none");
+    assert_eq!(answer["effects"], Value::Array(Vec::new()));
+}
+
+#[test]
+fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (campaign, out) = (folder.path().join("campaign"), folder.path().join("out"));
+    let truth = [
+        ("m_pwt", 70.0),
+        ("k_pwt_z", 280e3),
+        ("c_pwt_z", 500.0),
+        ("k_pwt_x", 3e5),
+        ("c_pwt_x", 400.0),
+    ];
+    let hidden = Hidden::new("suspended_mass", "body", &truth);
+    let order = Order {
+        cleats: false,
+        effects: vec![hidden],
+        ..Order::clean("c", 22)
+    };
+    make(order, &campaign).expect("a campaign");
+
+    let answer = discover(&campaign, Some(&out));
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "suspended_mass");
+    assert_eq!(answer["effects"][0]["at"], "body");
+    for (name, value) in &truth[..3] {
+        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
+        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
+    }
+    let gap = |role: &str, when: &str| answer["gap"][role][when].as_f64().expect("a number");
+    assert!(
+        gap("held_out", "before") > 10.0 && gap("held_out", "after") < 1.5,
+        "{answer}"
+    );
+    let model = answer["model_file"].as_str().expect("a file");
+    qcar::catalogue::compiled(model).unwrap_or_else(|failure| panic!("{failure:?}"));
+}
