@@ -100,7 +100,7 @@ fn wanted_or_campaigns(campaign: &Campaign, wanted: Option<&str>) -> Result<Stri
         let remedy = format!("choose among {}, or give the path of a file with --model", listed());
         return Err(Problem::new(campaign.manifest(), place, found, "a shipped model", remedy).into());
     }
-Ok(match wanted {
+    Ok(match wanted {
         Some(model) => model.into(),
         None if looks_like_a_path(&campaign.model) => campaign.folder.join(&campaign.model).display().to_string(),
         None => campaign.model.clone(),
