@@ -168,7 +168,7 @@ fn a_held_force_acts_from_its_sample_on() {
     let model = find("one_mass").unwrap().model;
     let (m, c, k, rate, first) = (2.0, 3.0, 800.0, 200.0, 40);
     let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name).unwrap();
-    let mut p = vec![0.0; 3];
+    let mut p = vec![0.0; model.about().parameters.len()];
     (p[place("m_body")], p[place("c_body")], p[place("k_body")]) = (m, c, k);
     let samples: Vec<f64> = (0..400).map(|n| if n < first { 0.0 } else { 5.0 }).collect();
     let record = Record {
