@@ -21,7 +21,7 @@ use crate::progress::Showing;
 use crate::workshop::Bench;
 
 // The answer as text and JSON.
-mod render;
+pub(crate) mod render;
 // The gap as a figure.
 mod figure;
 
@@ -53,24 +53,33 @@ enum Format {
 }
 
 /// A campaign, and what was found in it.
-struct Answer {
-    campaign: String,
-    evidence: Evidence,
-    discovery: Discovery,
-    model: Option<Written>,
-    seconds: f64,
+pub(crate) struct Answer {
+    /// Its name.
+    pub campaign: String,
+    /// What it says.
+    pub evidence: Evidence,
+    /// What was found.
+    pub discovery: Discovery,
+    /// The model with it; `None` where nothing of the model is missing.
+    pub model: Option<Written>,
+    /// Time for all of it.
+    pub seconds: f64,
 }
 
 /// The model with the effects in it.
-struct Written {
-    name: String,
-    text: String,
-    file: Option<PathBuf>,
+pub(crate) struct Written {
+    /// Its name.
+    pub name: String,
+    /// The model file.
+    pub text: String,
+    /// Where that was written.
+    pub file: Option<PathBuf>,
 }
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let mut answer = answer(&arguments.campaign, arguments.model.as_deref())?;
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let mut answer = answer(&campaign, arguments.model.as_deref())?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -80,19 +89,22 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-fn answer(folder: &Path, model: Option<&str>) -> Result<Answer, Failure> {
+/// Looks for what the model of a campaign lacks.
+///
+/// # Errors
+/// A campaign that says nothing of the model, or a model that the compiler refuses.
+pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer, Failure> {
     let begun = Instant::now();
-    let campaign = Campaign::open(folder)?;
-    let bench = bench(&campaign, model)?;
-    let evidence = Evidence::from_campaign(&campaign, bench.model().about())?;
+    let bench = bench(campaign, model)?;
+    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
     let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));
-    let found = discover(Box::new(bench.clone()), &setting(&campaign), &evidence, &told);
+    let found = discover(Box::new(bench.clone()), &setting(campaign), &evidence, &told);
     drop(showing);
     let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     Ok(Answer {
         model: patched(bench, &discovery),
-        campaign: campaign.name,
+        campaign: campaign.name.clone(),
         evidence,
         discovery,
         seconds: begun.elapsed().as_secs_f64(),
@@ -153,7 +165,11 @@ fn patched(mut bench: Bench, discovery: &Discovery) -> Option<Written> {
     written
 }
 
-fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
+/// Writes the model file, parameters and figures, and notes where the model is.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     if let Some(model) = &mut answer.model {
         let name = format!("{}.axle", model.name);
         put(folder, &name, &model.text)?;

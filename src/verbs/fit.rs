@@ -15,9 +15,9 @@ use crate::failure::{Failure, flag};
 use crate::progress::while_showing;
 
 // The result as text and JSON.
-mod render;
+pub(crate) mod render;
 // The result as files.
-mod files;
+pub(crate) mod files;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -43,7 +43,7 @@ pub struct Arguments {
 pub struct Choices {
     /// Fit this model, by name or path, in place of the campaign's
     #[arg(long)]
-    model: Option<String>,
+    pub(crate) model: Option<String>,
     /// Searches: the first from the campaign's start values, the others from all over its ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     starts: Option<u16>,

@@ -37,19 +37,21 @@ enum Format {
 
 /// What a curve says.
 #[derive(Debug, Serialize)]
-struct Gradient {
+pub(crate) struct Gradient {
     /// `bounce`, `dynamic_bounce` or `longitudinal`.
-    test: &'static str,
+    pub test: &'static str,
     /// `stiffness`, `damping` or `friction`.
-    quantity: &'static str,
-    value: f64,
+    pub quantity: &'static str,
+    /// In `unit`.
+    pub value: f64,
     /// One standard deviation, from the scatter of the curve and the scale of the rig.
-    uncertainty: f64,
-    unit: &'static str,
+    pub uncertainty: f64,
+    /// SI.
+    pub unit: &'static str,
     /// The parameter of the thesis's table 3.1 that it measures.
-    parameter: Option<&'static str>,
+    pub parameter: Option<&'static str>,
     /// The campaign's start value of that parameter.
-    start: Option<f64>,
+    pub start: Option<f64>,
 }
 
 /// Does it.
@@ -66,7 +68,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 /// Gradients of all K&C runs; vertical sines are taken together.
-fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
+///
+/// # Errors
+/// A campaign without K&C curves, and a curve without gradients.
+pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
     let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test));
     let mut found = Vec::new();
     for run in of(|test| matches!(test, Test::Bounce)) {

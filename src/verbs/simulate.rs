@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::{Campaign, History, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::road::Road;
 use qcar_runtime::simulate::{Car, Drive, Ride, Settings, SimulateError, Variant, rides};
 use qcar_runtime::tyre::{Geometry, Rates, Tyre};
@@ -15,9 +16,11 @@ use crate::parameters::{self, Setting};
 use crate::progress::while_showing;
 
 // Simulated beside measured.
-mod compared;
+pub(crate) mod compared;
 // The result as text, JSON and CSV.
 mod render;
+
+use compared::Compared;
 
 /// Simulate the cleat runs of a campaign and compare them with the measurement
 ///
@@ -72,36 +75,63 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let manifest = campaign.manifest();
     let files = std::iter::once(manifest.as_path()).chain(arguments.params.as_deref());
     let values = parameters::resolve(model.about(), files, &arguments.set)?;
+    let cleats = cleats(&campaign)?;
+    let driven = drive(&campaign, &model, &values, &cleats, arguments.variant.into())?;
+    if let Some(folder) = &arguments.out {
+        render::histories(model.about(), &cleats, &driven.rides, folder)?;
+    }
+    Ok(match arguments.format {
+        Format::Text => render::text(&driven.compared),
+        Format::Json => render::json(&campaign, &model, &driven.compared),
+        Format::Csv => render::csv(&driven.compared),
+    })
+}
+
+/// Every cleat run, simulated and compared.
+pub(crate) struct Driven {
+    /// A ride for each run.
+    pub rides: Vec<Ride>,
+    /// Their errors.
+    pub compared: Compared,
+}
+
+/// Drives a model over the cleats of a campaign.
+///
+/// # Errors
+/// Masses that are not above zero, a vehicle without a tyre, and rides that cannot be simulated or compared.
+pub(crate) fn drive(
+    campaign: &Campaign,
+    model: &Loaded,
+    values: &Values,
+    cleats: &[Cleat],
+    variant: Variant,
+) -> Result<Driven, InputError> {
     model.check_inertias(values.as_slice())?;
     let car = Car {
-        model: &*model,
+        model: &**model,
         parameters: values.as_slice(),
-        tyre: tyre(&campaign)?,
-        load: fact(&campaign, "static_tire_load", "N")?,
-        variant: arguments.variant.into(),
+        tyre: tyre(campaign)?,
+        load: fact(campaign, "static_tire_load", "N")?,
+        variant,
     };
-    let cleats = cleats(&campaign)?;
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
     let simulate = || rides(&car, &drives, &Settings::default());
     let rides = while_showing(format!("{}: {} rides", campaign.name, drives.len()), simulate);
-    let rides = checked(&cleats, rides)?;
-    let results = compared::compare(model.about(), &cleats, &rides)?;
-    if let Some(folder) = &arguments.out {
-        render::histories(model.about(), &cleats, &rides, folder)?;
-    }
-    Ok(match arguments.format {
-        Format::Text => render::text(&results),
-        Format::Json => render::json(&campaign, &model, &results),
-        Format::Csv => render::csv(&results),
-    })
+    let rides = checked(cleats, rides)?;
+    let compared = compared::compare(model.about(), cleats, &rides)?;
+    Ok(Driven { rides, compared })
 }
 
 /// A cleat run of the campaign: what was driven and measured.
 pub(crate) struct Cleat {
-    run: Run,
-    speed: f64,
-    measured: History,
-    road: Road,
+    /// As the campaign lists it.
+    pub run: Run,
+    /// m/s.
+    pub speed: f64,
+    /// The record.
+    pub measured: History,
+    /// What was driven over.
+    pub road: Road,
 }
 
 impl Cleat {
@@ -156,7 +186,11 @@ fn fact(campaign: &Campaign, name: &str, unit: &str) -> Result<f64, InputError> 
     })
 }
 
-fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
+/// The cleat runs of a campaign.
+///
+/// # Errors
+/// A campaign without any, a record that cannot be read, a road that cannot be driven over.
+pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     let runs = campaign.runs.iter().filter_map(|run| match &run.test {
         Test::Cleat { speed, cleat, .. } => Some(self::cleat(campaign, run, *speed, cleat)),
         _ => None,

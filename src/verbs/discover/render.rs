@@ -11,8 +11,9 @@ use super::Answer;
 use crate::json::{self, Ordered};
 use crate::table::{Table, number};
 
+/// The answer as `docs/json.md` describes it.
 #[derive(Serialize)]
-struct Result<'a> {
+pub(crate) struct Result<'a> {
     verdict: Verdict,
     effects: Vec<Effect<'a>>,
     r#where: Vec<Where>,
@@ -79,8 +80,12 @@ impl BeforeAfter {
 const LISTED: usize = 24;
 
 pub(super) fn json(of: &Answer) -> String {
+    json::line(&result(of))
+}
+
+pub(crate) fn result(of: &Answer) -> Result<'_> {
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
-    json::line(&Result {
+    Result {
         verdict: of.discovery.verdict,
         effects: of.discovery.findings.iter().map(effect).collect(),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
@@ -96,7 +101,7 @@ pub(super) fn json(of: &Answer) -> String {
             .map(|file| file.display().to_string()),
         notices: &of.evidence.notices,
         seconds: of.seconds,
-    })
+    }
 }
 
 fn effect(finding: &Finding) -> Effect<'_> {
@@ -190,7 +195,8 @@ pub(super) fn text(of: &Answer) -> String {
     out
 }
 
-fn sentence(of: &Answer) -> String {
+/// The verdict in words.
+pub(crate) fn sentence(of: &Answer) -> String {
     let names: Vec<String> = of
         .discovery
         .findings

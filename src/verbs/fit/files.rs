@@ -15,7 +15,11 @@ use super::{Fitted, render};
 use crate::figure::{Curve, Figure, Panel, Style};
 use crate::files::put;
 
-pub(super) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
+/// Writes values, curves and a figure.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub(crate) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
     let compared = compare(of);
     put(folder, "parameters.toml", &parameters(of))?;
     put(folder, "fit.json", &render::json(of))?;
@@ -40,14 +44,19 @@ fn parameters(of: &Fitted) -> String {
 }
 
 /// A measured ratio with the model's before and after the fit, line by line.
-struct Compared<'a> {
-    level: &'a Level,
-    observation: &'a Observation,
-    before: Vec<Complex<f64>>,
-    after: Vec<Complex<f64>>,
+pub(crate) struct Compared<'a> {
+    /// Its run.
+    pub level: &'a Level,
+    /// What was measured.
+    pub observation: &'a Observation,
+    /// The model at the start values.
+    pub before: Vec<Complex<f64>>,
+    /// The fitted model.
+    pub after: Vec<Complex<f64>>,
 }
 
-fn compare(of: &Fitted) -> Vec<Compared<'_>> {
+/// Every measured ratio with the model's.
+pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
     let values = |value: fn(&qcar_runtime::fit::report::ParameterFit) -> f64| {
         let stated = of.fit.parameters.iter().filter(|parameter| parameter.tied_to.is_none());
         let given: BTreeMap<_, _> = stated

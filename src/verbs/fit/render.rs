@@ -9,7 +9,7 @@ use crate::table::{Table, number};
 
 /// Parameters by name, channels run by run.
 #[derive(Serialize)]
-struct Result<'a> {
+pub(crate) struct Result<'a> {
     campaign: &'a str,
     model: &'a str,
     parameters: Ordered<&'a ParameterFit>,
@@ -27,8 +27,12 @@ struct Result<'a> {
 }
 
 pub(super) fn json(of: &Fitted) -> String {
+    json::line(&result(of))
+}
+
+pub(crate) fn result(of: &Fitted) -> Result<'_> {
     let fit = &of.fit;
-    json::line(&Result {
+    Result {
         campaign: &of.campaign.name,
         model: &fit.model,
         parameters: fit
@@ -47,7 +51,7 @@ pub(super) fn json(of: &Fitted) -> String {
         minima: &fit.minima,
         notices: &of.campaign.notices,
         seconds: of.seconds,
-    })
+    }
 }
 
 pub(super) fn text(of: &Fitted) -> String {
