@@ -201,6 +201,13 @@ impl Road {
     }
 }
 
+/// All else of a road follows from its points.
+impl PartialEq for Road {
+    fn eq(&self, other: &Self) -> bool {
+        self.vertices == other.vertices
+    }
+}
+
 impl Segment {
     /// The point at `s`.
     pub fn at(&self, s: f64) -> [f64; 2] {

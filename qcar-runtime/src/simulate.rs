@@ -20,6 +20,8 @@ mod rolling;
 mod recorder;
 // Rides over a road.
 mod ride;
+// Those that a campaign has measured.
+mod cleat;
 // A recorded signal between its samples.
 mod wave;
 // What a rig has done to a model.
@@ -28,6 +30,7 @@ mod recorded;
 mod replay;
 
 pub use car::{Car, Variant};
+pub use cleat::{Cleat, tyre};
 pub use failure::SimulateError;
 pub use recorded::{Between, Record, Recorded};
 pub use replay::{Replay, replay};

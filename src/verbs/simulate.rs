@@ -3,12 +3,10 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use qcar_runtime::campaign::{Campaign, History, Run, Test};
+use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::road::Road;
-use qcar_runtime::simulate::{Car, Drive, Ride, Settings, SimulateError, Variant, rides};
-use qcar_runtime::tyre::{Geometry, Rates, Tyre};
+use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
@@ -107,11 +105,12 @@ pub(crate) fn drive(
     variant: Variant,
 ) -> Result<Driven, InputError> {
     model.check_inertias(values.as_slice())?;
+    let (tyre, load) = tyre(campaign)?;
     let car = Car {
         model: &**model,
         parameters: values.as_slice(),
-        tyre: tyre(campaign)?,
-        load: fact(campaign, "static_tire_load", "N")?,
+        tyre,
+        load,
         variant,
     };
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
@@ -120,29 +119,6 @@ pub(crate) fn drive(
     let rides = checked(cleats, rides)?;
     let compared = compared::compare(model.about(), cleats, &rides)?;
     Ok(Driven { rides, compared })
-}
-
-/// A cleat run of the campaign: what was driven and measured.
-pub(crate) struct Cleat {
-    /// As the campaign lists it.
-    pub run: Run,
-    /// m/s.
-    pub speed: f64,
-    /// The record.
-    pub measured: History,
-    /// What was driven over.
-    pub road: Road,
-}
-
-impl Cleat {
-    fn drive(&self) -> Drive<'_> {
-        Drive {
-            road: &self.road,
-            speed: self.speed,
-            sample_rate: self.measured.sample_rate,
-            samples: self.measured.len(),
-        }
-    }
 }
 
 impl From<VariantName> for Variant {
@@ -155,50 +131,15 @@ impl From<VariantName> for Variant {
     }
 }
 
-fn tyre(campaign: &Campaign) -> Result<Tyre, InputError> {
-    let radius = fact(campaign, "r_tire", "m")?;
-    let deflection = fact(campaign, "static_tire_def", "m")?;
-    Tyre::new(radius, deflection, Geometry::Area, Rates::AtStaticDeflection).map_err(|error| {
-        let (place, remedy) = (Place::Name("vehicle".into()), "correct r_tire and static_tire_def");
-        Problem::new(
-            campaign.manifest(),
-            place,
-            error.to_string(),
-            "a tyre that carries the car",
-            remedy,
-        )
-        .into()
-    })
-}
-
-fn fact(campaign: &Campaign, name: &str, unit: &str) -> Result<f64, InputError> {
-    campaign.vehicle(name).ok_or_else(|| {
-        let remedy = format!("add `{name} = …` in {unit}");
-        let place = Place::Name("vehicle".into());
-        Problem::new(
-            campaign.manifest(),
-            place,
-            format!("no `{name}`"),
-            "what a rolling tyre needs",
-            remedy,
-        )
-        .into()
-    })
-}
-
 /// The cleat runs of a campaign.
 ///
 /// # Errors
 /// A campaign without any, a record that cannot be read, a road that cannot be driven over.
 pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
-    let runs = campaign.runs.iter().filter_map(|run| match &run.test {
-        Test::Cleat { speed, cleat, .. } => Some(self::cleat(campaign, run, *speed, cleat)),
-        _ => None,
-    });
     let (mut found, mut problems) = (Vec::new(), Vec::new());
-    for run in runs {
-        match run {
-            Ok(cleat) => found.push(cleat),
+    for run in &campaign.runs {
+        match Cleat::read(campaign, run) {
+            Ok(cleat) => found.extend(cleat),
             Err(error) => problems.extend(error.problems),
         }
     }
@@ -213,28 +154,6 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
         ));
     }
     InputError::unless_empty(problems, Some(found))
-}
-
-fn cleat(campaign: &Campaign, run: &Run, speed: f64, name: &str) -> Result<Cleat, InputError> {
-    let road = campaign.roads.iter().find(|road| road.name == name);
-    let samples = campaign.road(road.expect("the campaign was checked for its roads"))?;
-    let road = Road::from_samples(&samples.x, &samples.z, &samples.slope).map_err(|error| {
-        let remedy = "sample the road again, from left to right and finely enough";
-        Problem::new(
-            &samples.file,
-            Place::File,
-            error.to_string(),
-            "a road to drive over",
-            remedy,
-        )
-    })?;
-    let measured = campaign.history(run)?;
-    Ok(Cleat {
-        run: run.clone(),
-        speed,
-        measured,
-        road,
-    })
 }
 
 fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {

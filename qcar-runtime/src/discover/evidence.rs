@@ -8,14 +8,20 @@
 mod sweep;
 // Any other excitation: the responses themselves.
 mod history;
+// Rides over an obstacle: their impact and after-shake.
+pub(super) mod cleat;
+pub mod means;
 
+use means::Means;
 use nalgebra::Complex;
 
 use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
+use crate::road::Road;
 use crate::transmissibility::Point;
+use crate::tyre::Tyre;
 
 /// What a campaign holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,7 +41,8 @@ pub struct Run {
     pub name: String,
     /// What it may be used for.
     pub role: Role,
-    /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a history's input.
+    /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a
+    /// history's input, height (m) of an obstacle.
     pub level: f64,
     /// What drove it.
     pub stimulus: Stimulus,
@@ -70,6 +77,25 @@ pub enum Stimulus {
         /// What sensors of position and velocity saw at first.
         initial: Vec<(Point, f64)>,
     },
+    /// A road under a rolling tyre.
+    Cleat(Passage),
+}
+
+/// A ride over an obstacle at constant speed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Passage {
+    /// What was driven over.
+    pub road: Road,
+    /// m/s.
+    pub speed: f64,
+    /// What rolled.
+    pub tyre: Tyre,
+    /// Static load of the tyre, N.
+    pub load: f64,
+    /// How long the evidence lasts, s after the wheel's centre was above x = 0.
+    pub duration: f64,
+    /// How a ride is sampled and read.
+    pub means: Means,
 }
 
 /// Signals of one record; at least one.
@@ -82,11 +108,12 @@ pub struct Recordings {
 }
 
 impl Stimulus {
-    /// The sensor of what drove the run.
-    pub fn reference(&self) -> &Point {
+    /// The sensor of what drove the run; none measures a road.
+    pub fn reference(&self) -> Option<&Point> {
         match self {
-            Stimulus::Sweep { reference, .. } => reference,
-            Stimulus::History { inputs, .. } => &inputs.signals[0].0,
+            Stimulus::Sweep { reference, .. } => Some(reference),
+            Stimulus::History { inputs, .. } => Some(&inputs.signals[0].0),
+            Stimulus::Cleat(_) => None,
         }
     }
 }
@@ -115,6 +142,8 @@ pub enum Kind {
     Harmonic(usize),
     /// Samples at a time (s).
     Time,
+    /// Means around a time (s) of a passage, as [`Means`] takes them.
+    Passage,
 }
 
 impl Kind {
@@ -130,7 +159,7 @@ impl Kind {
     pub fn complex(self) -> bool {
         match self {
             Kind::Harmonic(_) => true,
-            Kind::Time => false,
+            Kind::Time | Kind::Passage => false,
         }
     }
 
@@ -138,7 +167,7 @@ impl Kind {
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
-            Kind::Time => None,
+            Kind::Time | Kind::Passage => None,
         }
     }
 }
@@ -225,6 +254,7 @@ impl Evidence {
         match &run.test {
             Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
             Test::TimeHistory { band_limited, .. } => self.add_history(campaign, about, run, *band_limited),
+            Test::Cleat { .. } => self.add_cleat(campaign, about, run),
             _ => Ok(()),
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::evidence::{Evidence, Kind, Series};
-use super::predict::{PredictError, predict};
+use super::predict::{PredictError, predict_sides};
 use super::refit::{Refit, scaled};
 use crate::campaign::Role;
 use crate::model::Model;
@@ -35,7 +35,7 @@ pub struct Tile {
     pub level: f64,
     /// Their role.
     pub role: Role,
-    /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history.
+    /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history or passage.
     pub span: (f64, f64),
     /// RMS of the residuals.
     pub strength: f64,
@@ -51,7 +51,7 @@ impl Gap {
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
         for role in [Role::Fit, Role::HeldOut] {
-            for prediction in predict(model, &refit.values, &[], evidence, role)? {
+            for prediction in predict_sides(model, [&refit.values, &refit.side], &[], evidence, role)? {
                 let series = &evidence.series[prediction.series];
                 let shown = refit.measured(evidence, &prediction);
                 let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
@@ -124,7 +124,7 @@ enum Scale {
 fn scale(series: &Series) -> Scale {
     match series.kind {
         Kind::Harmonic(_) => Scale::Octaves,
-        Kind::Time => {
+        Kind::Time | Kind::Passage => {
             let (first, last) = (series.at[0], series.at[series.at.len() - 1]);
             Scale::Even(first, ((last - first) / PER_RECORD).max(f64::MIN_POSITIVE))
         }

@@ -97,7 +97,7 @@ pub struct Nuisance {
 impl Nuisance {
     /// One set of errors for each sensor of the evidence.
     pub fn of(evidence: &Evidence) -> Self {
-        let references = evidence.runs.iter().map(|run| run.stimulus.reference());
+        let references = evidence.runs.iter().filter_map(|run| run.stimulus.reference());
         let mut sensors: Vec<Point> = references
             .chain(evidence.series.iter().map(|s| &s.sensor))
             .cloned()
@@ -191,14 +191,25 @@ impl Nuisance {
     ///
     /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
     fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
-        // Over time a gain is what parameters are too: it stays with the uncertainty of the values.
-        let Kind::Harmonic(order) = series.kind else {
-            return Vec::new();
-        };
-        let reference = evidence.runs[series.run].stimulus.reference();
-        let mut slopes = self.of_sensor(&series.sensor, series, 1.0, order as f64);
-        slopes.extend(self.of_sensor(reference, series, -1.0, 1.0));
-        slopes
+        match series.kind {
+            Kind::Harmonic(order) => {
+                let mut slopes = self.of_sensor(&series.sensor, series, 1.0, order as f64);
+                let reference = evidence.runs[series.run].stimulus.reference();
+                slopes.extend(reference.map_or_else(Vec::new, |point| self.of_sensor(point, series, -1.0, 1.0)));
+                slopes
+            }
+            // Over a wide band the mean gain is what counts.
+            Kind::Passage => self.gain(series).into_iter().collect(),
+            // Driven by what was recorded, a gain is what parameters are too: it stays with the uncertainty of the values.
+            Kind::Time => Vec::new(),
+        }
+    }
+
+    /// The mean gain of the sensor of a series.
+    fn gain(&self, series: &Series) -> Option<(usize, Vec<Complex<f64>>)> {
+        let place = self.sensors.iter().position(|s| *s == series.sensor)?;
+        let form = SENSOR.iter().position(|shape| shape.form == Form::Gain(0))?;
+        Some((place * SENSOR.len() + form, vec![Complex::ONE; series.at.len()]))
     }
 
     /// Of the errors of one sensor, read at so many times the frequency of the series.

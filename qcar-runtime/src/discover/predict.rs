@@ -10,6 +10,8 @@ mod input;
 mod replay;
 // Time histories.
 mod history;
+// Rides over an obstacle.
+mod cleat;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -20,6 +22,8 @@ use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::{ParameterError, Values};
 use crate::response::signal::SignalError;
+use crate::simulate::SimulateError;
+use crate::transmissibility::Point;
 
 /// A parameter that may move.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,6 +71,14 @@ pub enum PredictError {
         /// The run's file.
         run: String,
     },
+    /// The model cannot roll over the road.
+    #[error("{run}: {reason}")]
+    Ride {
+        /// The run's file.
+        run: String,
+        /// Why.
+        reason: SimulateError,
+    },
 }
 
 /// Predicts all series of the runs of one role; differentiated along `free`.
@@ -80,28 +92,40 @@ pub fn predict(
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
+    predict_sides(model, [values, values], free, evidence, role)
+}
+
+/// The same of a car whose recorded side has parameters of its own (the second set): cleat runs see these.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_sides(
+    model: &dyn Model,
+    [values, side]: [&Values; 2],
+    free: &[Free],
+    evidence: &Evidence,
+    role: Role,
+) -> Result<Vec<Prediction>, PredictError> {
     let runs = (0..evidence.runs.len()).filter(|&run| evidence.runs[run].role == role);
     let runs: Vec<usize> = runs.collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, values, free, evidence, run));
+        .map(|run| of_run(model, [values, side], free, evidence, run));
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// The excitation of the model that drove a run.
-fn excitation(model: &dyn Model, evidence: &Evidence, run: usize) -> Result<usize, PredictError> {
-    let run = &evidence.runs[run];
-    let reference = run.stimulus.reference();
+/// The excitation of the model that a sensor measured in a run.
+fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Point) -> Result<usize, PredictError> {
     excitation_of(model.about(), reference).ok_or_else(|| PredictError::NoInput {
         model: model.about().name.to_string(),
         location: reference.location.clone(),
-        run: run.name.clone(),
+        run: evidence.runs[run].name.clone(),
     })
 }
 
 fn of_run(
     model: &dyn Model,
-    values: &Values,
+    [values, side]: [&Values; 2],
     free: &[Free],
     evidence: &Evidence,
     run: usize,
@@ -109,6 +133,7 @@ fn of_run(
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
         Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
+        Stimulus::Cleat(passage) => cleat::passage(model, side, free, evidence, (run, passage)),
         Stimulus::History { .. } => history::history(model, values, free, evidence, run),
     }
 }

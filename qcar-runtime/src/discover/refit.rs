@@ -2,12 +2,16 @@
 //!
 //! The residuals are those of all fitted runs over their noise, and the coefficients of the sensors' errors over their
 //! prior. Held-out runs are never seen.
+//!
+//! A rig shakes both sides of a car and its sensors are averaged over them, while a cleat run records one side. The two
+//! corners of an axle differ by a percent or two, which shifts the modes of the after-shake by more than its noise: so
+//! each free parameter has a factor of its own on the recorded side, held by a prior.
 
 use nalgebra::{Complex, DMatrix};
 
-use super::evidence::{Evidence, Series};
+use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::Nuisance;
-use super::predict::{Free, PredictError, Prediction, predict};
+use super::predict::{Free, PredictError, Prediction, predict, predict_sides};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Problem, Stop, minimize};
@@ -19,6 +23,8 @@ use crate::response::parameters::Values;
 pub struct Refit {
     /// All parameters.
     pub values: Values,
+    /// The same on the side that cleat runs record.
+    pub side: Values,
     /// Those that moved.
     pub free: Vec<Free>,
     /// What they came to.
@@ -38,6 +44,9 @@ pub struct Refit {
     /// Why the search stopped.
     pub stop: Stop,
 }
+
+/// Standard deviation of the logarithm of a side's factor: parts of one drawing, and springs of one batch.
+const SIDE: f64 = 0.015;
 
 impl Refit {
     /// Standard errors of the free parameters.
@@ -91,7 +100,7 @@ pub fn refit_with(
     // What cannot be predicted at all is found before the search, in which nothing can fail.
     predict(model, values, &[], evidence, Role::Fit)?;
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
-    let count = posterior.nuisance.len();
+    let count = posterior.sigmas.len();
     let start: Vec<f64> = free
         .iter()
         .map(|free| values.as_slice()[free.parameter])
@@ -112,16 +121,22 @@ pub fn refit_with(
     posterior.move_to(&outcome.x);
     Ok(Refit {
         values: posterior.values,
+        side: posterior.side,
         estimate: outcome.x[..free.len()].to_vec(),
         covariance: spread(&information, free.len()),
         at_bound: outcome.at_bound[..free.len()].to_vec(),
         free: free.to_vec(),
-        coefficients: outcome.x[free.len()..].to_vec(),
+        coefficients: outcome.x[free.len()..][..posterior.nuisance.len()].to_vec(),
         chi2: 2.0 * outcome.cost,
         residuals: outcome.residual.len() - count,
         nuisance: posterior.nuisance,
         stop: outcome.stop,
     })
+}
+
+/// True for a run that records one side of the car.
+fn of_one_side(run: &Run) -> bool {
+    matches!(run.stimulus, Stimulus::Cleat(_))
 }
 
 /// The rows and columns of the first `count` variables of a covariance.
@@ -150,35 +165,49 @@ pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>
 struct Posterior<'a> {
     model: &'a dyn Model,
     values: Values,
+    side: Values,
     free: Vec<Free>,
     evidence: &'a Evidence,
     nuisance: Nuisance,
+    /// Of the sensors' errors, then of the factors of the recorded side, where there is one.
     sigmas: Vec<f64>,
     residuals: usize,
 }
 
 impl<'a> Posterior<'a> {
     fn new(model: &'a dyn Model, values: Values, free: &[Free], evidence: &'a Evidence, nuisance: Nuisance) -> Self {
+        let one_sided = evidence.runs.iter().any(of_one_side);
+        let sides = std::iter::repeat_n(SIDE, if one_sided { free.len() } else { 0 });
         Self {
             model,
+            side: values.clone(),
             values,
             free: free.to_vec(),
             evidence,
-            sigmas: nuisance.sigmas(),
+            sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
         }
     }
 
     fn move_to(&mut self, x: &[f64]) {
-        for (free, &value) in self.free.iter().zip(x) {
+        let factors = self.factors(x).to_vec();
+        for (k, (free, &value)) in self.free.iter().zip(x).enumerate() {
             self.values.set(free.parameter, value);
+            let factor = factors.get(k).copied().unwrap_or(0.0);
+            self.side.set(free.parameter, value * factor.exp());
         }
     }
 
+    /// The logarithms of the factors of the recorded side.
+    fn factors<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[self.free.len() + self.nuisance.len()..]
+    }
+
     /// Adds the rows of one prediction to columns that grow together.
-    fn rows(&self, prediction: &Prediction, coefficients: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
+    fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
+        let coefficients = &x[self.free.len()..];
         let shown = self
             .nuisance
             .show(self.evidence, series, &prediction.value, coefficients);
@@ -191,12 +220,23 @@ impl<'a> Posterior<'a> {
                 .map(|(measured, shown)| measured - shown),
             residual,
         );
-        for (column, slope) in columns.iter_mut().zip(&prediction.slopes) {
-            scaled(
-                series,
-                slope.iter().zip(&shown.factor).map(|(slope, factor)| -slope * factor),
-                column,
-            );
+        let along = |slope: &[Complex<f64>], scale: f64, column: &mut Vec<f64>| {
+            let slopes = slope.iter().zip(&shown.factor);
+            scaled(series, slopes.map(|(slope, factor)| -slope * factor * scale), column);
+        };
+        let one_sided = of_one_side(&self.evidence.runs[series.run]);
+        for (k, slope) in prediction.slopes.iter().enumerate() {
+            if one_sided {
+                let factor = self.factors(x)[k].exp();
+                along(slope, factor, &mut columns[k]);
+                along(
+                    slope,
+                    factor * x[k],
+                    &mut columns[self.free.len() + self.nuisance.len() + k],
+                );
+            } else {
+                along(slope, 1.0, &mut columns[k]);
+            }
         }
         for (k, slope) in shown.slopes {
             scaled(
@@ -213,26 +253,31 @@ impl<'a> Posterior<'a> {
 
 impl Problem for Posterior<'_> {
     fn variables(&self) -> usize {
-        self.free.len() + self.nuisance.len()
+        self.free.len() + self.sigmas.len()
     }
 
     fn residuals(&self) -> usize {
-        self.residuals + self.nuisance.len()
+        self.residuals + self.sigmas.len()
     }
 
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
         self.move_to(x);
-        let coefficients = &x[self.free.len()..];
-        let predictions = predict(self.model, &self.values, &self.free, self.evidence, Role::Fit);
+        let both = [&self.values, &self.side];
+        let predictions = predict_sides(self.model, both, &self.free, self.evidence, Role::Fit);
         let Ok(predictions) = predictions else {
             residual.fill(f64::NAN);
             return;
         };
         let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
         for prediction in &predictions {
-            self.rows(prediction, coefficients, &mut rows, &mut columns);
+            self.rows(prediction, x, &mut rows, &mut columns);
         }
-        rows.extend(coefficients.iter().zip(&self.sigmas).map(|(c, sigma)| c / sigma));
+        rows.extend(
+            x[self.free.len()..]
+                .iter()
+                .zip(&self.sigmas)
+                .map(|(c, sigma)| c / sigma),
+        );
         residual.copy_from_slice(&rows);
         for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
             into.fill(0.0);

@@ -6,10 +6,8 @@ use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::compare::{Alignment, CompareError, Errors, Summary, Windows};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, SignalKind};
-use qcar_runtime::simulate::Ride;
+use qcar_runtime::simulate::{Cleat, Ride};
 use serde::Serialize;
-
-use super::Cleat;
 
 /// What the wheel is called whose peak aligns the records (thesis section 3.6.2).
 const ALIGNING: (&str, Axis) = ("wheel", Axis::Z);

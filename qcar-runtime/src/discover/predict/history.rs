@@ -91,12 +91,7 @@ fn prepare<'a>(
         initial,
     } = &evidence.runs[run].stimulus
     else {
-        return Err(no_input(
-            about,
-            evidence,
-            run,
-            &evidence.runs[run].stimulus.reference().location,
-        ));
+        return Err(no_input(about, evidence, run, "record"));
     };
     let mut recorded = Vec::new();
     for (point, samples) in &inputs.signals {

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::{Free, PredictError, Prediction, excitation};
-use crate::discover::evidence::{Evidence, Kind, signal_of};
+use crate::discover::evidence::{Evidence, Kind, Stimulus, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
@@ -16,8 +16,11 @@ pub(super) fn sweep(
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
     let about = model.about();
-    let excitation = excitation(model, evidence, run)?;
-    let below = signal_of(about, evidence.runs[run].stimulus.reference());
+    let Stimulus::Sweep { reference, .. } = &evidence.runs[run].stimulus else {
+        return Ok(Vec::new());
+    };
+    let excitation = excitation(model, evidence, run, reference)?;
+    let below = signal_of(about, reference);
     let mut predictions = Vec::new();
     for (place, series) in evidence
         .series

@@ -29,7 +29,7 @@ pub(super) fn sweep(
     else {
         return Ok(Vec::new());
     };
-    let excitation = excitation(model, evidence, run)?;
+    let excitation = excitation(model, evidence, run, reference)?;
     let power = order_of(reference);
     let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
         frequency,

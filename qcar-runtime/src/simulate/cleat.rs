@@ -1,0 +1,83 @@
+//! Cleat runs of a campaign, ready to be driven again.
+
+use crate::campaign::{Campaign, History, Run, Test};
+use crate::error::{InputError, Place, Problem};
+use crate::road::Road;
+use crate::tyre::{Geometry, Rates, Tyre};
+
+use super::ride::Drive;
+
+/// A cleat run: what was driven and measured.
+#[derive(Clone, Debug)]
+pub struct Cleat {
+    /// As the campaign lists it.
+    pub run: Run,
+    /// m/s.
+    pub speed: f64,
+    /// What was recorded.
+    pub measured: History,
+    /// What was driven over.
+    pub road: Road,
+}
+
+impl Cleat {
+    /// Reads a run and its road; `None` where it is no cleat run.
+    ///
+    /// # Errors
+    /// A file that cannot be read, or samples that make no road.
+    pub fn read(campaign: &Campaign, run: &Run) -> Result<Option<Self>, InputError> {
+        let Test::Cleat { speed, cleat, .. } = &run.test else {
+            return Ok(None);
+        };
+        Ok(Some(Self {
+            run: run.clone(),
+            speed: *speed,
+            measured: campaign.history(run)?,
+            road: road(campaign, cleat)?,
+        }))
+    }
+
+    /// The whole run.
+    pub fn drive(&self) -> Drive<'_> {
+        Drive {
+            road: &self.road,
+            speed: self.speed,
+            sample_rate: self.measured.sample_rate,
+            samples: self.measured.len(),
+        }
+    }
+}
+
+fn road(campaign: &Campaign, name: &str) -> Result<Road, InputError> {
+    let road = campaign.roads.iter().find(|road| road.name == name);
+    let samples = campaign.road(road.expect("the campaign was checked for its roads"))?;
+    Road::from_samples(&samples.x, &samples.z, &samples.slope).map_err(|error| {
+        let remedy = "sample the road again, from left to right and finely enough";
+        let (found, expected) = (error.to_string(), "a road to drive over");
+        Problem::new(&samples.file, Place::File, found, expected, remedy).into()
+    })
+}
+
+/// What a campaign says of the tyre: its area contact, and the static load on it in N.
+///
+/// # Errors
+/// Where `[vehicle]` lacks `r_tire`, `static_tire_def` or `static_tire_load`, or where they make no tyre.
+pub fn tyre(campaign: &Campaign) -> Result<(Tyre, f64), InputError> {
+    let radius = fact(campaign, "r_tire", "m")?;
+    let deflection = fact(campaign, "static_tire_def", "m")?;
+    let load = fact(campaign, "static_tire_load", "N")?;
+    let tyre = Tyre::new(radius, deflection, Geometry::Area, Rates::AtStaticDeflection).map_err(|error| {
+        let (place, remedy) = (Place::Name("vehicle".into()), "correct r_tire and static_tire_def");
+        let (found, expected) = (error.to_string(), "a tyre that carries the car");
+        Problem::new(campaign.manifest(), place, found, expected, remedy)
+    })?;
+    Ok((tyre, load))
+}
+
+fn fact(campaign: &Campaign, name: &str, unit: &str) -> Result<f64, InputError> {
+    campaign.vehicle(name).ok_or_else(|| {
+        let (place, remedy) = (Place::Name("vehicle".into()), format!("add `{name} = …` in {unit}"));
+        let (found, expected) = (format!("no `{name}`"), "what a rolling tyre needs");
+        Problem::new(campaign.manifest(), place, found, expected, remedy).into()
+    })
+}
