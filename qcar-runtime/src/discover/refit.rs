@@ -41,12 +41,18 @@ pub struct Refit {
     pub chi2: f64,
     /// Number of residuals of the data.
     pub residuals: usize,
+    /// Evaluations of residual and Jacobian.
+    pub evaluations: usize,
     /// Why the search stopped.
     pub stop: Stop,
 }
 
 /// Standard deviation of the logarithm of a side's factor: parts of one drawing, and springs of one batch.
 const SIDE: f64 = 0.015;
+
+/// The most that a sensor or a side is wrong by, in standard deviations of its prior: a model that lacks something shall
+/// not buy its way out by calibrations that no sensor has.
+const MOST: f64 = 3.0;
 
 impl Refit {
     /// Standard errors of the free parameters.
@@ -106,14 +112,14 @@ pub fn refit_with(
         .map(|free| values.as_slice()[free.parameter])
         .chain(std::iter::repeat_n(0.0, count))
         .collect();
-    let unbounded = |end: f64| std::iter::repeat_n(end, count);
+    let priors = posterior.sigmas.iter().map(|sigma| MOST * sigma);
     let bounds = Bounds {
         lower: free
             .iter()
             .map(|f| f.lower)
-            .chain(unbounded(f64::NEG_INFINITY))
+            .chain(priors.clone().map(|most| -most))
             .collect(),
-        upper: free.iter().map(|f| f.upper).chain(unbounded(f64::INFINITY)).collect(),
+        upper: free.iter().map(|f| f.upper).chain(priors).collect(),
     };
     let outcome = minimize(&mut posterior, &start, &bounds, &options);
     let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
@@ -130,6 +136,7 @@ pub fn refit_with(
         chi2: 2.0 * outcome.cost,
         residuals: outcome.residual.len() - count,
         nuisance: posterior.nuisance,
+        evaluations: outcome.evaluations,
         stop: outcome.stop,
     })
 }
