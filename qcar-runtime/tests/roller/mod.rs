@@ -201,15 +201,22 @@ fn about() -> About {
         axis: "z".into(),
         kind,
     };
-    let nowhere = || Signal {
-        location: "".into(),
-        axis: "z".into(),
-        kind: SignalKind::Motion(Quantity::Acceleration),
+    let signal = |name: &'static str| {
+        let (axis, location) = name.split_once('_').unwrap_or_default();
+        Signal {
+            location: location.trim_end_matches("_acceleration").into(),
+            axis: axis.into(),
+            kind: SignalKind::Motion(if name.ends_with("_acceleration") {
+                Quantity::Acceleration
+            } else {
+                Quantity::Position
+            }),
+        }
     };
     let output = |name: &&'static str| Output {
         name: (*name).into(),
         unit: "".into(),
-        signal: nowhere(),
+        signal: signal(name),
     };
     let axis = |axis: &'static str, position, velocity| ContactAxis {
         axis: axis.into(),

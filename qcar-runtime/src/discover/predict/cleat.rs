@@ -18,12 +18,12 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// The integration: its error stays far below what a tyre model is good for.
 const SETTINGS: Settings = Settings {
-    method: Method::Adaptive(1e-6),
+    method: Method::Adaptive(1e-7),
     most_steps: 100_000,
 };
 /// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: large against
 /// the error of the integration, small against the curvature.
-const DIFFERENCE: f64 = 5e-3;
+const DIFFERENCE: f64 = 3e-3;
 const PART_OF_RANGE: f64 = 1e-2;
 /// Steps to the best shift; the first is nearly all.
 const STEPS: usize = 4;
