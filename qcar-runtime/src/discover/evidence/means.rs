@@ -8,8 +8,8 @@
 use std::f64::consts::PI;
 
 /// Samples on each side of a mean, below which its pulse no longer tells a signal from its alias: that of 50 Hz is then
-/// let through by less than 0.3 %.
-const FEWEST: usize = 3;
+/// let through by 0.1 %.
+const FEWEST: usize = 4;
 
 /// Means of records of one sample rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
