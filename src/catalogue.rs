@@ -57,7 +57,12 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     models::all().iter().map(|shipped| shipped.name)
 }
 
-/// The same as a list to choose from.
+/// True for the name of a shipped model, false for a path.
+pub fn is_shipped(model: &str) -> bool {
+    models::find(model).is_some()
+}
+
+/// Those names as a list to choose from.
 fn listed() -> String {
     names().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ")
 }

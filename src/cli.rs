@@ -1,9 +1,11 @@
 //! The flags: what each verb takes, with an example.
 
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
-use crate::verbs::{check, diff, discover, effects, fit, frf, kc, matrices, patch, score, show, simulate};
+use crate::verbs::{
+    check, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate,
+};
 
 /// Quarter-car axle models: compile them, fit them to rig data
 ///
@@ -20,6 +22,7 @@ pub struct Cli {
 
 #[derive(Subcommand)]
 enum Verb {
+    New(new::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
     Matrices(matrices::Arguments),
@@ -32,12 +35,14 @@ enum Verb {
     Effects(effects::Arguments),
     Patch(patch::Arguments),
     Diff(diff::Arguments),
+    Completions(completions::Arguments),
 }
 
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
         match self.verb {
+            Verb::New(arguments) => new::run(&arguments),
             Verb::Check(arguments) => check::run(&arguments),
             Verb::Show(arguments) => show::run(&arguments),
             Verb::Matrices(arguments) => matrices::run(&arguments),
@@ -50,6 +55,7 @@ impl Cli {
             Verb::Effects(arguments) => effects::run(&arguments),
             Verb::Patch(arguments) => patch::run(&arguments),
             Verb::Diff(arguments) => diff::run(&arguments),
+            Verb::Completions(arguments) => Ok(completions::run(&arguments, Cli::command())),
         }
     }
 }

@@ -7,6 +7,7 @@ use clap::Args;
 use crate::parameters::Setting;
 
 pub mod check;
+pub mod completions;
 pub mod diff;
 pub mod discover;
 pub mod effects;
@@ -14,6 +15,7 @@ pub mod fit;
 pub mod frf;
 pub mod kc;
 pub mod matrices;
+pub mod new;
 pub mod patch;
 pub mod score;
 pub mod show;

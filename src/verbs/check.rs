@@ -12,7 +12,9 @@ use crate::failure::Failure;
 ///
 /// Without a name, all shipped models are checked. The exit status is 1 where a model is refused.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar check models/axles/quarter_car.axle")]
+#[command(
+    after_help = "Examples:\n  qcar check models/axles/quarter_car.axle\n  qcar check --members models/families/corner.axle"
+)]
 pub struct Arguments {
     /// Names of shipped models, or paths of model files
     models: Vec<String>,

@@ -10,7 +10,9 @@ use crate::json::{self, Ordered};
 
 /// Show what a model has that another has not: parameters, masses, links, equations
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar diff axle_c axle_c_rigid_tm")]
+#[command(
+    after_help = "Examples:\n  qcar diff axle_c axle_c_rigid_tm\n  qcar diff axle_a models/axles/axle_c.axle --format json"
+)]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
     first: String,

@@ -11,7 +11,7 @@ use crate::table::Table;
 ///
 /// Without a model, the whole catalogue is described.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar effects axle_c")]
+#[command(after_help = "Examples:\n  qcar effects\n  qcar effects axle_c")]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
     model: Option<String>,

@@ -24,7 +24,9 @@ pub(crate) mod files;
 /// Runs with the role `fit` are fitted; those that are `held_out` are only compared with.
 /// The exit status is 1 where the search does not end at a minimum.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar fit models/campaigns/axle_a_rig --out results")]
+#[command(
+    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/silverbox --format json"
+)]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,

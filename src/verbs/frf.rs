@@ -19,7 +19,9 @@ use crate::verbs::ModelArguments;
 
 /// Print the frequency response of the channels of a model
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar frf quarter_car --channels pad_to_body --frequencies 0.5:30:60")]
+#[command(
+    after_help = "Examples:\n  qcar frf quarter_car --channels pad_to_body --frequencies 0.5:30:60\n  qcar frf axle_a --params models/campaigns/axle_a_rig --format csv"
+)]
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,

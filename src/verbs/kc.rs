@@ -17,7 +17,9 @@ mod write;
 
 /// Print stiffness, damping and friction from the K&C curves of a campaign, beside its start values
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar kc models/campaigns/axle_a_rig")]
+#[command(
+    after_help = "Examples:\n  qcar kc models/campaigns/axle_a_rig\n  qcar kc models/campaigns/axle_a_rig --format json"
+)]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,

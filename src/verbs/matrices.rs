@@ -13,7 +13,9 @@ use crate::verbs::ModelArguments;
 
 /// Print A, B, C, D and their derivatives by every parameter
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar matrices axle_a --params models/campaigns/axle_a_rig --axis z --format json")]
+#[command(
+    after_help = "Examples:\n  qcar matrices quarter_car --set k_tire=2e5\n  qcar matrices axle_a --params models/campaigns/axle_a_rig --axis z --format json"
+)]
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,

@@ -17,7 +17,9 @@ use crate::parameters;
 /// depend on the model's own parameters are taken at the values that are given, at the defaults, or else in the middle
 /// of the ranges.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar patch axle_c coulomb_friction --at damper")]
+#[command(
+    after_help = "Examples:\n  qcar patch axle_c coulomb_friction --at damper\n  qcar patch axle_a bushing_relaxation --at top_mount --params models/campaigns/axle_a_rig --out softer.axle"
+)]
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,

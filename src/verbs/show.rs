@@ -11,7 +11,9 @@ use crate::table::Table;
 ///
 /// Without a name, the shipped models are listed.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar show axle_a --stage equations")]
+#[command(
+    after_help = "Examples:\n  qcar show\n  qcar show axle_a --stage equations\n  qcar show models/axles/quarter_car.axle --stage dot"
+)]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
     model: Option<String>,

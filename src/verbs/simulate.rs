@@ -25,7 +25,9 @@ use compared::Compared;
 /// The errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
 /// square, after both records are aligned at the peak of the wheel.
 #[derive(Args)]
-#[command(after_help = "Example:\n  qcar simulate models/campaigns/axle_a_rig --params results/parameters.toml")]
+#[command(
+    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv"
+)]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,

@@ -8,8 +8,20 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 11] = [
-    "check", "show", "matrices", "frf", "fit", "kc", "simulate", "score", "effects", "patch", "diff",
+const VERBS: [&str; 13] = [
+    "new",
+    "check",
+    "show",
+    "matrices",
+    "frf",
+    "fit",
+    "kc",
+    "simulate",
+    "score",
+    "effects",
+    "patch",
+    "diff",
+    "completions",
 ];
 
 #[test]

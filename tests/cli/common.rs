@@ -33,6 +33,19 @@ pub fn qcar_in(folder: &Path, arguments: &[&str]) -> Ran {
     }
 }
 
+/// Runs the words of a line as arguments of `qcar` in a folder.
+pub fn run_line(folder: &Path, line: &str) -> Ran {
+    qcar_in(folder, &line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// A folder that looks like the repository to those who only read its models, and can be written to.
+pub fn repository() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let models = Path::new(env!("CARGO_MANIFEST_DIR")).join("models");
+    std::os::unix::fs::symlink(models, folder.path().join("models")).unwrap();
+    folder
+}
+
 /// Runs `qcar`, which must succeed, and gives its standard output.
 pub fn succeeds(arguments: &[&str]) -> String {
     let ran = qcar(arguments);

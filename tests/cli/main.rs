@@ -5,5 +5,7 @@ mod command_line;
 mod common;
 mod effects;
 mod fits;
+mod help;
+mod newcomer;
 mod readme;
 mod rides;

@@ -2,9 +2,8 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
-use crate::common::succeeds;
+use crate::common::{repository, run_line, succeeds};
 
 /// What stands in the README for the installed program.
 const FROM_SOURCE: &str = "cargo run --release -- ";
@@ -13,19 +12,12 @@ const FROM_SOURCE: &str = "cargo run --release -- ";
 fn the_commands_of_the_readme_run() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let readme = fs::read_to_string(root.join("README.md")).unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    std::os::unix::fs::symlink(root.join("models"), folder.path().join("models")).unwrap();
+    let folder = repository();
     let commands = commands(&readme);
     assert!(commands.len() >= 5, "{commands:?}");
     for command in commands {
-        let words: Vec<&str> = command.split_whitespace().collect();
-        let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
-            .args(&words)
-            .current_dir(folder.path())
-            .output()
-            .unwrap();
-        let said = String::from_utf8_lossy(&output.stderr);
-        assert!(output.status.success(), "qcar {command}\n{said}");
+        let ran = run_line(folder.path(), &command);
+        assert_eq!(ran.status, 0, "qcar {command}\n{}", ran.stderr);
     }
 }
 

@@ -5,7 +5,7 @@ use std::path::Path;
 use super::contents::{Axis, Campaign, Channel, Parameter, Quantity, Road, Role, Run, Side, Spacing, Sweep, Test};
 use super::fields::{Document, Section};
 use super::{table, unit};
-use crate::error::InputError;
+use crate::error::{InputError, Place, Problem};
 
 /// The columns of a quasi-static curve, m and N.
 pub(super) const CURVE: &[&str] = &["displacement", "force"];
@@ -306,10 +306,28 @@ fn recorded_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
                 ));
                 recorded.extend(names);
             }
-            Err(error) => problems.extend(error.problems),
+            Err(error) => {
+                let named = error
+                    .problems
+                    .into_iter()
+                    .map(|problem| with_columns(problem, required, allowed));
+                problems.extend(named);
+            }
         }
     }
     InputError::unless_empty(problems, Some(recorded))
+}
+
+/// Where a file is missing, its columns are what its maker must know.
+fn with_columns(problem: Problem, required: &[&str], allowed: &[&str]) -> Problem {
+    let columns = required.iter().chain(allowed).copied().collect::<Vec<_>>().join(",");
+    match problem.place {
+        Place::File => Problem {
+            expected: format!("{} with the header line {columns}", problem.expected),
+            ..problem
+        },
+        _ => problem,
+    }
 }
 
 /// Every file with the columns that it must and may have.

@@ -1,0 +1,75 @@
+//! `qcar new`: files to begin with, which are never put over others.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Subcommand};
+
+use crate::failure::{Failure, flag};
+
+// A model file and its parameters.
+mod axle;
+// A folder of measurements to come.
+mod campaign;
+
+/// Write the first files of an axle or of a campaign, with comments that say how to go on
+///
+/// Files that are there already stay as they are.
+#[derive(Args)]
+#[command(after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle")]
+pub struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Subcommand)]
+enum What {
+    Axle(axle::Arguments),
+    Campaign(campaign::Arguments),
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    match &arguments.what {
+        What::Axle(arguments) => axle::run(arguments),
+        What::Campaign(arguments) => campaign::run(arguments),
+    }
+}
+
+/// A name, and where it is to stand.
+#[derive(Args)]
+struct Named {
+    /// Lower-case letters, digits and `_`, a letter first
+    name: String,
+    /// The folder to write into in place of the current one, made where it is not there
+    #[arg(long, value_name = "DIR")]
+    dir: Option<PathBuf>,
+}
+
+impl Named {
+    /// The folder to write into.
+    fn folder(&self) -> &Path {
+        self.dir.as_deref().unwrap_or("".as_ref())
+    }
+
+    /// Refuses what neither a model file nor every file system takes as a name.
+    fn check(&self) -> Result<(), Failure> {
+        let first_is_letter = self.name.starts_with(|c: char| c.is_ascii_lowercase());
+        let is_plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+        if first_is_letter && self.name.chars().all(is_plain) {
+            return Ok(());
+        }
+        let found = format!("`{}`", self.name);
+        let expected = "lower-case letters, digits and `_`, a letter first";
+        Err(flag("NAME", found, expected, "write a name such as `city_car`").into())
+    }
+}
+
+/// Refuses to write over a file or folder.
+fn must_be_new(path: &Path) -> Result<(), Failure> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let found = format!("{}, which is there already", path.display());
+    let remedy = "take another name, choose another folder with --dir, or move it away";
+    Err(flag("NAME", found, "a name that is still free", remedy).into())
+}

@@ -1,0 +1,60 @@
+//! `qcar new axle`: a model file that compiles, and a parameter file beside it.
+
+use clap::Args;
+use qcar_dsl::compile::compile;
+use qcar_dsl::source::Source;
+
+use super::{Named, must_be_new};
+use crate::failure::{Failure, flag};
+use crate::files::put;
+
+/// What stands in both templates for the name.
+const PLACEHOLDER: &str = "NAME";
+
+/// Write a model file that compiles, and a parameter file beside it
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar new axle city_car")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    named: Named,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let (name, dir) = (&arguments.named.name, arguments.named.folder());
+    arguments.named.check()?;
+    let written = |template: &str| template.replace(PLACEHOLDER, name);
+    let (model, values) = (
+        written(include_str!("template.axle")),
+        written(include_str!("template.toml")),
+    );
+    refuse_words_of_the_language(name, &model)?;
+    let (model_file, values_file) = (format!("{name}.axle"), format!("{name}.toml"));
+    must_be_new(&dir.join(&model_file))?;
+    must_be_new(&dir.join(&values_file))?;
+    put(dir, &model_file, &model)?;
+    put(dir, &values_file, &values)?;
+    let (model, values) = (dir.join(model_file), dir.join(values_file));
+    let (model, values) = (model.display(), values.display());
+    Ok(format!(
+        "{model} and {values} written; try\n  qcar check {model}\n  qcar frf {model} --params {values}\n"
+    ))
+}
+
+/// Nothing but the name can make the compiler refuse the template.
+fn refuse_words_of_the_language(name: &str, model: &str) -> Result<(), Failure> {
+    let source = Source {
+        name: format!("{name}.axle"),
+        text: model.into(),
+    };
+    let no_files = |_: &str, path: &str| Err(format!("the template loads no file, such as {path}"));
+    compile(source, &no_files).map(drop).map_err(|_| {
+        let remedy = format!("write another name, such as `my_{name}`");
+        flag(
+            "NAME",
+            format!("`{name}`"),
+            "a name that is no word of the language",
+            &remedy,
+        )
+        .into()
+    })
+}

@@ -1,0 +1,238 @@
+//! `qcar new campaign`: a folder with a campaign.toml for a model, and folders for what is still to be measured.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+use clap::Args;
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::model::{About, Default, Parameter, StateKind};
+
+use super::{Named, must_be_new};
+use crate::catalogue;
+use crate::failure::Failure;
+use crate::files::put;
+use crate::table::number;
+
+/// Where the measured files go.
+const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
+
+/// Write a folder with a campaign.toml for a model, which says where each measured file goes
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar new campaign city_car_rig --model quarter_car")]
+pub(super) struct Arguments {
+    #[command(flatten)]
+    named: Named,
+    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    #[arg(long, default_value = "quarter_car")]
+    model: String,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let (name, dir) = (&arguments.named.name, arguments.named.folder());
+    arguments.named.check()?;
+    let model = catalogue::load(&arguments.model)?;
+    let folder = dir.join(name);
+    must_be_new(&folder)?;
+    for part in PARTS {
+        make(&folder.join(part))?;
+    }
+    put(
+        &folder,
+        "campaign.toml",
+        &manifest(name, &seen_from(&folder, &arguments.model), model.about()),
+    )?;
+    let (folder, columns) = (folder.display(), columns(model.about()).join(","));
+    Ok(format!(
+        "{folder}/campaign.toml written. Now\n\
+         1. export the sweeps of the rig to {folder}/rig/sweep_025.csv and sweep_100.csv, with the header line\n     \
+         {columns}\n\
+         2. correct values, sensors and runs in campaign.toml\n\
+         3. qcar fit {folder}\n"
+    ))
+}
+
+fn make(folder: &Path) -> Result<(), InputError> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let remedy = "choose another folder with --dir";
+        Problem::new(folder, Place::File, error.to_string(), "a place to write to", remedy).into()
+    })
+}
+
+/// The model as the campaign must name it: a path is relative to the folder of the campaign, not to where one stands.
+fn seen_from(folder: &Path, model: &str) -> String {
+    let path = Path::new(model);
+    if catalogue::is_shipped(model) || path.is_absolute() {
+        return model.into();
+    }
+    let mut upwards = PathBuf::new();
+    for part in folder.components() {
+        match part {
+            Component::CurDir => {}
+            Component::Normal(_) => upwards.push(".."),
+            // Where `..` leads cannot be told from the names alone.
+            _ => return std::path::absolute(path).unwrap_or(path.into()).display().to_string(),
+        }
+    }
+    upwards.join(path).display().to_string()
+}
+
+fn manifest(name: &str, model: &str, about: &About) -> String {
+    let (known, estimated): (Vec<&Parameter>, _) = about
+        .parameters
+        .iter()
+        .filter(|parameter| !matches!(parameter.default, Default::Same(_)))
+        .partition(|parameter| parameter.known);
+    let columns = columns(about).join(",");
+    let mut out = format!(
+        "# A campaign of measurements; docs/campaign-format.md describes it. All is SI, all paths are relative to this \
+         folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
+         # What is known before any fit.\n[vehicle]\n"
+    );
+    for parameter in known {
+        let _ = writeln!(out, "{}", of_vehicle(parameter));
+    }
+    out += ROLLING;
+    out += "\n# Start values and ranges. With fit = false a value stays as it is.\n";
+    out.extend(estimated.into_iter().map(of_fit));
+    let _ = writeln!(
+        out,
+        "\n# The sensors: each is a column of the time histories. Remove those that you have not."
+    );
+    out.extend(sensors(about).iter().map(Sensor::section));
+    let _ = write!(
+        out,
+        "\n# The sweeps of the 4-poster, with the header line\n#   {columns}\n{RUNS}"
+    );
+    out
+}
+
+/// What the tyre needs beside the parameters of any model.
+const ROLLING: &str = "# For `qcar simulate`, the tyre under its static load:\n\
+    # r_tire = 0.33 # m\n# static_tire_load = 3924.0 # N\n# static_tire_def = 0.02 # m\n";
+
+const RUNS: &str = "\
+[[run]]
+kind = \"sweep\"
+file = \"rig/sweep_025.csv\" # or .csv.gz
+role = \"fit\" # parameters are fitted to it
+peak_velocity = 0.025 # m/s, of the pads
+start_frequency = 0.5 # Hz
+end_frequency = 30.0 # Hz
+spacing = \"logarithmic\" # or \"linear\"
+sample_rate = 1000.0 # Hz
+
+[[run]]
+kind = \"sweep\"
+file = \"rig/sweep_100.csv\"
+role = \"held_out\" # it judges the fit
+peak_velocity = 0.1
+start_frequency = 0.5
+end_frequency = 30.0
+spacing = \"logarithmic\"
+sample_rate = 1000.0
+
+# Curves of a K&C rig, with the header line displacement,force; `qcar kc` takes start values from them.
+# [[run]]
+# kind = \"bounce\"
+# file = \"kc/bounce.csv\"
+# role = \"fit\"
+
+# Cleats, with the header line of the sweeps less the pads; `qcar simulate` compares with them.
+# [[run]]
+# kind = \"cleat\"
+# file = \"cleat/v30_h20.csv\"
+# role = \"held_out\"
+# speed = 8.333 # m/s
+# sample_rate = 1000.0 # Hz
+# cleat = \"cleat_20\"
+
+# Their profile, with the header line x,z,slope.
+# [[road]]
+# name = \"cleat_20\"
+# file = \"road/cleat_20.csv\"
+";
+
+/// A value to begin with, and what it is.
+fn guess(of: &Parameter) -> (Option<f64>, &'static str) {
+    match (of.default, of.range) {
+        (Default::Value(value), _) => (Some(value), ""),
+        (_, Some((low, high))) if low > 0.0 => (Some((low * high).sqrt()), "; in the middle of its range, give yours"),
+        (_, Some((low, high))) => (Some((low + high) / 2.0), "; in the middle of its range, give yours"),
+        (_, None) => (None, "; give yours"),
+    }
+}
+
+/// `key = value`, behind a `#` where there is no value, so that the campaign is refused until someone gives it.
+fn line(key: &str, value: Option<f64>) -> String {
+    value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
+}
+
+fn of_vehicle(of: &Parameter) -> String {
+    let (value, hint) = guess(of);
+    format!("{} # {}, {}{hint}", line(&of.name, value), of.unit, of.doc)
+}
+
+fn of_fit(of: &Parameter) -> String {
+    let (value, hint) = guess(of);
+    let range = of
+        .range
+        .map(|(low, high)| format!("range = [{}, {}]\n", number(low, 6), number(high, 6)));
+    format!(
+        "\n[parameters.{}] # {}{hint}\n{}\nunit = \"{}\"\n{}fit = true\n",
+        of.name,
+        of.doc,
+        line("value", value),
+        of.unit,
+        range.unwrap_or_default(),
+    )
+}
+
+/// An accelerometer.
+struct Sensor<'a> {
+    location: &'a str,
+    side: &'static str,
+    axis: &'a str,
+}
+
+impl Sensor<'_> {
+    fn name(&self) -> String {
+        format!("{}_{}_{}", self.location, self.side, self.axis)
+    }
+
+    fn section(&self) -> String {
+        format!(
+            "\n[[channel]]\nname = \"{}\"\nlocation = \"{}\"\nside = \"{}\"\naxis = \"{}\"\n\
+             quantity = \"acceleration\"\nunit = \"m/s^2\"\n",
+            self.name(),
+            self.location,
+            self.side,
+            self.axis
+        )
+    }
+}
+
+/// One on each side for every pad and every mass along the direction of the pads.
+fn sensors(about: &About) -> Vec<Sensor<'_>> {
+    let roads = about.excitations.iter().filter(|excitation| excitation.road);
+    let roads: Vec<(&str, &str)> = roads.map(|road| (&*road.name, &*road.axis)).collect();
+    let axis = roads.first().map_or("z", |road| road.1);
+    let masses = about
+        .states
+        .iter()
+        .filter(|state| state.kind == StateKind::Velocity && state.axis == axis);
+    let places = roads
+        .iter()
+        .copied()
+        .chain(masses.map(|mass| (&*mass.location, &*mass.axis)));
+    places
+        .flat_map(|(location, axis)| ["left", "right"].map(|side| Sensor { location, side, axis }))
+        .collect()
+}
+
+/// The header line of a sweep.
+fn columns(about: &About) -> Vec<String> {
+    std::iter::once("time".into())
+        .chain(sensors(about).iter().map(Sensor::name))
+        .collect()
+}

@@ -1,0 +1,45 @@
+//! Help is written for those who try it: every example runs, and every shell completes.
+
+use crate::common::{Ran, repository, run_line, succeeds};
+
+/// What `qcar --help` lists.
+fn verbs() -> Vec<String> {
+    let help = succeeds(&["--help"]);
+    let listed = help.split("Commands:\n").nth(1).unwrap().split("\n\n").next().unwrap();
+    let names = listed.lines().filter_map(|line| line.split_whitespace().next());
+    names.filter(|name| *name != "help").map(String::from).collect()
+}
+
+/// The lines below `Example:` or `Examples:`.
+fn examples(help: &str) -> Vec<String> {
+    let after = help.split("Example").nth(1).unwrap_or("");
+    let lines = after.lines().filter_map(|line| line.trim().strip_prefix("qcar "));
+    lines.map(String::from).collect()
+}
+
+#[test]
+fn every_example_runs() {
+    let folder = repository();
+    let verbs = verbs();
+    assert!(verbs.len() >= 14, "{verbs:?}");
+    let slow = ["discover", "study"];
+    for verb in verbs.iter().filter(|verb| !slow.contains(&verb.as_str())) {
+        let examples = examples(&succeeds(&[verb, "--help"]));
+        assert!(!examples.is_empty(), "{verb} has no example");
+        for example in examples {
+            let Ran { status, stderr, .. } = run_line(folder.path(), &example);
+            assert_eq!(status, 0, "qcar {example}\n{stderr}");
+        }
+    }
+}
+
+#[test]
+fn every_verb_is_completed_in_every_shell() {
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let script = succeeds(&["completions", shell]);
+        for verb in verbs() {
+            assert!(script.contains(&verb), "{shell} does not know {verb}");
+        }
+        assert!(script.contains("params"), "{shell} knows no flags");
+    }
+}

@@ -1,0 +1,126 @@
+//! The first files of somebody who has none yet.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::run_line as in_folder;
+
+fn well(folder: &Path, line: &str) -> String {
+    let ran = in_folder(folder, line);
+    assert_eq!(ran.status, 0, "qcar {line}\n{}{}", ran.stdout, ran.stderr);
+    ran.stdout
+}
+
+#[test]
+fn a_new_axle_compiles_and_runs_with_its_parameters() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = well(folder.path(), "new axle city_car --dir models");
+    assert_eq!(
+        well(folder.path(), "check models/city_car.axle"),
+        "models/city_car.axle: ok\n"
+    );
+    // What it says to try.
+    let tries: Vec<&str> = said
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("qcar "))
+        .collect();
+    assert_eq!(tries.len(), 2, "{said}");
+    tries.iter().for_each(|line| drop(well(folder.path(), line)));
+    let values = "--params models/city_car.toml --format json";
+    let matrices = well(folder.path(), &format!("matrices models/city_car.axle {values}"));
+    assert!(matrices.contains("\"k_wheel_x\":400000.0"), "{matrices}");
+}
+
+#[test]
+fn a_new_axle_never_stands_over_another() {
+    let folder = tempfile::tempdir().unwrap();
+    for file in ["first.axle", "second.toml"] {
+        fs::write(folder.path().join(file), "mine").unwrap();
+    }
+    for name in ["first", "second"] {
+        let ran = in_folder(folder.path(), &format!("new axle {name}"));
+        assert_eq!(ran.status, 2);
+        assert!(ran.stderr.contains("there already"), "{}", ran.stderr);
+    }
+    assert_eq!(fs::read_to_string(folder.path().join("first.axle")).unwrap(), "mine");
+    assert_eq!(
+        fs::read_dir(folder.path()).unwrap().count(),
+        2,
+        "nothing else was written"
+    );
+}
+
+#[test]
+fn names_that_no_model_can_have_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    for name in ["City", "2nd", "a-b", "../up", "ä", "_x", "self", "if"] {
+        let ran = in_folder(folder.path(), &format!("new axle {name}"));
+        assert_eq!(ran.status, 2, "{name}");
+        assert!(ran.stderr.contains(&format!("`{name}`")), "{}", ran.stderr);
+    }
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}
+
+#[test]
+fn a_new_campaign_says_what_to_put_where_and_fits_once_it_is_there() {
+    let folder = tempfile::tempdir().unwrap();
+    well(folder.path(), "new axle city_car");
+    let said = well(folder.path(), "new campaign rig --dir data --model city_car.axle");
+    let header = "time,pad_left_z,pad_right_z,body_left_z,body_right_z,wheel_left_z,wheel_right_z";
+    assert!(said.contains(header), "{said}");
+    let missing = in_folder(folder.path(), "fit data/rig");
+    assert_eq!(missing.status, 2);
+    for hint in ["data/rig/rig/sweep_025.csv", "data/rig/rig/sweep_100.csv", header] {
+        assert!(missing.stderr.contains(hint), "{}", missing.stderr);
+    }
+    let to = folder.path().join("data/rig/rig");
+    fs::write(to.join("sweep_025.csv"), sweep(0.025, header)).unwrap();
+    fs::write(to.join("sweep_100.csv"), sweep(0.1, header)).unwrap();
+    let fitted = well(folder.path(), "fit data/rig --starts 2");
+    assert!(fitted.contains("city_car fitted to rig: converged"), "{fitted}");
+    let again = in_folder(folder.path(), "new campaign rig --dir data");
+    assert!(
+        again.status == 2 && again.stderr.contains("there already"),
+        "{}",
+        again.stderr
+    );
+}
+
+#[test]
+fn a_campaign_for_a_shipped_model_has_its_masses_as_sensors() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = well(folder.path(), "new campaign rig --model axle_a");
+    assert!(said.contains("tm_left_z") && said.contains("pwt_right_z"), "{said}");
+    let unknown = in_folder(folder.path(), "new campaign other --model axle_q");
+    assert!(
+        unknown.status == 2 && unknown.stderr.contains("`axle_q`"),
+        "{}",
+        unknown.stderr
+    );
+    assert!(!folder.path().join("other").exists());
+}
+
+/// A sweep of the pads from 0.5 to 30 Hz in 40 s, and a body and wheel behind them, integrated with small steps.
+fn sweep(peak_velocity: f64, header: &str) -> String {
+    let (m_body, m_wheel, k, c, k_tire, c_tire) = (270.0, 45.0, 22e3, 1300.0, 210e3, 200.0);
+    let growth = (30.0f64 / 0.5).ln() / 40.0;
+    let velocity = |t: f64| peak_velocity * (std::f64::consts::TAU * 0.5 * ((growth * t).exp() - 1.0) / growth).sin();
+    let (mut state, mut pad, dt) = ([0.0f64; 4], 0.0, 1e-4);
+    let mut text = header.to_string();
+    for step in 0..400_000 {
+        let t = step as f64 * dt;
+        let [z_body, v_body, z_wheel, v_wheel] = state;
+        let strut = k * (z_wheel - z_body) + c * (v_wheel - v_body);
+        let tire = k_tire * (pad - z_wheel) + c_tire * (velocity(t) - v_wheel);
+        let (a_body, a_wheel) = (strut / m_body, (tire - strut) / m_wheel);
+        if step % 10 == 0 {
+            let a_pad = (velocity(t + 1e-5) - velocity(t - 1e-5)) / 2e-5;
+            text += &format!("\n{t:.3},{a_pad:.6},{a_pad:.6},{a_body:.6},{a_body:.6},{a_wheel:.6},{a_wheel:.6}");
+        }
+        // Velocities first, then positions with the new ones: symplectic Euler.
+        let (v_body, v_wheel) = (v_body + dt * a_body, v_wheel + dt * a_wheel);
+        state = [z_body + dt * v_body, v_body, z_wheel + dt * v_wheel, v_wheel];
+        pad += dt * velocity(t);
+    }
+    text
+}
