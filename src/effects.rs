@@ -19,11 +19,25 @@ pub fn all() -> Result<Vec<Patch>, Failure> {
         .collect()
 }
 
-/// The effect of a name or path.
+/// The effect of a name or path, in the form of a name or else in all.
 ///
 /// # Errors
-/// A name that is not shipped and is no file, or a file that the compiler refuses.
-pub fn find(effect: &str) -> Result<Patch, Failure> {
+/// A name that is not shipped and is no file, a file that the compiler refuses, or a form that the effect does not have.
+pub fn find(effect: &str, form: Option<&str>) -> Result<Patch, Failure> {
+    let patch = named(effect)?;
+    let Some(form) = form else { return Ok(patch) };
+    patch.in_form(form).ok_or_else(|| {
+        let names: Vec<String> = patch.forms().map(|form| format!("`{form}`")).collect();
+        let remedy = match names.as_slice() {
+            [] => format!("leave --form out: `{effect}` has only one"),
+            _ => format!("choose among {}", names.join(", ")),
+        };
+        let expected = format!("a form of `{effect}`");
+        flag("--form", format!("`{form}`"), &expected, &remedy).into()
+    })
+}
+
+fn named(effect: &str) -> Result<Patch, Failure> {
     if let Some(shipped) = models::effects().iter().find(|shipped| shipped.name == effect) {
         return read(shipped.file, shipped.text);
     }

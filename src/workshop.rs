@@ -44,10 +44,13 @@ impl Bench {
         Bench::new(model, Arc::clone(&self.catalogue), Arc::clone(&self.values))
     }
 
-    /// The model with an effect in it; `None` where that does not apply.
-    pub fn patched(&self, effect: &str, at: &str) -> Option<Patched> {
+    /// The model with an effect in it, in one of its forms where it has several; `None` where that does not apply.
+    pub fn patched(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Patched> {
         let patch = self.catalogue.iter().find(|patch| patch.effect().name.text == effect)?;
-        patch
+        let chosen = form.and_then(|form| patch.in_form(form));
+        chosen
+            .as_ref()
+            .unwrap_or(patch)
             .apply(&self.model, at, &|name| self.values.get(name).copied())
             .ok()
     }
@@ -65,8 +68,8 @@ impl Workshop for Bench {
         patched.filter_map(candidate).collect()
     }
 
-    fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>> {
-        let patched = self.patched(effect, at)?;
+    fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>> {
+        let patched = self.patched(effect, at, form)?;
         let changes_model = patched.signals.is_empty();
         changes_model.then(|| Box::new(self.holding(patched.model)) as Box<dyn Workshop>)
     }
@@ -92,6 +95,7 @@ fn candidate(patched: Patched) -> Option<Candidate> {
     Some(Candidate {
         effect: patched.effect,
         at: patched.place,
+        form: patched.form,
         change,
     })
 }

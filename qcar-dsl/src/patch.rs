@@ -43,7 +43,7 @@ fn refused(mistake: Diagnostic) -> Refused {
     vec![mistake]
 }
 
-/// An effect that was read from a file.
+/// An effect that was read from a file. Of several forms, the first is its usual one: that is what is applied.
 #[derive(Clone, Debug)]
 pub struct Patch {
     effect: Effect,
@@ -57,6 +57,8 @@ pub struct Patched {
     pub effect: String,
     /// The label of its place.
     pub place: String,
+    /// Which of its forms; `None` where it has only one.
+    pub form: Option<String>,
     /// The model, checked; its name says the effect, `axle_c_with_coulomb_friction`.
     pub model: Checked,
     /// The parameters of the effect, in the order of its file.
@@ -131,22 +133,47 @@ impl Patch {
         &self.effect
     }
 
-    /// The labels of the places of a model where the effect applies, in the order of the model's text.
-    pub fn places(&self, model: &Checked) -> Vec<String> {
-        let patched = self.candidates(model, &|_| None).into_iter();
-        patched.map(|patched| patched.place).collect()
+    /// The names of its forms, the usual one first; none where there is only one.
+    pub fn forms(&self) -> impl Iterator<Item = &str> {
+        self.effect.forms.iter().map(|form| form.name.text.as_str())
     }
 
-    /// The model with the effect at each place where it applies, in the order of the model's text: where the pattern
-    /// fits, the model has all that the effect asks for, and the compiler accepts what comes out.
+    /// The effect in one of its forms alone; `None` where it has no form of this name.
+    pub fn in_form(&self, name: &str) -> Option<Patch> {
+        let form = self.effect.forms.iter().find(|form| form.name.text == name)?;
+        let mut patch = self.clone();
+        patch.effect.forms = vec![form.clone()];
+        Some(patch)
+    }
+
+    /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.
+    pub fn places(&self, model: &Checked) -> Vec<String> {
+        let patched = self.candidates(model, &|_| None).into_iter();
+        let mut places: Vec<String> = patched.map(|patched| patched.place).collect();
+        places.dedup();
+        places
+    }
+
+    /// The model with the effect at each place where it applies, in the order of the model's text, and in each form:
+    /// where the pattern fits, the model has all that the effect asks for, and the compiler accepts what comes out.
     pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
+        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
+        let forms = if forms.is_empty() {
+            std::slice::from_ref(self)
+        } else {
+            &forms
+        };
         let places = place::fitting(&Base::of(model), &self.effect.pattern).into_iter();
         places
-            .filter_map(|place| self.apply(model, &place.label, values).ok())
+            .flat_map(|place| {
+                forms
+                    .iter()
+                    .filter_map(move |form| form.apply(model, &place.label, values).ok())
+            })
             .collect()
     }
 
-    /// The model with the effect at a place, given by its label. Starts and ranges that depend on the model are taken
+    /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
     /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
     ///
     /// # Errors
@@ -167,6 +194,7 @@ impl Patch {
         Ok(Patched {
             effect: self.effect.name.text.clone(),
             place: place.to_string(),
+            form: self.forms().next().map(str::to_string),
             model,
             parameters,
             signals,
@@ -216,15 +244,22 @@ impl Patch {
         } else {
             format!("{}, ", axle.doc)
         };
-        axle.doc = format!("{doc}{joint} {effect} at {label}");
+        let form = self
+            .forms()
+            .next()
+            .map_or_else(String::new, |form| format!(", {}", form.replace('_', " ")));
+        axle.doc = format!("{doc}{joint} {effect} at {label}{form}");
     }
 
     fn comments(&self, label: &str) -> Vec<String> {
         let effect = &self.effect;
-        vec![
-            format!("{} at {label}: {}.", effect.name.text, effect.doc),
-            format!("Source: {}.", effect.source),
-        ]
+        let form = effect.forms.first().map(|form| format!("{}.", form.doc));
+        let what = format!("{} at {label}: {}.", effect.name.text, effect.doc);
+        [what]
+            .into_iter()
+            .chain(form)
+            .chain([format!("Source: {}.", effect.source)])
+            .collect()
     }
 }
 

@@ -24,12 +24,23 @@ fn model(name: &str) -> Checked {
     check_text(read(&models().join(format!("axles/{name}.axle"))), &load).unwrap_or_else(|report| panic!("{report}"))
 }
 
-fn patched(model: &Checked, effect: &str, place: &str) -> Checked {
-    let patch = Patch::read(read(&models().join(format!("effects/{effect}.axle")))).unwrap();
+fn patch(effect: &str) -> Patch {
+    Patch::read(read(&models().join(format!("effects/{effect}.axle")))).unwrap()
+}
+
+fn made(model: &Checked, patch: &Patch, place: &str) -> Checked {
     patch
         .apply(model, place, &value)
         .unwrap_or_else(|report| panic!("{report}"))
         .model
+}
+
+fn patched(model: &Checked, effect: &str, place: &str) -> Checked {
+    made(model, &patch(effect), place)
+}
+
+fn in_form(model: &Checked, effect: &str, form: &str, place: &str) -> Checked {
+    made(model, &patch(effect).in_form(form).unwrap(), place)
 }
 
 /// Parameters of a car.
@@ -266,11 +277,12 @@ const NOTHING: [Case; 19] = [
 fn an_effect_of_no_strength_changes_nothing() {
     for (effect, name, place, parameters) in &NOTHING {
         let base = model(name);
-        let (without, with) = (
-            Running::new(&base, &[]),
-            Running::new(&patched(&base, effect, place), parameters),
-        );
-        for rolling in [false, true] {
+        let forms = patch(effect).candidates(&base, &value).into_iter();
+        for (with, rolling) in forms
+            .filter(|form| form.place == *place)
+            .flat_map(|form| [false, true].map(|rolling| (form.model.clone(), rolling)))
+        {
+            let (without, with) = (Running::new(&base, &[]), Running::new(&with, parameters));
             let state = |name: &str| match (name, rolling) {
                 ("s", _) => -0.025,
                 ("v", _) => 0.4,
@@ -393,4 +405,38 @@ fn a_rigid_body_over_two_axles_has_its_own_pitch_inertia() {
             "{name}: {found}, not {wanted}"
         );
     }
+}
+
+#[test]
+fn friction_across_the_strut_leaves_the_top_mount_alone() {
+    let base = model("axle_b");
+    let strut = in_form(&base, "coulomb_friction", "across_strut", "damper");
+    let running = Running::new(&strut, &[("f_coulomb", 100.0), ("k_presliding", 1e5)]);
+    let slipping = |name: &str| match name {
+        "z_friction_f_dry" => 100.0,
+        _ => 0.0,
+    };
+    assert_eq!(running.rate("vz_tm", &slipping), 0.0);
+    let on_wheel = 42.0 * running.rate("vz_wheel", &slipping);
+    assert!((on_wheel - 100.0).abs() < 1e-9, "{on_wheel}");
+    // Whatever the top mount does, the friction sees the travel of the wheel.
+    let moving = |name: &str| match name {
+        "vz_wheel" => -0.2,
+        "vz_tm" => 0.7,
+        _ => 0.0,
+    };
+    let rate = running.rate("z_friction_f_dry", &moving);
+    assert!((rate - 1e5 * 0.2).abs() < 1e-9 * rate, "{rate}");
+}
+
+#[test]
+fn a_tyre_that_relaxes_while_rolling_stands_as_it_was() {
+    let tyre = in_form(&model("axle_c"), "tire_dynamic_stiffness", "rolling", "tire");
+    let running = Running::new(&tyre, &[("stiffness_ratio", 2.0), ("relaxation_frequency", 10.0)]);
+    let relaxing = |name: &str| match name {
+        "z_tire_f_relax" => 50.0,
+        _ => 0.0,
+    };
+    assert_eq!(running.rate("vz_wheel", &relaxing), 0.0);
+    assert_eq!(running.rates(&relaxing, true)[0].1, 50.0);
 }

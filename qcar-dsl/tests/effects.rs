@@ -108,3 +108,33 @@ fn the_catalogue_applies_where_it_should() {
     }
     insta::assert_snapshot!(table);
 }
+
+#[test]
+fn an_effect_is_tried_in_each_form_that_the_model_allows() {
+    let friction = effect("coulomb_friction");
+    let forms = |name: &str| -> Vec<Option<String>> {
+        let candidates = friction.candidates(&model(name), &|_| None);
+        candidates.into_iter().map(|patched| patched.form).collect()
+    };
+    let named = |form: &str| Some(form.to_string());
+    assert_eq!(forms("axle_c"), [named("in_damper"), named("across_strut")]);
+    assert_eq!(forms("axle_c_rigid_tm"), [named("in_damper")]);
+    assert_eq!(friction.places(&model("axle_c")), ["damper"]);
+    assert!(friction.in_form("sideways").is_none());
+}
+
+#[test]
+fn forms_of_one_name_are_refused() {
+    let text = "effect e at link l { \"A\" source \"B\"; shows \"C\";
+        form a { \"D\" remove l; } form a { remove l; } }";
+    let source = Source {
+        name: "e.axle".into(),
+        text: text.into(),
+    };
+    let report = Patch::read(source).unwrap_err().to_string();
+    assert!(report.contains("`a` is declared twice in effect `e`"), "{report}");
+    assert!(
+        report.contains("effect `e` has no sentence that says what its form `a` is"),
+        "{report}"
+    );
+}

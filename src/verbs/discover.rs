@@ -148,7 +148,7 @@ fn patched(mut bench: Bench, discovery: &Discovery) -> Option<Written> {
     }
     let mut written = None;
     for finding in &discovery.findings {
-        let patched = bench.patched(&finding.effect, &finding.at)?;
+        let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref())?;
         if !patched.signals.is_empty() {
             continue;
         }

@@ -28,6 +28,9 @@ pub struct Arguments {
     /// The place: a link, mass or sensor location of the model
     #[arg(long, value_name = "PLACE")]
     at: String,
+    /// One of the effect's forms; the usual one where none is given
+    #[arg(long, value_name = "FORM")]
+    form: Option<String>,
     /// File to write; standard output where none is given
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -40,7 +43,7 @@ const NO_EVIDENCE: &str = "Evidence: none yet.";
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let compiled = catalogue::compiled(&arguments.model.model)?;
     let values = parameters::given(arguments.model.params.as_deref(), &arguments.model.set)?;
-    let patched = effects::find(&arguments.effect)?
+    let patched = effects::find(&arguments.effect, arguments.form.as_deref())?
         .apply(&compiled.model, &arguments.at, &|name| values.get(name).copied())
         .map_err(|report| Failure::Input(report.to_string()))?;
     let text = patched.text(NO_EVIDENCE);

@@ -36,15 +36,17 @@ pub fn parameters_are_seen(scratch: &Scratch) -> Vec<Diagnostic> {
     groups.iter().map(describe).collect()
 }
 
-/// The parameters that a measurement is to tell: not the known ones, and not those that a rolling tyre's law contains,
-/// since rolling over a profile shows more than the responses here do.
+/// The parameters that a measurement is to tell: not the known ones, and not those that the law or the states of a
+/// rolling tyre contain, since rolling over a profile shows more than the responses here do.
 fn estimated(scratch: &Scratch) -> Vec<u16> {
     let model = scratch.model;
-    let rolling = model.links.iter().flat_map(|link| link.rolling.iter().flatten());
+    let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
+    let rolling = tyres().flat_map(|link| link.rolling.iter().flatten());
+    let rates = tyres().flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
     let value = |term: &Term| match *term {
         Term::Spring(e) | Term::Damper(e) | Term::Inerter(e) | Term::Force(e) => e,
     };
-    let expressions: Vec<Expr> = rolling.map(value).collect();
+    let expressions: Vec<Expr> = rolling.map(value).chain(rates).collect();
     let rolls: BTreeSet<Symbol> = scratch.graph.symbols(expressions);
     let counts = |index: &u16| {
         let known = model.parameters[usize::from(*index)].known;

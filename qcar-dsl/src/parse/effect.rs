@@ -6,17 +6,18 @@ use super::statement::{Scope, statement};
 use super::tokens::{Parsed, Tokens};
 use super::unit::declared_unit;
 use crate::diagnostic::reading;
-use crate::syntax::{Change, Effect, EffectParameter, LawStatement, Name, Pattern, PlaceKind};
+use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern, PlaceKind};
 
 const HEAD: &str = "effect name at link l named damper { … }";
 
 /// What a change can begin with.
-const WORDS: [&str; 17] = [
+const WORDS: [&str; 18] = [
     "param",
     "known",
     "shared",
     "source",
     "shows",
+    "form",
     "let",
     "take",
     "add",
@@ -43,14 +44,29 @@ pub fn effect(tokens: &mut Tokens) -> Parsed<Effect> {
         source: String::new(),
         shows: String::new(),
         body: vec![],
+        forms: vec![],
     };
     let changes = inside.each(|tokens| match tokens.peek().as_deref() {
         Some("source") => told(tokens, &mut effect.source, "source \"Author: Title, year\";"),
         Some("shows") => told(tokens, &mut effect.shows, "shows \"how it shows in measurements\";"),
+        Some("form") => form(tokens).map(|form| {
+            effect.forms.push(form);
+            None
+        }),
         _ => change(tokens).map(Some),
     });
     effect.body = changes.into_iter().flatten().collect();
     Ok(effect)
+}
+
+fn form(tokens: &mut Tokens) -> Parsed<Form> {
+    const EXAMPLE: &str = "form across_strut { \"what it acts on\" … }";
+    tokens.any_word();
+    let name = tokens.new_name("the name of a form", EXAMPLE)?;
+    let mut inside = tokens.block(EXAMPLE)?;
+    let doc = inside.sentence();
+    let body = inside.each(change);
+    Ok(Form { name, doc, body })
 }
 
 /// A sentence behind its word.

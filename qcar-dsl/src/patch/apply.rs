@@ -24,18 +24,12 @@ pub struct Patching<'a> {
 
 /// Makes all changes of an effect. Starts and ranges of its parameters are left open.
 pub fn apply<'a>(mut bindings: Bindings<'a>) -> Made<Patching<'a>> {
-    let effect = bindings.effect;
-    let taken = |change: &&'a Change| matches!(change, Change::Parameter(_));
-    for change in changes(&bindings, &effect.body)
-        .iter()
-        .map(|(_, change)| *change)
-        .filter(|c| taken(c))
-    {
+    let all = changes(&bindings);
+    for (_, change) in &all {
         if let Change::Parameter(parameter) = change {
             rename(&mut bindings, parameter)?;
         }
     }
-    let all = changes(&bindings, &effect.body);
     let mut patching = Patching {
         tree: bindings.base.clone(),
         bindings,
@@ -49,9 +43,9 @@ pub fn apply<'a>(mut bindings: Bindings<'a>) -> Made<Patching<'a>> {
 }
 
 /// Every change with the direction that it is made in.
-fn changes<'a>(bindings: &Bindings, body: &'a [Change]) -> Vec<(String, &'a Change)> {
+fn changes<'a>(bindings: &Bindings<'a>) -> Vec<(String, &'a Change)> {
     let mut all = Vec::new();
-    for change in body {
+    for change in bindings.effect.changes() {
         match change {
             Change::Direction { name, without, body } => {
                 let absent = without
@@ -153,11 +147,19 @@ impl<'a> Patching<'a> {
                 ..definition.clone()
             }),
             Statement::Coordinate(own) => Statement::Coordinate(rewrite::coordinate(own, &mut value)?),
-            Statement::Link(link) => Statement::Link(Link {
-                stretch: value(&link.stretch)?,
-                body: bindings.law(&link.body, &link.name.text, direction)?,
-                ..link.clone()
-            }),
+            Statement::Link(link) => {
+                let moves_with_place = bindings.asks_for_stretch(&link.stretch);
+                let like = if moves_with_place {
+                    &bindings.place.name
+                } else {
+                    &link.name.text
+                };
+                Statement::Link(Link {
+                    stretch: value(&link.stretch)?,
+                    body: bindings.law(&link.body, like, direction)?,
+                    ..link.clone()
+                })
+            }
             Statement::Point(name, target) => Statement::Point(name.clone(), self.signal(target)),
             Statement::Output(name, signal) => Statement::Output(name.clone(), self.signal(signal)),
             Statement::Channel(name, a, b) => Statement::Channel(name.clone(), self.signal(a), self.signal(b)),

@@ -13,7 +13,7 @@ use crate::syntax::{
 };
 
 /// What a name may ask of a link or mass behind a dot.
-const FIELDS: [&str; 6] = ["upper", "lower", "spring", "damper", "inerter", "mass"];
+const FIELDS: [&str; 7] = ["upper", "lower", "stretch", "spring", "damper", "inerter", "mass"];
 
 /// An effect at a place of a model, before anything is changed.
 pub struct Bindings<'a> {
@@ -93,6 +93,7 @@ impl<'a> Bindings<'a> {
             "lower" => self
                 .link(home, name)
                 .and_then(|link| Some(named(&lower(self.base, home, link)?))),
+            "stretch" => self.link(home, name).map(|link| link.stretch.clone()),
             kind => self.link(home, name).and_then(|link| self.coefficient(link, kind)),
         };
         found.ok_or_else(|| {
@@ -128,6 +129,16 @@ impl<'a> Bindings<'a> {
             Some(lever) if link.name.text == self.place.name => Some(per_square(sum, lever)),
             _ => Some(sum),
         }
+    }
+
+    /// Whether a stretch is that of the place with others added: such a link is seen through the same lever.
+    pub fn asks_for_stretch(&self, stretch: &Expression) -> bool {
+        let mut found = false;
+        rewrite::names_in(stretch, &mut |name| {
+            let [owner, field] = name.names.as_slice() else { return };
+            found |= field.text == "stretch" && self.name(owner) == self.place.name;
+        });
+        found
     }
 
     /// A law in the names of the model, its stretch and forces per travel of the link itself.

@@ -1,7 +1,7 @@
 //! What an effect's file must say, whatever the model.
 
 use super::Made;
-use crate::diagnostic::{Diagnostic, Severity, effects, reading};
+use crate::diagnostic::{Diagnostic, Severity, effects, names, reading};
 use crate::parse::parse_text;
 use crate::source::{Source, Span};
 use crate::syntax::{Change, Effect, Item, Name, PlaceKind};
@@ -35,9 +35,14 @@ fn second(effects: &[Effect]) -> Span {
 
 fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     let mut found = undescribed(effect);
+    found.extend(forms_are_told_apart(effect));
     let pattern = &effect.pattern;
     pattern.terms.iter().for_each(|term| found.extend(no_term(term)));
-    for change in &effect.body {
+    for change in effect
+        .body
+        .iter()
+        .chain(effect.forms.iter().flat_map(|form| &form.body))
+    {
         match change {
             Change::ReplaceTerm(term, ..) => found.extend(no_term(term)),
             Change::Delay(place, _) | Change::Scale(place, _) if pattern.kind != PlaceKind::Sensor => {
@@ -50,6 +55,23 @@ fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
             Change::Parameter(_) | Change::Delay(..) | Change::Scale(..) => {}
             _ if pattern.kind == PlaceKind::Sensor => found.push(effects::sensor_changes_model(pattern.variable.span)),
             _ => {}
+        }
+    }
+    found
+}
+
+/// Each form has a name of its own, and says what it is.
+fn forms_are_told_apart(effect: &Effect) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    for (place, form) in effect.forms.iter().enumerate() {
+        let (span, name) = (form.name.span, &form.name.text);
+        if let Some(first) = effect.forms[..place].iter().find(|other| other.name.text == *name) {
+            let place = format!("effect `{}`", effect.name.text);
+            found.push(names::duplicate_name(span, first.name.span, name, &place));
+        }
+        if form.doc.is_empty() {
+            let what = format!("sentence that says what its form `{name}` is");
+            found.push(effects::not_described(span, &effect.name.text, &what, "\"what it is\""));
         }
     }
     found

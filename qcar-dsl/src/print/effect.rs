@@ -1,7 +1,7 @@
 //! Effects as canonical text.
 
 use super::{block, law_lines, sentence, statement_lines};
-use crate::syntax::{Change, Effect, EffectParameter, LawStatement, Name, Pattern};
+use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern};
 
 /// The lines of an effect.
 pub fn effect_lines(effect: &Effect) -> Vec<String> {
@@ -9,11 +9,14 @@ pub fn effect_lines(effect: &Effect) -> Vec<String> {
     let told = [("source", &effect.source), ("shows", &effect.shows)];
     let told = told.into_iter().filter(|(_, text)| !text.is_empty());
     let told = told.map(|(word, text)| format!("{word} {text:?};"));
-    block(
-        &head,
-        &effect.doc,
-        told.chain(effect.body.iter().flat_map(change_lines)).collect(),
-    )
+    let body = effect.body.iter().flat_map(change_lines);
+    let forms = effect.forms.iter().flat_map(form_lines);
+    block(&head, &effect.doc, told.chain(body).chain(forms).collect())
+}
+
+fn form_lines(form: &Form) -> Vec<String> {
+    let body = form.body.iter().flat_map(change_lines).collect();
+    block(&format!("form {}", form.name.text), &form.doc, body)
 }
 
 fn pattern(pattern: &Pattern) -> String {

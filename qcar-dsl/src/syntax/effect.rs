@@ -17,6 +17,28 @@ pub struct Effect {
     pub shows: String,
     /// In the order of the text.
     pub body: Vec<Change>,
+    /// The ways in which it may act, the usual one first; none where there is only one.
+    pub forms: Vec<Form>,
+}
+
+impl Effect {
+    /// What it changes in its usual form.
+    pub fn changes(&self) -> impl Iterator<Item = &Change> {
+        self.body
+            .iter()
+            .chain(self.forms.first().into_iter().flat_map(|form| &form.body))
+    }
+}
+
+/// `form NAME { "sentence" … }`: a way in which an effect may act, beside what all its forms change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Form {
+    /// The name.
+    pub name: Name,
+    /// The sentence.
+    pub doc: String,
+    /// In the order of the text.
+    pub body: Vec<Change>,
 }
 
 /// `at link l in z named damper with damper given pivot seen from wheel`

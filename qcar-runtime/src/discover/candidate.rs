@@ -11,6 +11,8 @@ pub struct Candidate {
     pub effect: String,
     /// The link, mass or sensor location.
     pub at: String,
+    /// Which of several ways in which the effect may act there; `None` where there is only one.
+    pub form: Option<String>,
     /// What it would change.
     pub change: Change,
 }
@@ -55,9 +57,9 @@ pub trait Workshop: Sync {
     /// The model.
     fn model(&self) -> &dyn Model;
 
-    /// Every effect at every place where it applies.
+    /// Every effect at every place where it applies, in each form.
     fn candidates(&self) -> Vec<Candidate>;
 
     /// The same with an effect in the model; `None` for one of a sensor, which changes no model.
-    fn with(&self, effect: &str, at: &str) -> Option<Box<dyn Workshop>>;
+    fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>>;
 }

@@ -5,7 +5,7 @@
 //! left, on held-out runs too, and no rival comes close. `class`: several do, and the data cannot tell them apart.
 //! `unknown`: there is a gap, and nothing explains it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -38,6 +38,8 @@ pub struct Finding {
     pub effect: String,
     /// Its place.
     pub at: String,
+    /// Which of its forms fits best; `None` where it has only one.
+    pub form: Option<String>,
     /// Its parameters: name, value and standard error, SI.
     pub parameters: Vec<(String, f64, f64)>,
     /// By how much it lowers the sum of squares of the fitted runs.
@@ -227,6 +229,9 @@ impl State {
         let trials = trials.filter_map(|(candidate, coarse)| self.try_out(candidate, &coarse, &known, evidence));
         let mut trials: Vec<Trial> = trials.collect();
         trials.sort_by(|a, b| a.score.total_cmp(&b.score));
+        // The best form stands for the effect.
+        let mut met = BTreeSet::new();
+        trials.retain(|trial| met.insert((trial.candidate.effect.clone(), trial.candidate.at.clone())));
         let Some(best) = trials.first() else { return Ok(None) };
         if !self.is_earned(best, evidence) {
             return Ok(None);
@@ -316,6 +321,7 @@ impl State {
         Finding {
             effect: trial.candidate.effect.clone(),
             at: trial.candidate.at.clone(),
+            form: trial.candidate.form.clone(),
             parameters: trial.parameters(),
             evidence: self.explanation.refit.chi2 - trial.explanation.refit.chi2,
             closed: closed(&self.explanation, &trial.explanation, evidence),
@@ -326,7 +332,10 @@ impl State {
     /// Goes on with a candidate in the model.
     fn adopt(&mut self, candidate: Candidate, explanation: Explanation) {
         self.nuisance = explanation.refit.nuisance.clone();
-        if let Some(workshop) = self.workshop.with(&candidate.effect, &candidate.at) {
+        if let Some(workshop) = self
+            .workshop
+            .with(&candidate.effect, &candidate.at, candidate.form.as_deref())
+        {
             self.workshop = workshop;
         }
         if let Change::Model { model, parameters } = &candidate.change {

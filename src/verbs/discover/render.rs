@@ -28,6 +28,7 @@ pub(crate) struct Result<'a> {
 struct Effect<'a> {
     name: &'a str,
     at: &'a str,
+    form: Option<&'a str>,
     parameters: Ordered<f64>,
     stderr: Ordered<Option<f64>>,
     evidence: Evidence,
@@ -112,6 +113,7 @@ fn effect(finding: &Finding) -> Effect<'_> {
     Effect {
         name: &finding.effect,
         at: &finding.at,
+        form: finding.form.as_deref(),
         parameters: of(|p| p.1).into_iter().collect(),
         stderr: of(|p| p.2)
             .into_iter()
@@ -222,8 +224,12 @@ fn described(finding: &Finding) -> String {
         table.row(vec![name.clone(), number(*value, 4), error]);
     }
     let share = 100.0 * finding.closed;
+    let form = finding
+        .form
+        .as_deref()
+        .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
     let mut out = format!(
-        "{} at {} closes {share:.1} % of the gap\n{}",
+        "{} at {}{form} closes {share:.1} % of the gap\n{}",
         finding.effect,
         finding.at,
         table.text()
