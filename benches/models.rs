@@ -125,6 +125,7 @@ fn observation(channel: qcar_runtime::model::Channel, subject: &Subject, row: us
         frequency: (0..subject.omega.len()).map(frequency).collect(),
         value: subject.omega.iter().enumerate().map(value).collect(),
         relative_variance: vec![0.0; subject.omega.len()],
+        coherence: vec![1.0; subject.omega.len()],
         band: (0.5, 30.0),
         sensors: (1, 1),
         differences: Vec::new(),

@@ -4,7 +4,7 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
 use crate::verbs::{
-    check, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate,
+    check, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate, study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -31,6 +31,7 @@ enum Verb {
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
     Discover(discover::Arguments),
+    Study(study::Arguments),
     Score(score::Arguments),
     Effects(effects::Arguments),
     Patch(patch::Arguments),
@@ -51,6 +52,7 @@ impl Cli {
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Discover(arguments) => discover::run(&arguments),
+            Verb::Study(arguments) => study::run(&arguments),
             Verb::Score(arguments) => score::run(&arguments),
             Verb::Effects(arguments) => effects::run(&arguments),
             Verb::Patch(arguments) => patch::run(&arguments),

@@ -11,6 +11,8 @@ pub mod table;
 pub mod json;
 // And drawn.
 pub mod figure;
+// And all of it on one page.
+pub mod report;
 // Signs of life meanwhile.
 pub mod progress;
 // Parameter values from files and flags.

@@ -20,6 +20,7 @@ pub mod patch;
 pub mod score;
 pub mod show;
 pub mod simulate;
+pub mod study;
 
 /// A model and the values of its parameters.
 #[derive(Args)]

@@ -17,6 +17,8 @@ pub mod spectrum;
 pub mod transmissibility;
 // The model seen as the measurement sees it.
 pub mod response;
+// What it does when nothing drives it.
+pub mod modes;
 // Bounded nonlinear least squares.
 pub mod least_squares;
 // The rig fit of thesis section 3.5.

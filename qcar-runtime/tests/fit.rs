@@ -81,6 +81,7 @@ fn observation(channel: &Channel, frequency: &[f64], value: Vec<Complex<f64>>, v
         channel: channel.clone(),
         fitted: true,
         relative_variance: vec![variance; frequency.len()],
+        coherence: vec![1.0; frequency.len()],
         frequency: frequency.to_vec(),
         value,
         band: (0.5, 30.0),

@@ -29,8 +29,9 @@ enum Format {
     Json,
 }
 
+/// One line before and after.
 #[derive(Serialize)]
-struct Change<'a> {
+pub(crate) struct Change<'a> {
     name: &'a str,
     before: Option<&'a str>,
     after: Option<&'a str>,
@@ -60,9 +61,14 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 fn in_json(difference: &Difference) -> String {
+    json::line(&parts(difference))
+}
+
+/// What differs, keyed by heading.
+pub(crate) fn parts(difference: &Difference) -> Ordered<Vec<Change<'_>>> {
     let parts = difference.parts.iter().map(|part| {
         let changes: Vec<Change> = part.changes.iter().map(Change::of).collect();
         (part.heading.replace(' ', "_"), changes)
     });
-    json::line(&parts.collect::<Ordered<_>>())
+    parts.collect()
 }

@@ -1,5 +1,6 @@
 //! `qcar fit`: the parameters of a model from the rig runs of a campaign.
 
+use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
@@ -7,7 +8,9 @@ use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::measure::levels;
+use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
@@ -45,7 +48,7 @@ pub struct Arguments {
 pub struct Choices {
     /// Fit this model, by name or path, in place of the campaign's
     #[arg(long)]
-    pub(crate) model: Option<String>,
+    model: Option<String>,
     /// Searches: the first from the campaign's start values, the others from all over its ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     starts: Option<u16>,
@@ -58,6 +61,16 @@ pub struct Choices {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     fix: Vec<String>,
+}
+
+impl Choices {
+    /// The campaign's plan, for this model or for the campaign's.
+    pub fn of_model(model: Option<&str>) -> Self {
+        Choices {
+            model: model.map(String::from),
+            ..Choices::default()
+        }
+    }
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -95,6 +108,31 @@ pub struct Fitted {
     pub fit: Fit,
     /// Time for reading, estimating and fitting.
     pub seconds: f64,
+}
+
+impl Fitted {
+    /// The parameters before the fit.
+    pub fn start(&self) -> Values {
+        self.with(|parameter| parameter.start)
+    }
+
+    /// The parameters that were found.
+    pub fn values(&self) -> Values {
+        self.with(|parameter| parameter.value)
+    }
+
+    fn with(&self, value: fn(&ParameterFit) -> f64) -> Values {
+        let stated = self
+            .fit
+            .parameters
+            .iter()
+            .filter(|parameter| parameter.tied_to.is_none());
+        let given = stated
+            .map(|parameter| (parameter.name.clone(), value(parameter)))
+            .collect();
+        Values::resolve(self.model.about(), &given, &BTreeMap::new())
+            .expect("the fit has given every parameter a value")
+    }
 }
 
 /// Reads a campaign and fits a model to it.

@@ -16,7 +16,7 @@ use crate::progress::while_showing;
 // Simulated beside measured.
 pub(crate) mod compared;
 // The result as text, JSON and CSV.
-mod render;
+pub(crate) mod render;
 
 use compared::Compared;
 

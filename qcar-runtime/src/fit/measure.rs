@@ -201,6 +201,7 @@ fn observation(
         channel: channel.clone(),
         fitted,
         relative_variance: relative_variance.collect(),
+        coherence: ratio.coherence,
         sensors: (sensors(&ratio.to), sensors(&ratio.from)),
         frequency: ratio.frequency,
         value: ratio.value,

@@ -30,12 +30,31 @@ pub struct Observation {
     pub value: Vec<Complex<f64>>,
     /// `E|δT|² / |T|²` for each line, by random noise.
     pub relative_variance: Vec<f64>,
+    /// Share of the power that the reference explains, for each line.
+    pub coherence: Vec<f64>,
     /// Where the excitation reached, Hz.
     pub band: (f64, f64),
     /// How many sensors the numerator and the denominator are means of.
     pub sensors: (usize, usize),
     /// What the sensors of a pair say apart from each other.
     pub differences: Vec<Difference>,
+}
+
+impl Observation {
+    /// How far the logarithm of each value may be off, to either side: two standard deviations of the noise, and half
+    /// of what the sides of the vehicle differ by. The real part is of the magnitude (neper), the imaginary one of the
+    /// phase (rad).
+    pub fn spread(&self) -> Vec<Complex<f64>> {
+        let spread = |(line, variance): (usize, &f64)| {
+            let noise = 2.0 * variance;
+            let squares = self.differences.iter().map(|difference| difference.half[line]);
+            let (re, im) = squares.fold((noise, noise), |(re, im), half| {
+                (re + half.re * half.re, im + half.im * half.im)
+            });
+            Complex::new(re.sqrt(), im.sqrt())
+        };
+        self.relative_variance.iter().enumerate().map(spread).collect()
+    }
 }
 
 /// Half the logarithm of the ratio of what two symmetric sensors give, `½ ln (T_first / T_second)`.

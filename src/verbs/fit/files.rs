@@ -1,6 +1,5 @@
 //! A fit as files.
 
-use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
@@ -57,14 +56,7 @@ pub(crate) struct Compared<'a> {
 
 /// Every measured ratio with the model's.
 pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
-    let values = |value: fn(&qcar_runtime::fit::report::ParameterFit) -> f64| {
-        let stated = of.fit.parameters.iter().filter(|parameter| parameter.tied_to.is_none());
-        let given: BTreeMap<_, _> = stated
-            .map(|parameter| (parameter.name.clone(), value(parameter)))
-            .collect();
-        Values::resolve(of.model.about(), &given, &BTreeMap::new()).expect("the fit has given every parameter a value")
-    };
-    let (before, after) = (values(|parameter| parameter.start), values(|parameter| parameter.value));
+    let (before, after) = (of.start(), of.values());
     let modelled = |level: &Level, observation: &Observation, values: &Values| {
         let (above, below) = (&observation.channel.numerator, &observation.channel.denominator);
         let ratio = ratio(

@@ -80,9 +80,9 @@ fn incomparable(cleat: &Cleat, error: &CompareError) -> Problem {
 
 fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Difference>, CompareError> {
     let pairs = pairs(about, cleat, ride);
-    let wheel = pairs.iter().find(|pair| (pair.mass, pair.axis) == ALIGNING);
-    let Some(wheel) = wheel else { return Ok(Vec::new()) };
-    let alignment = Alignment::at_peak(wheel.measured, wheel.simulated)?;
+    let Some(alignment) = alignment(&pairs)? else {
+        return Ok(Vec::new());
+    };
     let difference = |pair: &Pair| {
         let rate = cleat.measured.sample_rate;
         let errors = Errors::between(pair.measured, pair.simulated, &alignment, rate, &Windows::default())?;
@@ -102,15 +102,31 @@ fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Differen
     pairs.iter().map(difference).collect()
 }
 
-/// An acceleration that was measured and simulated.
-struct Pair<'a> {
-    mass: &'a str,
-    axis: Axis,
-    measured: &'a [f64],
-    simulated: &'a [f64],
+/// How the two records of a run lie to each other; `None` where no wheel was measured and simulated.
+///
+/// # Errors
+/// A wheel that does not feel an obstacle.
+pub(crate) fn alignment(pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
+    let wheel = pairs.iter().find(|pair| (pair.mass, pair.axis) == ALIGNING);
+    wheel
+        .map(|wheel| Alignment::at_peak(wheel.measured, wheel.simulated))
+        .transpose()
 }
 
-fn pairs<'a>(about: &About, cleat: &'a Cleat, ride: &'a Ride) -> Vec<Pair<'a>> {
+/// An acceleration that was measured and simulated.
+pub(crate) struct Pair<'a> {
+    /// Where.
+    pub mass: &'a str,
+    /// Along which axis.
+    pub axis: Axis,
+    /// m/s².
+    pub measured: &'a [f64],
+    /// m/s².
+    pub simulated: &'a [f64],
+}
+
+/// All accelerations of a run that were measured and simulated.
+pub(crate) fn pairs<'a>(about: &About, cleat: &'a Cleat, ride: &'a Ride) -> Vec<Pair<'a>> {
     let accelerations = cleat
         .measured
         .signals

@@ -79,7 +79,8 @@ fn percent(part: f64) -> String {
     }
 }
 
-pub(super) fn csv(of: &Compared) -> String {
+/// The errors, a row for each run, mass and axis.
+pub(crate) fn csv(of: &Compared) -> String {
     let head = "run,role,mass,axis,measured_peak,simulated_peak,peak_error,\
                 measured_after_shake,simulated_after_shake,after_shake_error\n";
     let row = |d: &Difference| {
@@ -97,7 +98,10 @@ pub(super) fn csv(of: &Compared) -> String {
 }
 
 /// A CSV for each run: time, the outputs of the model, the tyre's forces and contact area.
-pub(super) fn histories(
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub(crate) fn histories(
     about: &About,
     cleats: &[Cleat],
     rides: &[Ride],

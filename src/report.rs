@@ -1,0 +1,100 @@
+//! One HTML file that holds a report: its text, its figures and its data. It opens without a network.
+
+use serde::Serialize;
+
+const TEMPLATE: &str = include_str!("report/page.html");
+
+/// Drawing of plots: uPlot 1.6.32, whose licence is beside it.
+const UPLOT: [&str; 2] = [
+    include_str!("report/uplot/uPlot.min.css"),
+    include_str!("report/uplot/uPlot.iife.min.js"),
+];
+
+const STYLE: [&str; 3] = [
+    include_str!("report/css/page.css"),
+    include_str!("report/css/parts.css"),
+    include_str!("report/css/figures.css"),
+];
+
+/// In the order in which they use each other; the last one starts.
+const SCRIPTS: [&str; 13] = [
+    include_str!("report/js/format.js"),
+    include_str!("report/js/dom.js"),
+    include_str!("report/js/plot.js"),
+    include_str!("report/js/keys.js"),
+    include_str!("report/js/axle.js"),
+    include_str!("report/js/verdict.js"),
+    include_str!("report/js/rig.js"),
+    include_str!("report/js/parameters.js"),
+    include_str!("report/js/modes.js"),
+    include_str!("report/js/track.js"),
+    include_str!("report/js/discovery.js"),
+    include_str!("report/js/record.js"),
+    include_str!("report/js/main.js"),
+];
+
+/// The report of a study.
+pub fn page(title: &str, data: &impl Serialize) -> String {
+    let mut out = String::new();
+    for part in TEMPLATE.split("{{").enumerate() {
+        match part {
+            (0, text) => out += text,
+            (_, part) => {
+                let (slot, text) = part.split_once("}}").expect("the template closes its slots");
+                out += &filled(slot, title, data);
+                out += text;
+            }
+        }
+    }
+    out
+}
+
+fn filled(slot: &str, title: &str, data: &impl Serialize) -> String {
+    match slot {
+        "title" => escaped(title),
+        "style" => UPLOT[0].to_string() + "\n" + &STYLE.join("\n"),
+        "uplot" => UPLOT[1].to_string(),
+        "data" => inert(data),
+        "script" => SCRIPTS.join("\n"),
+        other => unreachable!("the template has no slot {other}"),
+    }
+}
+
+/// JSON that cannot end the script element that it stands in.
+fn inert(data: &impl Serialize) -> String {
+    let json = serde_json::to_string(data).expect("keys are strings and no field refuses");
+    json.replace('<', "\\u003c")
+}
+
+fn escaped(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::page;
+
+    #[test]
+    fn data_cannot_leave_its_script() {
+        let page = page("a < b", &"</script><script>alert(1)</script>");
+        assert!(!page.contains("alert(1)</script>"));
+        assert!(page.contains("\\u003c/script>\\u003cscript>alert(1)"));
+        assert!(page.contains("<title>a &lt; b</title>"));
+    }
+
+    #[test]
+    fn nothing_is_loaded_from_elsewhere() {
+        let page = page("t", &0);
+        for loader in [
+            "src=",
+            "href=\"http",
+            "@import",
+            "url(",
+            "fetch(",
+            "XMLHttpRequest",
+            "WebSocket",
+        ] {
+            assert!(!page.contains(loader), "{loader}");
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! `qcar study`: the whole job of a ride engineer on one campaign, and a report of it.
+
+use std::path::PathBuf;
+
+use clap::{Args, ValueEnum};
+
+use crate::failure::Failure;
+use crate::files::put;
+use crate::json;
+use crate::report;
+
+// All verbs on one campaign.
+mod gather;
+// Numbers as a page needs them.
+mod rounded;
+// The masses and links of a model.
+mod axle;
+// Measured and modelled ratios.
+mod rig;
+// Natural vibrations.
+mod shapes;
+// Cleat runs, their errors and variants.
+mod track;
+// Where the gap is, and what explains it.
+mod gap;
+// The answer in a few numbers.
+mod summary;
+// What was used.
+mod record;
+// All of it for the page, and without the curves for programs.
+mod contents;
+
+/// Fit, simulate and discover in one go, and write a report of it
+///
+/// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, looks for what the model lacks,
+/// and drives the model, before and after, over the cleats. The report is one HTML file that needs no network.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar study models/campaigns/axle_c_study --out results")]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    /// Start from this model, by name or path, in place of the campaign's
+    #[arg(long)]
+    model: Option<String>,
+    /// Write report.html, study.json and the files of each step into this folder
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
+    Text,
+    Json,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let study = gather::gather(&arguments.campaign, arguments.model.as_deref(), &arguments.out)?;
+    let contents = contents::Contents::of(&study);
+    let json = json::line(&contents.result);
+    put(&arguments.out, "study.json", &json)?;
+    let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
+    put(&arguments.out, "report.html", &report::page(&title, &contents))?;
+    let result = match arguments.format {
+        Format::Text => summary::text(&study, &arguments.out),
+        Format::Json => json,
+    };
+    if study.fitted.fit.converged {
+        Ok(result)
+    } else {
+        Err(Failure::Finding(result))
+    }
+}

@@ -1,0 +1,125 @@
+//! A study as JSON: the results of all verbs, which programs read, and with them the curves, which the page draws.
+
+use std::collections::BTreeMap;
+
+use qcar_dsl::difference::Difference;
+use serde::{Serialize, Serializer};
+
+use super::axle::Axle;
+use super::gap::{Explanation, Patch, changes, explanations, patches};
+use super::gather::Study;
+use super::record::{Record, record};
+use super::rig::{Ratio, ratios};
+use super::shapes::{Shapes, shapes};
+use super::summary::{Summary, summary};
+use super::track::{Track, track};
+use crate::verbs::diff::parts;
+use crate::verbs::discover::render as discovered;
+use crate::verbs::fit::render as fitted;
+use crate::verbs::kc::Gradient;
+use crate::verbs::simulate::compared::Compared;
+
+/// What the page is made of.
+#[derive(Serialize)]
+pub struct Contents<'a> {
+    /// The results.
+    #[serde(flatten)]
+    pub result: Result<'a>,
+    axles: Axles,
+    rig: Vec<Ratio>,
+    track: Option<Track>,
+    gap_map: GapMap,
+    kappa: Vec<Explanation>,
+    changes: Option<Changes>,
+    record: Record,
+}
+
+/// The results of all verbs.
+#[derive(Serialize)]
+pub struct Result<'a> {
+    /// Its name.
+    pub campaign: &'a str,
+    /// The name of the model.
+    pub model: &'a str,
+    summary: Summary,
+    fit: fitted::Result<'a>,
+    kc: &'a [Gradient],
+    modes: Shapes,
+    simulate: Option<BTreeMap<&'static str, &'a Compared>>,
+    discover: discovered::Result<'a>,
+    seconds: f64,
+}
+
+#[derive(Serialize)]
+struct Axles {
+    before: Axle,
+    after: Option<Axle>,
+}
+
+#[derive(Serialize)]
+struct GapMap {
+    before: Vec<Patch>,
+    after: Vec<Patch>,
+}
+
+/// Serialised by heading.
+struct Changes(Difference);
+
+impl Serialize for Changes {
+    fn serialize<S: Serializer>(&self, serializer: S) -> std::result::Result<S::Ok, S::Error> {
+        parts(&self.0).serialize(serializer)
+    }
+}
+
+impl<'a> Contents<'a> {
+    /// Those of a study.
+    pub fn of(study: &'a Study) -> Self {
+        let discovery = &study.answer.discovery;
+        let after = study.after.as_ref();
+        Contents {
+            result: Result::of(study),
+            axles: Axles {
+                before: Axle::of(&study.compiled, study.fitted.values().as_slice()),
+                after: after.map(|after| Axle::of(&after.compiled, after.values.as_slice())),
+            },
+            rig: ratios(study),
+            track: track(study),
+            gap_map: GapMap {
+                before: patches(&discovery.before.gap.tiles),
+                after: patches(&discovery.after.gap.tiles),
+            },
+            kappa: explanations(study),
+            changes: changes(study).map(Changes),
+            record: record(study),
+        }
+    }
+}
+
+impl<'a> Result<'a> {
+    fn of(study: &'a Study) -> Self {
+        Result {
+            campaign: &study.fitted.campaign.name,
+            model: &study.fitted.fit.model,
+            summary: summary(study),
+            fit: fitted::result(&study.fitted),
+            kc: &study.gradients,
+            modes: shapes(study),
+            simulate: study.track.as_ref().map(simulated),
+            discover: discovered::result(&study.answer),
+            seconds: study.seconds,
+        }
+    }
+}
+
+fn simulated(of: &super::gather::Track) -> BTreeMap<&'static str, &Compared> {
+    let all = [
+        ("before", Some(&of.before)),
+        ("after", of.after.as_ref()),
+        ("longitudinally_locked", Some(&of.locked)),
+        ("pure_vertical", Some(&of.vertical)),
+    ];
+    let driven = all
+        .into_iter()
+        .filter_map(|(name, driven)| Some((name, &driven?.compared)));
+    driven.collect()
+}

@@ -1,0 +1,105 @@
+//! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
+
+use qcar_dsl::difference::{Difference, difference};
+use qcar_runtime::discover::gap::Tile;
+use qcar_runtime::discover::{Kappa, Place, kappa_map, refit};
+use serde::Serialize;
+
+use super::gather::Study;
+use super::rounded::{curve, rounded};
+
+/// A part of the gap.
+#[derive(Serialize)]
+pub struct Patch {
+    channel: String,
+    harmonic: Option<usize>,
+    /// Hz, or s of a time history.
+    span: (f64, f64),
+    /// m/s of a sweep.
+    level: f64,
+    /// RMS over the uncertainty.
+    strength: f64,
+}
+
+/// What would have to be added at a place.
+#[derive(Serialize)]
+pub struct Explanation {
+    /// A parameter's name, or a sensor.
+    place: String,
+    sensor: bool,
+    /// Share of the squared gap that a κ free in every run explains, and one for all runs.
+    ceiling: f64,
+    common: f64,
+    runs: Vec<Stiffness>,
+}
+
+/// κ in one run.
+#[derive(Serialize)]
+struct Stiffness {
+    level: f64,
+    /// Hz.
+    frequency: Vec<f64>,
+    /// N/m, without unit of a sensor.
+    real: Vec<f64>,
+    imaginary: Vec<f64>,
+    sigma: Vec<f64>,
+}
+
+/// All parts, the strongest first.
+pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
+    let patch = |tile: &Tile| Patch {
+        channel: format!("{} {}", tile.sensor.location, tile.sensor.axis.name()),
+        harmonic: tile.kind.order(),
+        span: (rounded(tile.span.0), rounded(tile.span.1)),
+        level: tile.level,
+        strength: rounded(tile.strength),
+    };
+    tiles.iter().map(patch).collect()
+}
+
+/// Uncertainty added to every value, as its share: a wrong model that is pressed to fit hides its fault.
+const TOLERANCE: f64 = 0.1;
+
+/// Places whose κ is shown.
+const SHOWN: usize = 8;
+
+/// The places that explain the gap best.
+pub fn explanations(of: &Study) -> Vec<Explanation> {
+    let (model, before) = (&*of.fitted.model, &of.answer.discovery.before);
+    let tolerant = of.answer.evidence.tolerant(TOLERANCE);
+    let eased = refit(model, &before.refit.values, &before.refit.free, &tolerant);
+    let map = eased.and_then(|eased| kappa_map(model, &eased, &of.answer.evidence));
+    let about = model.about();
+    let explanation = |kappa: &Kappa| {
+        let (place, sensor) = match &kappa.place {
+            Place::Parameter(place) => (about.parameters[*place].name.to_string(), false),
+            Place::Sensor(point) => (format!("{} {}", point.location, point.axis.name()), true),
+        };
+        Explanation {
+            place,
+            sensor,
+            ceiling: rounded(kappa.ceiling),
+            common: rounded(kappa.common),
+            runs: kappa.runs.iter().map(stiffness).collect(),
+        }
+    };
+    // A model that cannot be held against the evidence has no map of it.
+    map.map_or(Vec::new(), |map| map.iter().take(SHOWN).map(explanation).collect())
+}
+
+fn stiffness(of: &qcar_runtime::discover::kappa::KappaRun) -> Stiffness {
+    Stiffness {
+        level: of.level,
+        frequency: curve(of.frequency.iter().copied()),
+        real: curve(of.value.iter().map(|value| value.re)),
+        imaginary: curve(of.value.iter().map(|value| value.im)),
+        sigma: curve(of.sigma.iter().copied()),
+    }
+}
+
+/// In what the new model differs.
+pub fn changes(of: &Study) -> Option<Difference> {
+    of.after
+        .as_ref()
+        .map(|after| difference(&of.compiled.model, &after.compiled.model))
+}

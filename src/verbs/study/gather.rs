@@ -1,0 +1,140 @@
+//! All verbs on one campaign, each leaving its files as soon as it is done.
+
+use std::path::Path;
+use std::time::Instant;
+
+use qcar_dsl::schedule::Compiled;
+use qcar_runtime::campaign::{Campaign, Test};
+use qcar_runtime::error::InputError;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::Variant;
+
+use crate::catalogue::{self, Loaded};
+use crate::failure::Failure;
+use crate::files::put;
+use crate::json;
+use crate::verbs::discover::{self, Answer};
+use crate::verbs::fit::{self, Choices, Fitted};
+use crate::verbs::kc::{self, Gradient};
+use crate::verbs::simulate::{self, Cleat, Driven};
+
+/// What all verbs say of a campaign.
+pub struct Study {
+    /// The campaign, its model, and the fit.
+    pub fitted: Fitted,
+    /// The model as the compiler sees it.
+    pub compiled: Compiled,
+    /// Gradients of the K&C curves; none without such curves.
+    pub gradients: Vec<Gradient>,
+    /// What is missing.
+    pub answer: Answer,
+    /// The model with it.
+    pub after: Option<After>,
+    /// The cleat runs, where there are any.
+    pub track: Option<Track>,
+    /// Time for all of it.
+    pub seconds: f64,
+}
+
+/// The model with what it lacked.
+pub struct After {
+    /// As it runs.
+    pub model: Loaded,
+    /// As the compiler sees it.
+    pub compiled: Compiled,
+    /// Its parameters.
+    pub values: Values,
+}
+
+/// The cleat runs, driven by each model and variant.
+pub struct Track {
+    /// What was measured.
+    pub cleats: Vec<Cleat>,
+    /// The fitted model.
+    pub before: Driven,
+    /// The model with what it lacked.
+    pub after: Option<Driven>,
+    /// The better of both without its longitudinal motion.
+    pub locked: Driven,
+    /// The same on a point contact.
+    pub vertical: Driven,
+}
+
+/// Runs all verbs; their files go into folders of `out`.
+///
+/// # Errors
+/// What any of them finds wrong with the campaign.
+pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, Failure> {
+    let begun = Instant::now();
+    let fitted = fit::fit(folder, &Choices::of_model(model))?;
+    fit::files::write(&fitted, &out.join("fit"))?;
+    let campaign = &fitted.campaign;
+    let gradients = gradients(campaign, out)?;
+    let mut answer = discover::answer(campaign, model)?;
+    let discovery = out.join("discovery");
+    discover::write(&mut answer, &discovery)?;
+    let after = after(campaign, &answer)?;
+    let track = track(&fitted, after.as_ref(), out)?;
+    Ok(Study {
+        compiled: catalogue::compiled_of_campaign(campaign, model)?,
+        seconds: begun.elapsed().as_secs_f64(),
+        gradients,
+        answer,
+        after,
+        track,
+        fitted,
+    })
+}
+
+fn gradients(campaign: &Campaign, out: &Path) -> Result<Vec<Gradient>, InputError> {
+    let is_curve = |test: &Test| matches!(test, Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal);
+    if !campaign.runs.iter().any(|run| is_curve(&run.test)) {
+        return Ok(Vec::new());
+    }
+    let gradients = kc::gradients(campaign)?;
+    put(&out.join("kc"), "gradients.json", &json::line(&gradients))?;
+    Ok(gradients)
+}
+
+/// The new model file, read like any other.
+fn after(campaign: &Campaign, answer: &Answer) -> Result<Option<After>, Failure> {
+    let file = answer.model.as_ref().and_then(|model| model.file.as_ref());
+    let Some(file) = file.map(|file| file.display().to_string()) else {
+        return Ok(None);
+    };
+    let model = catalogue::load(&file)?;
+    let named = answer.discovery.after.named.iter().cloned().collect();
+    let vehicle = campaign.vehicle.iter().cloned().collect();
+    let values = Values::resolve(model.about(), &named, &vehicle).expect("the search has given every parameter");
+    Ok(Some(After {
+        compiled: catalogue::compiled(&file)?,
+        model,
+        values,
+    }))
+}
+
+fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Track>, Failure> {
+    let campaign = &fitted.campaign;
+    let is_cleat = |test: &Test| matches!(test, Test::Cleat { .. });
+    let rolls = fitted.model.about().contact.is_some();
+    if !rolls || !campaign.runs.iter().any(|run| is_cleat(&run.test)) {
+        return Ok(None);
+    }
+    let cleats = simulate::cleats(campaign)?;
+    let values = fitted.values();
+    let best = after.map_or((&fitted.model, &values), |after| (&after.model, &after.values));
+    let drive =
+        |(model, values): (&Loaded, &Values), variant| simulate::drive(campaign, model, values, &cleats, variant);
+    let track = Track {
+        before: drive((&fitted.model, &values), Variant::Complete)?,
+        after: after.map(|_| drive(best, Variant::Complete)).transpose()?,
+        locked: drive(best, Variant::LongitudinallyLocked)?,
+        vertical: drive(best, Variant::PureVertical)?,
+        cleats,
+    };
+    let (about, driven) = (best.0.about(), track.after.as_ref().unwrap_or(&track.before));
+    let folder = out.join("cleat");
+    simulate::render::histories(about, &track.cleats, &driven.rides, &folder)?;
+    put(&folder, "errors.csv", &simulate::render::csv(&driven.compared))?;
+    Ok(Some(track))
+}

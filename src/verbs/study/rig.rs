@@ -1,0 +1,182 @@
+//! Measured ratios over frequency beside the model's: at its start values, fitted, and with what it lacked.
+
+use nalgebra::Complex;
+use qcar_runtime::campaign::Role;
+use qcar_runtime::discover::evidence::{Evidence, Kind};
+use qcar_runtime::discover::predict::{Prediction, predict};
+use qcar_runtime::fit::Level;
+use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::model::Channel;
+use qcar_runtime::response::ratio::ratio;
+use serde::Serialize;
+
+use super::gather::{After, Study};
+use super::rounded::curve;
+use crate::verbs::fit::files::{Compared, compare};
+
+/// A channel in a run.
+#[derive(Serialize)]
+pub struct Ratio {
+    run: String,
+    role: &'static str,
+    channel: String,
+    /// True where the cost holds it.
+    fitted: bool,
+    /// Hz.
+    frequency: Vec<f64>,
+    coherence: Vec<f64>,
+    measured: Polar,
+    /// To either side of the measurement.
+    band: Polar,
+    start: Polar,
+    before: Polar,
+    after: Option<Polar>,
+}
+
+/// Magnitude and phase.
+#[derive(Serialize)]
+struct Polar {
+    /// dB.
+    magnitude: Vec<f64>,
+    /// Degrees.
+    phase: Vec<f64>,
+}
+
+/// All ratios that were measured.
+pub fn ratios(of: &Study) -> Vec<Ratio> {
+    let after = of.after.as_ref().map(|after| Changed::new(after, &of.answer.evidence));
+    let compared = compare(&of.fitted);
+    compared
+        .iter()
+        .map(|compared| together(compared, after.as_ref()))
+        .collect()
+}
+
+fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
+    let Compared { level, observation, .. } = of;
+    let measured = unwrapped(&observation.value);
+    let beside = |values: &[Complex<f64>]| Polar::new(values, &nearest(values, &measured));
+    Ratio {
+        run: level.name.clone(),
+        role: if level.role == Role::Fit { "fit" } else { "held_out" },
+        channel: observation.channel.name.to_string(),
+        fitted: observation.fitted && level.role == Role::Fit,
+        frequency: curve(observation.frequency.iter().copied()),
+        coherence: curve(observation.coherence.iter().copied()),
+        measured: Polar::new(&observation.value, &measured),
+        band: band(observation),
+        start: beside(&of.before),
+        before: beside(&of.after),
+        after: after
+            .and_then(|after| after.ratio(level, observation))
+            .map(|values| beside(&values)),
+    }
+}
+
+impl Polar {
+    fn new(values: &[Complex<f64>], phase: &[f64]) -> Self {
+        Polar {
+            magnitude: curve(values.iter().map(|value| 20.0 * value.norm().log10())),
+            phase: curve(phase.iter().map(|phase| phase.to_degrees())),
+        }
+    }
+}
+
+fn band(of: &Observation) -> Polar {
+    let spread = of.spread();
+    Polar {
+        magnitude: curve(spread.iter().map(|spread| 20.0 * spread.re / std::f64::consts::LN_10)),
+        phase: curve(spread.iter().map(|spread| spread.im.to_degrees())),
+    }
+}
+
+/// Phases without jumps from line to line, rad.
+fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
+    let mut last = 0.0;
+    let phases = values.iter().map(|value| {
+        last = close(value.arg(), last);
+        last
+    });
+    phases.collect()
+}
+
+/// Phases on the turn of others.
+fn nearest(values: &[Complex<f64>], others: &[f64]) -> Vec<f64> {
+    values
+        .iter()
+        .zip(others)
+        .map(|(value, &other)| close(value.arg(), other))
+        .collect()
+}
+
+/// An angle, and as many turns as bring it closest to another.
+fn close(angle: f64, other: f64) -> f64 {
+    if other.is_finite() && angle.is_finite() {
+        angle + std::f64::consts::TAU * ((other - angle) / std::f64::consts::TAU).round()
+    } else {
+        angle
+    }
+}
+
+/// The model with what it lacked, before the evidence. A nonlinear one is known at the lines of the evidence only.
+struct Changed<'a> {
+    after: &'a After,
+    evidence: &'a Evidence,
+    predictions: Vec<Prediction>,
+}
+
+impl<'a> Changed<'a> {
+    fn new(after: &'a After, evidence: &'a Evidence) -> Self {
+        let predict = |role| predict(&*after.model, &after.values, &[], evidence, role).unwrap_or_default();
+        let predictions = if after.model.about().linear {
+            Vec::new()
+        } else {
+            [Role::Fit, Role::HeldOut].into_iter().flat_map(predict).collect()
+        };
+        Changed {
+            after,
+            evidence,
+            predictions,
+        }
+    }
+
+    fn ratio(&self, level: &Level, of: &Observation) -> Option<Vec<Complex<f64>>> {
+        let Channel {
+            numerator, denominator, ..
+        } = &of.channel;
+        if self.after.model.about().linear {
+            let (model, values) = (&*self.after.model, &self.after.values);
+            let ratio = ratio(model, values, level.excitation, numerator, denominator, &of.frequency);
+            return ratio.ok().map(|ratio| ratio.value);
+        }
+        let (frequency, above) = self.response(&level.name, &numerator.location)?;
+        let ratio = match self.response(&level.name, &denominator.location) {
+            None => above,
+            Some((_, below)) => above.iter().zip(&below).map(|(above, below)| above / below).collect(),
+        };
+        Some(of.frequency.iter().map(|&f| between(&frequency, &ratio, f)).collect())
+    }
+
+    /// The first harmonic of a sensor over the pad; `None` of the pad itself.
+    fn response(&self, run: &str, location: &str) -> Option<(Vec<f64>, Vec<Complex<f64>>)> {
+        let found = self.predictions.iter().find(|prediction| {
+            let series = &self.evidence.series[prediction.series];
+            let of_run = self.evidence.runs[series.run].name == run;
+            of_run && series.kind == Kind::Harmonic(1) && series.sensor.location == location
+        })?;
+        Some((self.evidence.series[found.series].at.clone(), found.value.clone()))
+    }
+}
+
+/// On the straight line between two neighbours; NaN outside.
+fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
+    let right = at.partition_point(|&f| f < wanted);
+    match (right.checked_sub(1), at.get(right)) {
+        (_, Some(&f)) if f == wanted => values[right],
+        (Some(left), Some(&f)) => {
+            let share = (wanted - at[left]) / (f - at[left]);
+            values[left] * (1.0 - share) + values[right] * share
+        }
+        _ => Complex::new(f64::NAN, f64::NAN),
+    }
+}

@@ -1,0 +1,58 @@
+//! Natural vibrations of the fitted model, and of the model with what it lacked.
+
+use qcar_runtime::modes::{Mode, Part, modes};
+use serde::Serialize;
+
+use super::gather::Study;
+use super::rounded::rounded;
+
+/// Before and after.
+#[derive(Serialize)]
+pub struct Shapes {
+    before: Vec<Shape>,
+    after: Option<Vec<Shape>>,
+}
+
+/// A natural vibration.
+#[derive(Serialize)]
+struct Shape {
+    /// Hz.
+    frequency: f64,
+    /// Damping ratio.
+    damping: f64,
+    parts: Vec<Moving>,
+}
+
+/// What a point does in it.
+#[derive(Serialize)]
+struct Moving {
+    point: String,
+    axis: String,
+    /// Over the largest.
+    amplitude: f64,
+    /// Degrees.
+    phase: f64,
+}
+
+/// The vibrations of both models.
+pub fn shapes(of: &Study) -> Shapes {
+    let all = |modes: Vec<Mode>| modes.iter().map(shape).collect();
+    Shapes {
+        before: all(modes(&*of.fitted.model, &of.fitted.values())),
+        after: of.after.as_ref().map(|after| all(modes(&*after.model, &after.values))),
+    }
+}
+
+fn shape(of: &Mode) -> Shape {
+    let moving = |part: &Part| Moving {
+        point: part.location.clone(),
+        axis: part.axis.clone(),
+        amplitude: rounded(part.amplitude.norm()),
+        phase: rounded(part.amplitude.arg().to_degrees()),
+    };
+    Shape {
+        frequency: rounded(of.frequency),
+        damping: rounded(of.damping),
+        parts: of.shape.iter().map(moving).collect(),
+    }
+}
