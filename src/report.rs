@@ -17,19 +17,21 @@ const STYLE: [&str; 3] = [
 ];
 
 /// In the order in which they use each other; the last one starts.
-const SCRIPTS: [&str; 13] = [
+const SCRIPTS: [&str; 15] = [
     include_str!("report/js/format.js"),
     include_str!("report/js/dom.js"),
     include_str!("report/js/plot.js"),
     include_str!("report/js/keys.js"),
     include_str!("report/js/axle.js"),
     include_str!("report/js/verdict.js"),
+    include_str!("report/js/curves.js"),
     include_str!("report/js/rig.js"),
     include_str!("report/js/parameters.js"),
     include_str!("report/js/modes.js"),
     include_str!("report/js/track.js"),
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),
+    include_str!("report/js/limits.js"),
     include_str!("report/js/main.js"),
 ];
 

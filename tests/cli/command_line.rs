@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 13] = [
+const VERBS: [&str; 14] = [
     "new",
     "check",
     "show",
@@ -22,6 +22,7 @@ const VERBS: [&str; 13] = [
     "patch",
     "diff",
     "completions",
+    "study",
 ];
 
 #[test]

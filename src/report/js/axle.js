@@ -1,0 +1,174 @@
+// The axle as masses and links: z upwards, x to the right.
+
+const LANE = { z: 168, x: 88 };
+const STEP = { z: 112, x: 330 };
+const BAR = { z: 36, x: 112 };
+
+function axles(data) {
+  const { before, after } = data.axles;
+  const shown = after || before;
+  const fresh = after ? newNames(before, after) : new Set();
+  const drawings = ['z', 'x'].map((axis) => axleDrawing(shown, axis, fresh)).filter((part) => part);
+  const element = section('axle', 'Vehicle and axle',
+    h('p', {}, after
+      ? ['The model with what it lacked; ', key('after', 'what is new'), ` stands out. Values are those of the last fit.`]
+      : 'The model with its fitted values.'),
+    h('div', { class: 'drawings' }, drawings),
+    details('Masses and links as a table', axleTable(shown, fresh)),
+    details(`Equations of motion of ${before.name}`, h('pre', { tabindex: 0 }, before.equations)),
+    after && details(`Equations of motion of ${after.name}`, h('pre', { tabindex: 0 }, after.equations)));
+  return { element, draw: () => drawings.forEach((drawing) => drawn(drawing)) };
+}
+
+function newNames(before, after) {
+  const names = (axle) => [...axle.points, ...axle.links].map((own) => `${own.axis}.${own.name}`);
+  const known = new Set(names(before));
+  const law = (link) => JSON.stringify([link.ends.map((end) => end.point), link.elements.map((e) => [e.kind, e.law])]);
+  const laws = new Map(before.links.map((link) => [`${link.axis}.${link.name}`, law(link)]));
+  const changed = after.links.filter((link) => laws.has(`${link.axis}.${link.name}`) && laws.get(`${link.axis}.${link.name}`) !== law(link));
+  return new Set([...names(after).filter((name) => !known.has(name)), ...changed.map((link) => `${link.axis}.${link.name}`)]);
+}
+
+function axleTable(axle, fresh) {
+  const mark = (own) => (fresh.has(`${own.axis}.${own.name}`) ? 'new' : '');
+  const masses = axle.points.map((own) => [`${own.axis} ${words(own.name)}`, own.kind, own.inertia === null ? '' : quantity(own.inertia, own.angle ? 'kg m^2' : 'kg'), mark(own)]);
+  const links = axle.links.map((link) => [`${link.axis} ${words(link.name)}`, link.ends.map((end) => words(end.point)).join(' – '), elementsText(link).join(', '), mark(link)]);
+  return table('Masses and links', [['name', 'text'], ['what', 'text'], ['value', 'text'], ['', 'text']], [...masses, ...links]);
+}
+
+function elementsText(link) {
+  return link.elements.map((element) => {
+    const unit = { spring: 'N/m', damper: 'N s/m', inerter: 'kg' }[element.kind];
+    return element.value === null ? element.law : quantity(element.value, unit);
+  });
+}
+
+// Levels from the road upwards, a lane for each chain of links.
+function axleLayout(axle, axis) {
+  const points = axle.points.filter((own) => own.axis === axis);
+  const place = new Map(points.map((own) => [own.name, { own, level: own.kind === 'road' || own.kind === 'motion' ? 0 : 1, lanes: [] }]));
+  const links = axle.links.filter((link) => link.axis === axis && link.ends.length > 1).map((link) => ({ link, ends: link.ends.filter((end) => place.has(end.point)) }));
+  const pairs = links.flatMap(({ ends }) => ends.filter((end) => end.share < 0).map((low) => [low.point, ends[0].point]));
+  points.forEach(() => pairs.forEach(([low, high]) => {
+    if (place.get(high).level <= place.get(low).level && place.get(low).level < points.length) place.get(high).level = place.get(low).level + 1;
+  }));
+  const standing = new Set(pairs.map(([, high]) => high));
+  place.forEach((own, name) => {
+    const above = pairs.filter(([low]) => low === name).map(([, high]) => place.get(high).level);
+    if (!standing.has(name) && own.level > 0 && above.length) own.level = Math.max(1, Math.min(...above) - 1);
+  });
+  assignLanes(place, links);
+  return { place, links };
+}
+
+function assignLanes(place, links) {
+  const lanes = [];
+  const extent = ({ ends }) => {
+    const levels = ends.map((end) => place.get(end.point).level);
+    return [Math.min(...levels), Math.max(...levels)];
+  };
+  const byLevel = [...links].sort((a, b) => extent(a)[0] - extent(b)[0] || extent(b)[1] - extent(a)[1]);
+  for (const own of byLevel) {
+    const [low, high] = extent(own);
+    const free = (lane) => lane.every(([from, to]) => high <= from || low >= to);
+    const joins = (lane) => free(lane) && lane.some(([, , names]) => own.ends.some((end) => names.includes(end.point)));
+    let lane = lanes.findIndex(joins);
+    if (lane < 0) lane = lanes.push([]) - 1;
+    lanes[lane].push([low, high, own.ends.map((end) => end.point)]);
+    own.lane = lane;
+    own.ends.forEach((end) => place.get(end.point).lanes.push(lane));
+  }
+}
+
+function axleDrawing(axle, axis, fresh) {
+  const { place, links } = axleLayout(axle, axis);
+  if (!links.length) return null;
+  const all = [...place.values()].filter((own) => own.lanes.length);
+  const top = Math.max(...all.map((own) => own.level));
+  const bottom = Math.min(...all.map((own) => own.level));
+  const lanes = Math.max(...links.map((own) => own.lane)) + 1;
+  const across = LANE[axis];
+  const upright = axis === 'z';
+  const width = upright ? lanes * across : (top - bottom) * STEP.x + BAR.x + 16;
+  const height = upright ? (top - bottom) * STEP.z + BAR.z + 34 : lanes * across + 20;
+  const along = (level) => (upright ? 12 + BAR.z / 2 + (top - level) * STEP.z : 8 + BAR.x / 2 + (level - bottom) * STEP.x);
+  const lane = (index) => (upright ? 62 + index * across : 14 + across / 2 + index * across);
+  const scene = { axis, along, lane, isNew: (own) => fresh.has(`${axis}.${own.name}`) };
+  const name = axis === 'z' ? 'Vertical chain, z' : `Longitudinal chain, ${axis}`;
+  const drawing = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': `${name}: ${links.map(({ link }) => `${words(link.name)} between ${link.ends.map((end) => words(end.point)).join(' and ')}`).join(', ')}` },
+    links.map((own) => drawLink(own, place, scene)), all.map((own) => drawPoint(own, scene)));
+  return figure(`axle-${axis}`, name, drawing);
+}
+
+function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
+  const reach = axis === 'z' ? 46 : 30;
+  const [low, high] = [lane(Math.min(...lanes)) - reach, lane(Math.max(...lanes)) + reach];
+  const centre = along(level);
+  const thick = BAR[axis];
+  const kind = `point ${own.kind}${isNew(own) ? ' new' : ''}`;
+  const label = own.inertia === null ? [words(own.name)] : [words(own.name), quantity(own.inertia, own.angle ? 'kg m^2' : 'kg')];
+  if (own.kind === 'road' || own.kind === 'motion') {
+    return svg('g', { class: kind }, svg('path', { d: `M${low} ${centre}H${high}` }),
+      svg('path', { class: 'hatch', d: hatch(low, high, centre) }), svg('text', { x: high + 8, y: centre + 4 }, label[0]));
+  }
+  const box = axis === 'z' ? { x: low, y: centre - thick / 2, width: high - low, height: thick } : { x: centre - thick / 2, y: low, width: thick, height: high - low };
+  const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
+  const lines = axis === 'z' && box.width > 110 ? [label.join('  ')] : label;
+  const text = lines.map((line, at) => svg('text', { x, y: y + 4.5 + (at - (lines.length - 1) / 2) * 15, 'text-anchor': 'middle', class: at ? 'value' : 'name' }, line));
+  return svg('g', { class: kind }, svg('rect', { ...box, rx: 3 }), text);
+}
+
+function hatch(low, high, y) {
+  let path = '';
+  for (let x = low + 6; x <= high; x += 9) path += `M${x} ${y}l-6 8`;
+  return path;
+}
+
+function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew }) {
+  const levels = ends.map((end) => place.get(end.point).level);
+  const edge = BAR[axis] / 2;
+  const high = Math.max(...levels);
+  const low = Math.min(...levels);
+  const sign = axis === 'z' ? 1 : -1;
+  const from = along(high) + sign * edge;
+  const to = along(low) - sign * (place.get(ends[levels.indexOf(low)].point).own.kind === 'road' ? 0 : edge);
+  const centre = lane(at);
+  const symbols = link.elements.length ? link.elements : [{ kind: 'law', law: '' }];
+  const spread = symbols.length > 1 ? 22 : 0;
+  const shapes = symbols.map((element, index) => symbol(element.kind, Math.min(from, to), Math.max(from, to), centre + (index - (symbols.length - 1) / 2) * spread, axis));
+  const lines = [words(link.name), ...elementsText(link).map(shortened)];
+  const middle = (from + to) / 2;
+  const text = axis === 'z'
+    ? lines.map((line, index) => svg('text', { x: centre + 20 + spread / 2, y: middle + 4 + (index - (lines.length - 1) / 2) * 15, class: index ? 'value' : 'name' }, line))
+    : [svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]), svg('text', { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' }, lines.slice(1).join('  '))];
+  const levers = ends.filter((end) => { const level = place.get(end.point).level; return level !== high && level !== low; });
+  const arms = levers.map((end) => svg('path', { class: 'arm', d: line(axis, centre, middle, lane(place.get(end.point).lanes[0]), along(place.get(end.point).level)) }));
+  return svg('g', { class: `link${isNew(link) ? ' new' : ''}` }, svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`), arms, shapes, text);
+}
+
+function shortened(text) {
+  return text.length > 18 ? `${text.slice(0, 17)}…` : text;
+}
+
+function line(axis, across0, along0, across1, along1) {
+  return axis === 'z' ? `M${across0} ${along0}L${across1} ${along1}` : `M${along0} ${across0}L${along1} ${across1}`;
+}
+
+// An element between two bars, in its own coordinates: `a` runs along the lane, `c` across.
+function symbol(kind, from, to, centre, axis) {
+  const half = kind === 'spring' ? 19 : 13;
+  const middle = (from + to) / 2;
+  const at = (a, c) => (axis === 'z' ? `${(centre + c).toFixed(1)} ${a.toFixed(1)}` : `${a.toFixed(1)} ${(centre + c).toFixed(1)}`);
+  const stems = `M${at(from, 0)}L${at(middle - half, 0)}M${at(middle + half, 0)}L${at(to, 0)}`;
+  return svg('path', { class: kind, d: stems + BODIES[kind](middle, half, at) });
+}
+
+const BODIES = {
+  spring: (m, half, at) => {
+    const turns = [...Array(8).keys()].map((n) => at(m - half + ((n + 0.5) * half) / 4, n % 2 ? -7 : 7));
+    return `M${at(m - half, 0)}L${turns.join('L')}L${at(m + half, 0)}`;
+  },
+  damper: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}M${at(m - half, 8)}L${at(m + half, 8)}M${at(m + half, -8)}L${at(m + half, 8)}M${at(m - half, 0)}L${at(m, 0)}M${at(m, -5.5)}L${at(m, 5.5)}`,
+  inerter: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m, -8)}L${at(m, 8)}`,
+  law: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m + half * 0.6, -5)}L${at(m - half * 0.6, 5)}`,
+};

@@ -1,0 +1,80 @@
+// Numbers with the digits and the unit that a person would write.
+
+// So many significant digits, and no exponent where a plain number is short.
+function number(value, digits = 3) {
+  if (value === null || value === undefined || !Number.isFinite(value)) return '–';
+  const size = Math.abs(value);
+  if (size !== 0 && (size < 1e-4 || size >= 1e7)) {
+    const [mantissa, exponent] = value.toExponential(digits - 1).split('e');
+    return `${minus(mantissa)}·10${superscript(Number(exponent))}`;
+  }
+  const rounded = Number(value.toPrecision(digits));
+  const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
+  return minus(rounded.toLocaleString('en-GB', { minimumFractionDigits: Math.min(decimals, 6), maximumFractionDigits: 6 })
+    .replace(/,/g, '\u2009'));
+}
+
+function minus(text) {
+  return text.replace('-', '−');
+}
+
+function superscript(exponent) {
+  return String(exponent).replace(/[-0-9]/g, (c) => (c === '-' ? '⁻' : '⁰¹²³⁴⁵⁶⁷⁸⁹'[c]));
+}
+
+// A share as percent.
+function percent(share, digits = 2) {
+  return share === null || !Number.isFinite(share) ? '–' : `${number(100 * share, digits)} %`;
+}
+
+// In how many of a larger unit an SI value is best read.
+const SCALES = {
+  'N/m': [1e-3, 'N/mm'],
+  'm': [1e3, 'mm'],
+};
+
+// A value and its unit; `pair` keeps a value and its error in one scale.
+function inUnit(value, unit) {
+  const [factor, written] = SCALES[unit] || [1, unit];
+  return { factor, unit: written === '1' ? '' : pretty(written), value: value === null ? null : value * factor };
+}
+
+function quantity(value, unit, digits = 3) {
+  const scaled = inUnit(value, unit);
+  return `${number(scaled.value, digits)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
+}
+
+// `m/s^2` as m/s², `N s/m` with a dot.
+function pretty(unit) {
+  return unit.replace('^2', '²').replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
+}
+
+// `value ± error` with as many digits as the error allows.
+function measured(value, error, unit) {
+  const scaled = inUnit(value, unit);
+  if (error === null || !Number.isFinite(error) || error <= 0) return quantity(value, unit, 4);
+  const places = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(error * scaled.factor))));
+  const fixed = (x) => minus(Number(x.toFixed(places)).toLocaleString('en-GB', {
+    minimumFractionDigits: places, maximumFractionDigits: places,
+  }).replace(/,/g, '\u2009'));
+  return `${fixed(scaled.value)} ± ${fixed(error * scaled.factor)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
+}
+
+// `coulomb_friction` as people say it.
+function words(name) {
+  return name.replace(/_/g, ' ');
+}
+
+// `pad_to_body` as an arrow.
+function channelName(name) {
+  return words(name.replace(/_to_/, ' → '));
+}
+
+// `rig/sweep_025.csv.gz` without what all runs share.
+function runName(file) {
+  return file.split('/').pop().replace(/\.gz$/, '').replace(/\.csv$/, '');
+}
+
+function roleName(role) {
+  return role === 'held_out' ? 'held out' : role;
+}

@@ -1,0 +1,53 @@
+// The fitted parameters: values, errors, correlations and what keeps an error from being known.
+
+function parameters({ fit, discover }) {
+  const own = Object.values(fit.parameters);
+  const rows = own.map((parameter) => {
+    const row = [parameter.name, inUnit(0, parameter.unit).unit, scaledNumber(parameter.start, parameter.unit),
+      scaledNumber(parameter.value, parameter.unit), parameter.stderr === null ? '' : scaledNumber(parameter.stderr, parameter.unit, 2),
+      parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr), rangeBar(parameter), remark(parameter)];
+    row.class = parameter.fitted ? null : 'still';
+    return row;
+  });
+  const ended = `${fit.converged ? 'Converged' : 'Did not converge'}: ${fit.stopped}. ${fit.minima.length ? fit.minima[0].starts : 0} of ${fit.starts} starts found this minimum, cost ${number(fit.cost)} (${number(fit.start_cost)} at the start values).`;
+  const element = section('parameters', 'Parameters',
+    h('p', {}, `Of the model ${fit.model}, fitted to the rig runs before anything was added. ${ended}`),
+    discover.effects.length ? h('p', { class: 'caution' }, 'While an effect is missing, these values bend to make up for it. Those found together with the effect are below, under discovery.') : null,
+    table('Fitted parameters', [['parameter', 'text'], ['unit', 'text'], ['start', 'number'], ['value', 'number'], ['standard error', 'number'], ['relative', 'number'], ['in its range', 'text'], ['remark', 'text']], rows),
+    correlations(fit.correlations));
+  return { element };
+}
+
+function scaledNumber(value, unit, digits = 4) {
+  return number(inUnit(value, unit).value, digits);
+}
+
+function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_stderr: relative }) {
+  if (bound) return `at the ${bound} end of its range`;
+  if (tied) return `as ${tied}`;
+  if (why) return WHY[why.reason] ? WHY[why.reason](why) : words(why.reason);
+  return relative > 0.05 ? 'poorly determined' : '';
+}
+
+const WHY = {
+  known: () => 'known, not fitted',
+  tied: () => 'takes the value of another',
+  not_seen: () => 'not seen by any fitted channel',
+  at_bound: () => 'at its bound',
+  only_together: (why) => `seen only together with ${why.with.join(', ')}`,
+  not_converged: () => 'the search did not end at a minimum',
+};
+
+// Where a value lies between its bounds, with its start.
+function rangeBar({ range, value, start, fitted }) {
+  if (!range || !fitted) return '';
+  const at = (v) => `${(100 * Math.min(1, Math.max(0, (v - range[0]) / (range[1] - range[0])))).toFixed(1)}%`;
+  return h('span', { class: 'range', role: 'img', 'aria-label': `between ${number(range[0])} and ${number(range[1])}` },
+    h('span', { class: 'tick start', style: `left:${at(start)}` }), h('span', { class: 'tick before', style: `left:${at(value)}` }));
+}
+
+function correlations(pairs) {
+  if (!pairs.length) return h('p', {}, 'No two estimates correlate by more than 0.9.');
+  return table('Estimates that correlate by more than 0.9', [['parameters', 'text'], ['correlation', 'number']],
+    pairs.map(({ between, value }) => [between.join(' and '), number(value)]));
+}

@@ -1,0 +1,125 @@
+// Plots: uPlot in the colours of the page, as wide as their place, with a keyboard.
+
+const plots = new Set();
+
+function colour(name) {
+  return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+}
+
+// What a curve stands for decides how it is drawn, everywhere.
+const ROLES = {
+  measured: { label: 'measured', width: 2.2 },
+  band: { label: 'band', width: 0 },
+  start: { label: 'start values', width: 1.1, dash: [2, 4] },
+  before: { label: 'before', width: 1.6, dash: [7, 4] },
+  after: { label: 'after', width: 1.6 },
+  locked: { label: 'locked', width: 1.4, dash: [7, 4] },
+  vertical: { label: 'vertical', width: 1.4, dash: [2, 3] },
+};
+
+// `curves` are `{role, label?, values, hidden?}`; `x` and `y` are `{label, log?, range?}`.
+// A curve of role `band` is one edge of a band; edges come in pairs.
+function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
+  const series = curves.map((curve) => seriesOf(curve, digits));
+  const options = {
+    width: Math.max(200, place.clientWidth),
+    height,
+    class: 'plot',
+    scales: { x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) }, y: { range: y.range || padded } },
+    axes: [axis(x, 44, x.log ? 30 : 50), axis(y, 58, 40)],
+    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '–' : number(v, 4)) }, ...series],
+    bands: bands(curves),
+    cursor: { sync: sync && { key: sync, setSeries: false }, points: { size: 6 }, drag: { x: true, y: false } },
+    legend: { live: true },
+    hooks: { draw: [(u) => marked(u, place)], setScale: sync ? [(u, scale) => follow(u, scale, sync)] : [] },
+  };
+  const data = [at, ...curves.map((curve) => curve.values)];
+  const chart = new uPlot(options, data, place);
+  chart.group = sync;
+  plots.add(chart);
+  reachable(place, chart);
+  new ResizeObserver(() => resize(chart, place, height)).observe(place);
+  return chart;
+}
+
+function seriesOf({ role, label, values, hidden }, digits) {
+  const { width, dash, label: usual } = ROLES[role];
+  return {
+    label: label || usual, class: role, width, dash, show: !hidden, spanGaps: false,
+    stroke: width > 0 ? () => colour(role) : undefined,
+    points: { show: false },
+    value: (u, v) => (v === null || v === undefined ? '–' : number(v, digits)),
+  };
+}
+
+function axis({ label, ticks }, size, space) {
+  return {
+    label, size, space, labelSize: 18, labelFont: '12px system-ui, sans-serif', font: '11.5px system-ui, sans-serif', gap: 4,
+    stroke: () => colour('muted'),
+    grid: { stroke: () => colour('grid'), width: 1 },
+    ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
+    filter: ticks ? (u, splits) => splits : undefined,
+    values: ticks || ((u, splits) => splits.map((v) => (v === null ? '' : plain(v)))),
+  };
+}
+
+function tight(u, low, high) {
+  return [low, high];
+}
+
+function plain(value) {
+  return minus(String(Number(value.toPrecision(6))));
+}
+
+function padded(u, low, high) {
+  if (low === null || high === null) return [0, 1];
+  const margin = Math.max((high - low) * 0.06, Math.abs(high) * 1e-6, 1e-9);
+  return [low - margin, high + margin];
+}
+
+function bands(curves) {
+  const edges = curves.map((curve, at) => (curve.role === 'band' ? at + 1 : 0)).filter((at) => at > 0);
+  const pairs = [];
+  for (let at = 0; at + 1 < edges.length; at += 2) {
+    pairs.push({ series: [edges[at + 1], edges[at]], fill: () => colour('band') });
+  }
+  return pairs;
+}
+
+// Only a plot with something to see counts as drawn.
+function marked(u, place) {
+  const visible = u.series.some((series, at) => at > 0 && series.show && u.data[at].some((v) => v !== null && Number.isFinite(v)));
+  if (visible && u.bbox.width > 0) drawn(place);
+}
+
+// Plots of one group keep to one range of x.
+let following = false;
+function follow(u, scale, group) {
+  if (scale !== 'x' || following) return;
+  following = true;
+  const { min, max } = u.scales.x;
+  for (const other of plots) {
+    const moved = other !== u && other.group === group && (other.scales.x.min !== min || other.scales.x.max !== max);
+    if (moved && min !== undefined && min !== null) other.setScale('x', { min, max });
+  }
+  following = false;
+}
+
+function resize(chart, place, height) {
+  const width = Math.max(200, place.clientWidth);
+  if (width !== chart.width) chart.setSize({ width, height });
+}
+
+// New curves in an old plot, which keeps its zoom.
+function replace(chart, at, curves) {
+  chart.setData([at, ...curves.map((curve) => curve.values)], true);
+}
+
+function forget(chart) {
+  plots.delete(chart);
+  chart.destroy();
+}
+
+function recolour() {
+  plots.forEach((chart) => chart.redraw(false, true));
+}

@@ -1,0 +1,113 @@
+// Cleat runs: traces of any run, the errors of all, and the variants of the model.
+
+const VARIANT_VIEW = [-0.02, 0.2];
+
+function track({ track: own, simulate }) {
+  if (!own) return null;
+  const charts = [];
+  const traces = h('div', { class: 'columns two' });
+  const variants = h('div', { class: 'columns two' });
+  const runs = own.runs.map((run) => [run.file, `${number(3.6 * run.speed)} km/h, ${words(run.cleat)} (${roleName(run.role)})`]);
+  const show = (file) => {
+    charts.splice(0).forEach(forget);
+    const run = own.runs.find((candidate) => candidate.file === file);
+    charts.push(...drawTraces(run, traces), ...drawVariants(run, variants));
+  };
+  const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
+  const first = own.runs[Math.floor(own.runs.length / 2)].file;
+  const histograms = errorFigures(own.histograms);
+  const element = section('track', 'Over the cleat',
+    h('p', {}, 'Accelerations ', key('measured', 'measured'), ' and simulated with the parameters of the rig, ', key('before', 'before'), changed ? [' and ', key('after', 'with what was missing')] : null,
+      '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.'),
+    select('Run', runs, first, show), traces,
+    h('h3', {}, 'Errors over all runs'),
+    h('p', {}, 'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.'),
+    h('div', { class: 'columns four' }, histograms),
+    summaryTable(simulate), details('Every run', errorTable(simulate)),
+    h('h3', {}, 'Variants of the model'),
+    h('p', {}, 'The complete model, the same with its ', key('locked', 'longitudinal motion locked'), ', and ', key('vertical', 'purely vertical on a point contact'), '.'),
+    variants);
+  return { element, draw: () => { show(first); histograms.forEach((part) => drawn(part)); } };
+}
+
+const SECONDS = { label: 'time, s' };
+const ACCELERATION = { label: 'acceleration, m/s²' };
+
+function drawTraces(run, place) {
+  place.replaceChildren(...run.traces.map((trace) => traceColumn(trace, 'trace')));
+  return run.traces.map((trace, at) => plot(place.children[at].querySelector('.canvas'), {
+    x: SECONDS, y: ACCELERATION, at: run.time, sync: 'track',
+    curves: [{ role: 'measured', values: trace.measured }, { role: 'before', values: trace.before }, ...(trace.after ? [{ role: 'after', values: trace.after }] : [])],
+  }));
+}
+
+function traceColumn(trace, kind) {
+  return h('div', { class: 'column' }, h('h4', {}, `${words(trace.mass)}, ${trace.axis}`), figure(kind, null, h('div', { class: 'canvas' })));
+}
+
+function drawVariants(run, place) {
+  const vertical = run.traces.filter((trace) => trace.axis === 'z');
+  place.replaceChildren(...vertical.map((trace) => traceColumn(trace, 'variant')));
+  return vertical.map((trace, at) => {
+    const chart = plot(place.children[at].querySelector('.canvas'), {
+      x: SECONDS, y: ACCELERATION, at: run.time, sync: 'variants',
+      curves: [{ role: 'measured', values: trace.measured }, { role: trace.after ? 'after' : 'before', label: 'complete', values: trace.after || trace.before },
+        { role: 'locked', values: trace.locked }, { role: 'vertical', values: trace.vertical }],
+    });
+    chart.setScale('x', { min: VARIANT_VIEW[0], max: VARIANT_VIEW[1] });
+    return chart;
+  });
+}
+
+function errorFigures(histograms) {
+  const names = ['body_z', 'body_x'].filter((name) => histograms[name]);
+  const wanted = names.length ? names : Object.keys(histograms);
+  return [['peak', 'peak'], ['after_shake', 'after-shake']].flatMap(([metric, text]) => wanted.map((name) => (
+    figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, histogramDrawing(histograms[name][metric])))));
+}
+
+// Bars of both models side by side in each bin.
+function histogramDrawing({ before, after }) {
+  const sets = [['before', before], ['after', after]].filter(([, own]) => own && own.counts.length);
+  if (!sets.length) return h('p', { class: 'note' }, 'no run has this error');
+  const width = sets[0][1].width;
+  const bin = (own, at) => Math.round(own.start / width) + at;
+  const low = Math.min(-1, ...sets.map(([, own]) => bin(own, 0)));
+  const high = Math.max(1, ...sets.map(([, own]) => bin(own, own.counts.length)));
+  const most = Math.max(...sets.flatMap(([, own]) => own.counts));
+  const [left, top, w, tall] = [26, 8, 210, 92];
+  const x = (edge) => left + ((edge - low) / (high - low)) * w;
+  const y = (count) => top + tall * (1 - count / most);
+  const thin = w / (high - low) / sets.length;
+  const bars = sets.flatMap(([role, own], index) => own.counts.map((count, at) => (count === 0 ? null : svg('rect', {
+    class: `bar ${role}`, x: x(bin(own, at)) + index * thin + 0.5, y: y(count), width: Math.max(1, thin - 1), height: top + tall - y(count),
+  }, svg('title', {}, `${role}: ${count} of ${number(100 * width * bin(own, at))} to ${number(100 * width * (bin(own, at) + 1))} %`)))));
+  const every = Math.max(1, Math.ceil((high - low) / 6));
+  const ticks = [];
+  for (let edge = Math.ceil(low / every) * every; edge <= high; edge += every) ticks.push(edge);
+  return svg('svg', { class: 'histogram', viewBox: '0 0 244 142', role: 'img', 'aria-label': sets.map(([role, own]) => `${role}: ${own.counts.join(', ')} runs in bins of 5 percent from ${number(100 * own.start)} percent`).join('; ') },
+    svg('path', { class: 'frame', d: `M${left} ${top}V${top + tall}H${left + w}` }), svg('path', { class: 'zero', d: `M${x(0)} ${top}V${top + tall}` }), bars,
+    ticks.map((edge) => svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, number(100 * width * edge))),
+    [0, most].map((count) => svg('text', { x: left - 5, y: y(count) + 4, 'text-anchor': 'end' }, String(count))),
+    svg('text', { x: left + w / 2, y: 136, 'text-anchor': 'middle' }, 'error, %'));
+}
+
+const MODELS = [['before', 'before'], ['after', 'with what was missing'], ['longitudinally_locked', 'locked'], ['pure_vertical', 'vertical']];
+
+function summaryTable(simulate) {
+  const models = MODELS.filter(([name]) => simulate[name]);
+  const rows = Object.keys(simulate.before.summary).map((place) => [words(place), ...models.flatMap(([name]) => {
+    const own = simulate[name].summary[place] || {};
+    return ['peak', 'after_shake'].map((metric) => (own[metric] ? `${percent(own[metric].median)} (${percent(own[metric].worst)})` : '–'));
+  })]);
+  const headings = models.flatMap(([, text]) => [[`peak, ${text}`, 'number'], [`after-shake, ${text}`, 'number']]);
+  return table('Median (worst) size of the errors', [['mass', 'text'], ...headings], rows);
+}
+
+function errorTable(simulate) {
+  const last = simulate.after || simulate.before;
+  const rows = last.runs.map((own) => [runName(own.run), roleName(own.role), `${words(own.mass)} ${own.axis}`, number(own.measured_peak), number(own.simulated_peak), percent(own.peak_error),
+    number(own.measured_after_shake), number(own.simulated_after_shake), percent(own.after_shake_error)]);
+  return table('Peaks and after-shakes, m/s²', [['run', 'text'], ['role', 'text'], ['mass', 'text'], ['peak measured', 'number'], ['simulated', 'number'], ['error', 'number'],
+    ['after-shake measured', 'number'], ['simulated', 'number'], ['error', 'number']], rows);
+}

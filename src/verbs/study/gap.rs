@@ -1,6 +1,7 @@
 //! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
+use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::{Kappa, Place, kappa_map, refit};
 use serde::Serialize;
@@ -12,10 +13,12 @@ use super::rounded::{curve, rounded};
 #[derive(Serialize)]
 pub struct Patch {
     channel: String,
+    /// `harmonic`, `time` or `passage`.
+    kind: &'static str,
     harmonic: Option<usize>,
-    /// Hz, or s of a time history.
+    /// Hz of a harmonic, else s.
     span: (f64, f64),
-    /// m/s of a sweep.
+    /// In the unit of its run: m/s of a sweep.
     level: f64,
     /// RMS over the uncertainty.
     strength: f64,
@@ -49,6 +52,11 @@ struct Stiffness {
 pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
     let patch = |tile: &Tile| Patch {
         channel: format!("{} {}", tile.sensor.location, tile.sensor.axis.name()),
+        kind: match tile.kind {
+            Kind::Harmonic(_) => "harmonic",
+            Kind::Time => "time",
+            Kind::Passage => "passage",
+        },
         harmonic: tile.kind.order(),
         span: (rounded(tile.span.0), rounded(tile.span.1)),
         level: tile.level,

@@ -7,7 +7,7 @@ use qcar_dsl::schedule::Compiled;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::InputError;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::simulate::Variant;
+use qcar_runtime::simulate::{Cleat, Variant};
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
@@ -16,7 +16,7 @@ use crate::json;
 use crate::verbs::discover::{self, Answer};
 use crate::verbs::fit::{self, Choices, Fitted};
 use crate::verbs::kc::{self, Gradient};
-use crate::verbs::simulate::{self, Cleat, Driven};
+use crate::verbs::simulate::{self, Driven};
 
 /// What all verbs say of a campaign.
 pub struct Study {

@@ -6,6 +6,7 @@ use qcar_runtime::discover::evidence::{Evidence, Kind};
 use qcar_runtime::discover::predict::{Prediction, predict};
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::fit::quality::{Quality, quality};
 use qcar_runtime::model::Channel;
 use qcar_runtime::response::ratio::ratio;
 use serde::Serialize;
@@ -31,6 +32,8 @@ pub struct Ratio {
     start: Polar,
     before: Polar,
     after: Option<Polar>,
+    quality_before: Quality,
+    quality_after: Option<Quality>,
 }
 
 /// Magnitude and phase.
@@ -55,6 +58,8 @@ pub fn ratios(of: &Study) -> Vec<Ratio> {
 fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
     let Compared { level, observation, .. } = of;
     let measured = unwrapped(&observation.value);
+    let after = after.and_then(|after| after.ratio(level, observation));
+    let quality = |values: &[Complex<f64>]| quality(&observation.frequency, values, &observation.value);
     let beside = |values: &[Complex<f64>]| Polar::new(values, &nearest(values, &measured));
     Ratio {
         run: level.name.clone(),
@@ -67,9 +72,9 @@ fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
         band: band(observation),
         start: beside(&of.before),
         before: beside(&of.after),
-        after: after
-            .and_then(|after| after.ratio(level, observation))
-            .map(|values| beside(&values)),
+        after: after.as_deref().map(beside),
+        quality_before: quality(&of.after),
+        quality_after: after.as_deref().map(quality),
     }
 }
 

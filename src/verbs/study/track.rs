@@ -5,13 +5,13 @@ use std::collections::BTreeMap;
 use qcar_runtime::campaign::{Role, Test};
 use qcar_runtime::compare::{Histogram, Windows};
 use qcar_runtime::model::About;
-use qcar_runtime::simulate::Ride;
+use qcar_runtime::simulate::{Cleat, Ride};
 use serde::Serialize;
 
 use super::gather::{self, Study};
 use super::rounded::curve;
+use crate::verbs::simulate::Driven;
 use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
-use crate::verbs::simulate::{Cleat, Driven};
 
 /// All runs.
 #[derive(Serialize)]
