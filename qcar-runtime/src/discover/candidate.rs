@@ -52,8 +52,18 @@ pub struct Added {
     pub range: (f64, f64),
 }
 
+impl Candidate {
+    /// What is to be found.
+    pub fn unknowns(&self) -> &[Added] {
+        match &self.change {
+            Change::Model { parameters, .. } => parameters,
+            Change::Sensor { parameter, .. } => std::slice::from_ref(parameter),
+        }
+    }
+}
+
 /// A model and what might be missing in it.
-pub trait Workshop: Sync {
+pub trait Workshop: Send + Sync {
     /// The model.
     fn model(&self) -> &dyn Model;
 

@@ -1,12 +1,6 @@
-//! How well a model explains the evidence: the best of several refits, coarse first.
-//!
-//! A wrong model that is pressed to fit a precise measurement hides its fault in all its parameters and ends in a poor
-//! local minimum. So each start is first fitted with a tolerance of some percent of every value, in which only the
-//! large features count, and the best of these is then fitted sharply.
+//! How well a model explains the evidence, and from where a search for its parameters may begin.
 
 use std::collections::BTreeMap;
-
-use rayon::prelude::*;
 
 use super::candidate::Added;
 use super::evidence::Evidence;
@@ -14,7 +8,8 @@ use super::gap::Gap;
 use super::nuisance::Nuisance;
 use super::predict::{Free, PredictError};
 use super::refit::{Refit, refit_with};
-use crate::model::Model;
+use crate::campaign::Role;
+use crate::model::{About, Model};
 use crate::response::parameters::Values;
 
 /// A parameter of the base model as the campaign gives it.
@@ -37,6 +32,16 @@ pub struct Setting {
     pub vehicle: BTreeMap<String, f64>,
 }
 
+impl Setting {
+    /// # Errors
+    /// A value for a parameter that the model does not have, and a parameter without a value.
+    pub fn check(&self, about: &About) -> Result<(), PredictError> {
+        let given = self.given.iter().map(|p| (p.name.clone(), p.value)).collect();
+        let values = Values::resolve(about, &given, &self.vehicle);
+        values.map(|_| ()).map_err(PredictError::Parameters)
+    }
+}
+
 /// A model's explanation.
 #[derive(Clone, Debug)]
 pub struct Explanation {
@@ -48,16 +53,31 @@ pub struct Explanation {
     pub gap: Gap,
 }
 
-/// Tolerance of the coarse fit, as a share of every value.
-const TOLERANCE: f64 = 0.1;
-/// A coarse fit looks at every so many-th value.
-const THINNED: usize = 3;
-/// Evaluations of a coarse fit.
-const COARSE: usize = 15;
-/// Evaluations of a sharp fit.
-const SHARP: usize = 40;
-/// Coarse fits that are sharpened: the best of them may end in a poor minimum.
-const SHARPENED: usize = 3;
+impl Explanation {
+    /// By what share of them the model misses most of the fitted values that stand clear of the noise: the median.
+    pub fn misfit(&self, evidence: &Evidence) -> f64 {
+        const CLEAR: f64 = 10.0;
+        let mut shares = Vec::new();
+        for (place, series) in evidence.of_role(Role::Fit) {
+            let (parts, scale) = if series.kind.complex() { (2, 0.5) } else { (1, 1.0) };
+            let residuals = self.gap.residuals[place].chunks(parts);
+            for ((value, sigma), residual) in series.value.iter().zip(&series.sigma).zip(residuals) {
+                let power: f64 = residual.iter().map(|r| r * r).sum();
+                if value.norm() > CLEAR * sigma {
+                    shares.push((power * scale).sqrt() * sigma / value.norm());
+                }
+            }
+        }
+        let middle = shares.len() / 2;
+        if shares.is_empty() {
+            return 0.0;
+        }
+        *shares.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
+}
+
+/// How far towards the ends of their ranges searches begin beside the starts.
+const HALF_WAY: f64 = 0.5;
 
 /// A model with what it brings along, put before the evidence.
 pub struct Explanandum<'a> {
@@ -74,64 +94,67 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// The coarse fits of all starts, with tolerance, the best first.
+    /// Fits from `values` with at most so many evaluations.
     ///
     /// # Errors
-    /// Where the model lacks what was measured, or a parameter has no value.
-    pub fn coarse(&self, evidence: &Evidence) -> Result<Vec<Refit>, PredictError> {
-        let tolerant = evidence.thinned(THINNED).tolerant(TOLERANCE);
-        let free = self.free();
-        let fits = self
-            .starts()?
-            .into_par_iter()
-            .map(|values| refit_with(self.model, &values, &free, &tolerant, self.nuisance.clone(), COARSE));
-        let mut fits = fits.collect::<Result<Vec<_>, _>>()?;
-        fits.retain(|fit| fit.chi2.is_finite());
-        fits.sort_by(|a, b| a.chi2.total_cmp(&b.chi2));
-        Ok(fits)
+    /// Where the model lacks what was measured.
+    pub fn refit(&self, values: &Values, evidence: &Evidence, evaluations: usize) -> Result<Refit, PredictError> {
+        let nuisance = self.nuisance.clone();
+        refit_with(self.model, values, &self.free(), evidence, nuisance, evaluations)
     }
 
-    /// The best sharp fit that starts from the best coarse ones; `None` where there are none.
+    /// What a refit says of all runs.
     ///
     /// # Errors
-    /// As [`Explanandum::coarse`].
-    pub fn sharp(&self, coarse: &[Refit], evidence: &Evidence) -> Result<Option<Explanation>, PredictError> {
-        let fits = coarse.par_iter().take(SHARPENED).map(|coarse| {
-            let nuisance = self.nuisance.clone();
-            refit_with(self.model, &coarse.values, &coarse.free, evidence, nuisance, SHARP)
-        });
-        let fits = fits.collect::<Result<Vec<_>, _>>()?;
-        let best = fits.into_iter().min_by(|a, b| a.chi2.total_cmp(&b.chi2));
-        best.map(|refit| self.explanation(refit, evidence)).transpose()
-    }
-
-    fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
+    /// Where the model lacks what was measured.
+    pub fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
         let gap = Gap::of(self.model, &refit, evidence)?;
         let names = self.model.about().parameters.iter().map(|p| p.name.to_string());
         let named = names.zip(refit.values.as_slice().iter().copied()).collect();
         Ok(Explanation { named, refit, gap })
     }
 
-    /// The starts: the campaign's values and the known ones, each with the added parameters at their start, low and high.
-    fn starts(&self) -> Result<Vec<Values>, PredictError> {
+    /// The starts: the known values with the added parameters in several places of their ranges, and the campaign's
+    /// values with the added ones at their starts.
+    ///
+    /// # Errors
+    /// Where a parameter has no value.
+    pub fn starts(&self) -> Result<Vec<Values>, PredictError> {
         let given = self.setting.given.iter();
         let campaign: BTreeMap<String, f64> = given.map(|p| (p.name.clone(), p.value)).collect();
-        let bases = [Some(campaign), self.known.map(|known| within(known, self.setting))];
-        let shifts: &[f64] = if self.added.is_empty() {
-            &[0.0]
-        } else {
-            &[0.0, -0.5, 0.5]
-        };
-        let mut starts = Vec::new();
-        for base in bases.into_iter().flatten() {
-            for &shift in shifts {
-                let mut given = base.clone();
-                given.extend(self.added.iter().map(|p| (p.name.clone(), towards(p, shift))));
-                let values = Values::resolve(self.model.about(), &given, &self.setting.vehicle);
-                starts.push(values.map_err(PredictError::Parameters)?);
+        let plain = vec![0.0; self.added.len()];
+        let mut starts = vec![self.start(campaign, &plain)?];
+        if let Some(known) = self.known {
+            let known = within(known, self.setting);
+            for shifts in self.shifts() {
+                starts.push(self.start(known.clone(), &shifts)?);
             }
         }
         Ok(starts)
+    }
+
+    fn start(&self, mut given: BTreeMap<String, f64>, shifts: &[f64]) -> Result<Values, PredictError> {
+        // An effect may replace a law, and its parameters with it.
+        given.retain(|name, _| self.model.about().parameters.iter().any(|p| p.name == *name));
+        let added = self.added.iter().zip(shifts);
+        given.extend(added.map(|(p, &shift)| (p.name.clone(), towards(p, shift))));
+        Values::resolve(self.model.about(), &given, &self.setting.vehicle).map_err(PredictError::Parameters)
+    }
+
+    /// Where in their ranges the added parameters begin: all at their starts, all low, all high, and, where a model
+    /// costs little, each alone low or high too, since a mode that is sought far from where it is is not found.
+    fn shifts(&self) -> Vec<Vec<f64>> {
+        let count = self.added.len();
+        let all = |shift: f64| vec![shift; count];
+        let mut shifts = vec![all(0.0)];
+        if count > 0 {
+            shifts.extend([all(-HALF_WAY), all(HALF_WAY)]);
+        }
+        if count > 1 && self.model.about().linear {
+            let alone = |k: usize, shift: f64| (0..count).map(|i| if i == k { shift } else { 0.0 }).collect();
+            shifts.extend((0..count).flat_map(|k| [alone(k, -HALF_WAY), alone(k, HALF_WAY)]));
+        }
+        shifts
     }
 
     fn free(&self) -> Vec<Free> {

@@ -90,8 +90,8 @@ pub struct Nuisance {
     pub sensors: Vec<Point>,
     /// The lowest and highest frequency of the polynomials, Hz.
     pub band: (f64, f64),
-    /// A coefficient that may be anything: its place, and its standard deviation before any measurement.
-    pub suspect: Option<(usize, f64)>,
+    /// Coefficients under suspicion: the place of each, and its standard deviation before any measurement.
+    pub suspects: Vec<(usize, f64)>,
 }
 
 impl Nuisance {
@@ -116,7 +116,7 @@ impl Nuisance {
                 frequencies().fold(f64::INFINITY, f64::min),
                 frequencies().fold(0.0, f64::max),
             ),
-            suspect: None,
+            suspects: Vec::new(),
         }
     }
 
@@ -126,7 +126,7 @@ impl Nuisance {
         let is_it = |sensor: &Point| sensor.location == location && sensor.axis == axis;
         let sensor = self.sensors.iter().position(is_it)?;
         let shape = SENSOR.iter().position(|shape| shape.form == form)?;
-        self.suspect = Some((sensor * SENSOR.len() + shape, sigma));
+        self.suspects.push((sensor * SENSOR.len() + shape, sigma));
         Some(self)
     }
 
@@ -144,9 +144,7 @@ impl Nuisance {
     pub fn sigmas(&self) -> Vec<f64> {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
         let mut sigmas: Vec<f64> = priors.collect();
-        if let Some((place, sigma)) = self.suspect {
-            sigmas[place] = sigma;
-        }
+        self.suspects.iter().for_each(|&(place, sigma)| sigmas[place] = sigma);
         sigmas
     }
 

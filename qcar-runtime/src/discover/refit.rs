@@ -7,6 +7,8 @@
 //! corners of an axle differ by a percent or two, which shifts the modes of the after-shake by more than its noise: so
 //! each free parameter has a factor of its own on the recorded side, held by a prior.
 
+use std::ops::Range;
+
 use nalgebra::{Complex, DMatrix};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
@@ -37,6 +39,8 @@ pub struct Refit {
     pub nuisance: Nuisance,
     /// Their errors.
     pub coefficients: Vec<f64>,
+    /// Standard errors of these; NaN for one that nothing tells of.
+    pub coefficient_stderr: Vec<f64>,
     /// Sum of squares of all residuals, priors included.
     pub chi2: f64,
     /// Number of residuals of the data.
@@ -129,7 +133,12 @@ pub fn refit_with(
         values: posterior.values,
         side: posterior.side,
         estimate: outcome.x[..free.len()].to_vec(),
-        covariance: spread(&information, free.len()),
+        covariance: spread(&information, 0..free.len()),
+        coefficient_stderr: spread(&information, free.len()..free.len() + count)
+            .diagonal()
+            .map(f64::sqrt)
+            .as_slice()
+            .to_vec(),
         at_bound: outcome.at_bound[..free.len()].to_vec(),
         free: free.to_vec(),
         coefficients: outcome.x[free.len()..][..posterior.nuisance.len()].to_vec(),
@@ -146,10 +155,10 @@ fn of_one_side(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Cleat(_))
 }
 
-/// The rows and columns of the first `count` variables of a covariance.
-fn spread(information: &Information, count: usize) -> DMatrix<f64> {
-    let place = |k: usize| information.seen().iter().position(|&seen| seen == k);
-    DMatrix::from_fn(count, count, |i, j| match (place(i), place(j)) {
+/// The rows and columns of some variables of a covariance.
+fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
+    let place = |k: usize| information.seen().iter().position(|&seen| seen == variables.start + k);
+    DMatrix::from_fn(variables.len(), variables.len(), |i, j| match (place(i), place(j)) {
         (Some(i), Some(j)) => information.inverse()[(i, j)],
         _ => f64::NAN,
     })

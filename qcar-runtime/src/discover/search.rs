@@ -1,21 +1,23 @@
 //! Which effect is missing: candidates are refitted jointly with the base model, compared on the fitted runs, and judged
 //! on those that no fit has seen.
 //!
-//! An answer is given only where it is earned. `none`: what is left is noise. `found`: one candidate explains what is
-//! left, on held-out runs too, and no rival comes close. `class`: several do, and the data cannot tell them apart.
-//! `unknown`: there is a gap, and nothing explains it.
+//! An answer is given only where it is earned. `none`: what is left is noise. `found`: one set of effects explains what
+//! is left, on held-out runs too, each of them is missed when it is taken away, and no rival comes close. `class`:
+//! several explain it, and the data cannot tell them apart. `unknown`: there is a gap, and nothing explains it.
 
-use std::collections::{BTreeMap, BTreeSet};
+// The best of many explanations.
+mod contest;
+// What earns a name.
+mod rules;
+// A model with effects in it, and what is tried on it.
+mod state;
 
-use rayon::prelude::*;
-
-use super::candidate::{Added, Candidate, Change, Workshop};
+use super::candidate::Workshop;
 use super::evidence::Evidence;
-use super::explain::{Explanandum, Explanation, Given, Setting};
-use super::nuisance::{Form, Nuisance};
+use super::explain::{Explanation, Setting};
 use super::predict::PredictError;
-use super::refit::Refit;
-use crate::campaign::Role;
+use rules::Judge;
+use state::{Contender, State};
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -38,8 +40,6 @@ pub struct Finding {
     pub effect: String,
     /// Its place.
     pub at: String,
-    /// Which of its forms fits best; `None` where it has only one.
-    pub form: Option<String>,
     /// Its parameters: name, value and standard error, SI.
     pub parameters: Vec<(String, f64, f64)>,
     /// By how much it lowers the sum of squares of the fitted runs.
@@ -76,25 +76,11 @@ pub struct Discovery {
 
 /// Effects that are looked for one after the other.
 const MOST_EFFECTS: usize = 3;
-/// A gap (RMS over uncertainty) below this is noise: what differs between the sides of an axle, and what its averages
-/// leave of that, come to a tenth.
-const NOISE: f64 = 1.2;
-/// An effect must lower the sum of squares by so much, beside the penalty of its parameters.
-const SIGNIFICANT: f64 = 60.0;
-/// It must close so much of the excess gap of the held-out runs.
-const CLOSED: f64 = 0.6;
-/// All effects together must leave no more than this, or close [`ALL_CLOSED`] of the excess.
-const LEFT: f64 = 1.5;
-/// See [`LEFT`].
-const ALL_CLOSED: f64 = 0.97;
-/// A rival that is no farther behind cannot be told apart.
-const ALIKE: f64 = 20.0;
-/// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
-const SUSPECT: [f64; 2] = [1.0, 0.02];
-/// Candidates that are fitted sharply, the best of the coarse fits.
-const LOOKED_INTO: usize = 8;
-/// Rivals that are listed.
-const LISTED: usize = 6;
+/// First effects from which a search goes on: of two effects the stronger need not be the one that shows first.
+const FIRST_PICKS: usize = 2;
+
+/// Told what is being done.
+pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
 
 /// Searches for what is missing. `progress` is told what is being done.
 ///
@@ -104,298 +90,131 @@ pub fn discover(
     workshop: Box<dyn Workshop>,
     setting: &Setting,
     evidence: &Evidence,
-    progress: &(dyn Fn(&str) + Sync),
+    progress: Progress<'_>,
 ) -> Result<Discovery, PredictError> {
     progress("fitting the base model");
-    let nuisance = Nuisance::of(evidence);
-    let base = Explanandum {
-        model: workshop.model(),
-        added: &[],
-        setting,
-        known: None,
-        nuisance: nuisance.clone(),
-    };
-    let before = base.sharp(&base.coarse(evidence)?, evidence)?;
-    let before = before.ok_or(PredictError::NoNumber)?;
-    let mut state = State {
-        workshop,
-        setting: setting.clone(),
-        nuisance,
-        explanation: before.clone(),
-    };
-    let mut findings = Vec::new();
-    while is_gap(&state.explanation) && findings.len() < MOST_EFFECTS {
-        let Some(round) = state.round(evidence, progress)? else {
-            break;
-        };
-        if round.class.len() > 1 {
-            let after = round.explanation;
-            let earned = findings.is_empty() && is_enough(&before, &after, evidence);
-            let verdict = if earned { Verdict::Class } else { Verdict::Unknown };
-            let findings = if earned { round.class } else { findings };
-            return Ok(Discovery {
-                verdict,
-                findings,
-                before,
-                after,
-            });
-        }
-        findings.extend(round.class);
-        state.adopt(round.candidate, round.explanation);
-    }
-    let verdict = match () {
-        () if !is_gap(&before) => Verdict::None,
-        () if findings.is_empty() || !is_enough(&before, &state.explanation, evidence) => Verdict::Unknown,
-        () => Verdict::Found,
-    };
-    Ok(Discovery {
+    let base = State::base(workshop, setting, evidence, progress)?;
+    let before = base.explanation.clone();
+    let judge = Judge::new(evidence, &before);
+    let verdict = |verdict, findings, after: &Explanation| Discovery {
         verdict,
-        findings: if verdict == Verdict::Found {
-            findings
-        } else {
-            Vec::new()
-        },
-        before,
-        after: state.explanation,
-    })
-}
-
-/// True where more is left than noise.
-fn is_gap(explanation: &Explanation) -> bool {
-    explanation.gap.fit.max(explanation.gap.held_out) > NOISE
-}
-
-/// True where what is left does not matter any more.
-fn is_enough(before: &Explanation, after: &Explanation, evidence: &Evidence) -> bool {
-    let gap = judged(after, evidence);
-    gap < LEFT || closed(before, after, evidence) > ALL_CLOSED
-}
-
-/// The gap that judges: that of the held-out runs where there are any.
-fn judged(explanation: &Explanation, evidence: &Evidence) -> f64 {
-    let held_out = evidence.of_role(Role::HeldOut).next().is_some();
-    if held_out {
-        explanation.gap.held_out
-    } else {
-        explanation.gap.fit
+        findings,
+        before: before.clone(),
+        after: after.clone(),
+    };
+    if !judge.is_gap(&before) {
+        return Ok(verdict(Verdict::None, Vec::new(), &before));
     }
+    let first = base.contenders(evidence, progress)?;
+    let mut best: Option<Path> = None;
+    for pick in (0..first.len())
+        .filter(|&pick| judge.is_significant(&base, &first[pick]))
+        .take(FIRST_PICKS)
+    {
+        let path = Path::begin(&base, &first, pick, &judge).follow(&judge, evidence, progress)?;
+        let enough = judge.is_enough(&path);
+        if best.as_ref().is_none_or(|best| path.score() < best.score()) {
+            best = Some(path);
+        }
+        if enough {
+            break;
+        }
+    }
+    let Some(path) = best else {
+        return Ok(verdict(Verdict::Unknown, Vec::new(), &before));
+    };
+    if !judge.is_enough(&path) {
+        return Ok(verdict(Verdict::Unknown, Vec::new(), &path.state.explanation));
+    }
+    let path = path.without_what_is_not_missed(&base, &judge, evidence, progress)?;
+    let named = match path.class.len() {
+        0 | 1 => Verdict::Found,
+        _ => Verdict::Class,
+    };
+    let after = path.state.explanation.clone();
+    let findings = if named == Verdict::Class {
+        path.class
+    } else {
+        path.findings
+    };
+    Ok(verdict(named, findings, &after))
 }
 
-/// Share of the excess of the squared gap over noise that is gone.
-fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
-    let excess = |explanation| (judged(explanation, evidence).powi(2) - 1.0).max(0.0);
-    1.0 - excess(after) / excess(before).max(f64::MIN_POSITIVE)
-}
-
-/// What is known so far.
-struct State {
-    workshop: Box<dyn Workshop>,
-    setting: Setting,
-    nuisance: Nuisance,
-    explanation: Explanation,
-}
-
-/// The outcome of a round: the best candidate, and those that cannot be told from it.
-struct Round {
-    candidate: Candidate,
-    explanation: Explanation,
+/// Effects that were taken one after the other.
+pub(super) struct Path {
+    state: State,
+    findings: Vec<Finding>,
+    /// Those that cannot be told from the last effect, itself included.
     class: Vec<Finding>,
 }
 
-/// A candidate and how well it explains.
-struct Trial {
-    candidate: Candidate,
-    explanation: Explanation,
-    /// Sum of squares with the penalty of the added parameters.
-    score: f64,
-}
-
-impl State {
-    /// Tries every candidate. `None` where none earns its name.
-    fn round(&self, evidence: &Evidence, progress: &(dyn Fn(&str) + Sync)) -> Result<Option<Round>, PredictError> {
-        let candidates = self.workshop.candidates();
-        let count = candidates.len();
-        progress(&format!("trying {count} effects at their places"));
-        let known = self.known();
-        let looks = candidates.into_par_iter().filter_map(|candidate| {
-            let coarse = self.explanandum(&candidate, &known)?.coarse(evidence).ok()?;
-            (!coarse.is_empty()).then_some((candidate, coarse))
-        });
-        let mut looks: Vec<(Candidate, Vec<Refit>)> = looks.collect();
-        looks.sort_by(|a, b| a.1[0].chi2.total_cmp(&b.1[0].chi2));
-        looks.truncate(LOOKED_INTO);
-        progress(&format!("looking into the best {} of them", looks.len()));
-        let trials = looks.into_par_iter();
-        let trials = trials.filter_map(|(candidate, coarse)| self.try_out(candidate, &coarse, &known, evidence));
-        let mut trials: Vec<Trial> = trials.collect();
-        trials.sort_by(|a, b| a.score.total_cmp(&b.score));
-        // The best form stands for the effect.
-        let mut met = BTreeSet::new();
-        trials.retain(|trial| met.insert((trial.candidate.effect.clone(), trial.candidate.at.clone())));
-        let Some(best) = trials.first() else { return Ok(None) };
-        if !self.is_earned(best, evidence) {
-            return Ok(None);
-        }
-        let scatter = (best.explanation.refit.chi2 / best.explanation.refit.residuals as f64).max(1.0);
-        let behind = |trial: &Trial| (trial.score - best.score) / scatter;
-        let alike = trials.iter().take_while(|trial| behind(trial) < ALIKE).count();
-        let rivals: Vec<Rival> = trials
-            .iter()
-            .skip(1)
-            .take(LISTED)
-            .map(|trial| trial.rival(behind(trial)))
-            .collect();
-        let class = trials[..alike]
-            .iter()
-            .map(|trial| self.finding(trial, &rivals, evidence))
-            .collect();
-        let Trial {
-            candidate, explanation, ..
-        } = trials.swap_remove(0);
-        Ok(Some(Round {
-            candidate,
-            explanation,
-            class,
-        }))
-    }
-
-    /// A candidate with what is known; `None` for a sensor that the evidence does not have.
-    fn explanandum<'a>(
-        &'a self,
-        candidate: &'a Candidate,
-        known: &'a BTreeMap<String, f64>,
-    ) -> Option<Explanandum<'a>> {
-        let (model, added, nuisance) = match &candidate.change {
-            Change::Model { model, parameters } => (&**model, parameters.as_slice(), self.nuisance.clone()),
-            Change::Sensor {
-                location, axis, form, ..
-            } => {
-                let sigma = SUSPECT[usize::from(*form == Form::Delay)];
-                let nuisance = self.nuisance.clone().suspecting(location, *axis, *form, sigma)?;
-                (self.workshop.model(), &[][..], nuisance)
-            }
+impl Path {
+    fn begin(base: &State, contenders: &[Contender], pick: usize, judge: &Judge) -> Self {
+        let empty = Path {
+            state: base.clone(),
+            findings: Vec::new(),
+            class: Vec::new(),
         };
-        Some(Explanandum {
-            model,
-            added,
-            setting: &self.setting,
-            known: Some(known),
-            nuisance,
-        })
+        empty.taking(contenders, pick, judge)
     }
 
-    fn try_out(
-        &self,
-        candidate: Candidate,
-        coarse: &[Refit],
-        known: &BTreeMap<String, f64>,
+    /// Goes on with one of the contenders.
+    fn taking(mut self, contenders: &[Contender], pick: usize, judge: &Judge) -> Self {
+        let chosen = &contenders[pick];
+        let finding = |contender: &Contender| judge.finding(&self.state, contender, contenders);
+        self.class = judge.alike(contenders, pick).map(finding).collect();
+        self.findings.push(judge.finding(&self.state, chosen, contenders));
+        self.state = self.state.with(chosen);
+        self
+    }
+
+    /// Takes further effects until nothing that matters is left, or nothing helps.
+    fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
+        while self.findings.len() < MOST_EFFECTS && !judge.is_enough(&self) && self.class.len() < 2 {
+            let contenders = self.state.contenders(evidence, progress)?;
+            match contenders.first() {
+                Some(best) if judge.is_significant(&self.state, best) => self = self.taking(&contenders, 0, judge),
+                _ => break,
+            }
+        }
+        Ok(self)
+    }
+
+    fn score(&self) -> f64 {
+        self.state.score()
+    }
+
+    /// Takes each effect but the last away again, the rest refitted: what is not missed then was only a step on the way.
+    fn without_what_is_not_missed(
+        mut self,
+        base: &State,
+        judge: &Judge,
         evidence: &Evidence,
-    ) -> Option<Trial> {
-        let explanation = self.explanandum(&candidate, known)?.sharp(coarse, evidence).ok()?;
-        // A candidate that predicts no number where others do is no explanation.
-        let explanation = explanation.filter(|e| e.refit.chi2.is_finite())?;
-        let penalty = (explanation.refit.residuals as f64).ln();
-        let score = explanation.refit.chi2 + penalty * candidate.unknowns().len() as f64;
-        Some(Trial {
-            candidate,
-            explanation,
-            score,
-        })
-    }
-
-    /// Values of the parameters that the last explanation has found.
-    fn known(&self) -> BTreeMap<String, f64> {
-        self.explanation.named.iter().cloned().collect()
-    }
-
-    /// The rules by which an effect may be named.
-    fn is_earned(&self, trial: &Trial, evidence: &Evidence) -> bool {
-        let lowered = self.explanation.refit.chi2 - trial.score;
-        lowered > SIGNIFICANT && closed(&self.explanation, &trial.explanation, evidence) > CLOSED
-    }
-
-    fn finding(&self, trial: &Trial, rivals: &[Rival], evidence: &Evidence) -> Finding {
-        let others = rivals
-            .iter()
-            .filter(|r| (&r.effect, &r.at) != (&trial.candidate.effect, &trial.candidate.at));
-        Finding {
-            effect: trial.candidate.effect.clone(),
-            at: trial.candidate.at.clone(),
-            form: trial.candidate.form.clone(),
-            parameters: trial.parameters(),
-            evidence: self.explanation.refit.chi2 - trial.explanation.refit.chi2,
-            closed: closed(&self.explanation, &trial.explanation, evidence),
-            rivals: others.cloned().collect(),
-        }
-    }
-
-    /// Goes on with a candidate in the model.
-    fn adopt(&mut self, candidate: Candidate, explanation: Explanation) {
-        self.nuisance = explanation.refit.nuisance.clone();
-        if let Some(workshop) = self
-            .workshop
-            .with(&candidate.effect, &candidate.at, candidate.form.as_deref())
-        {
-            self.workshop = workshop;
-        }
-        if let Change::Model { model, parameters } = &candidate.change {
-            let value = |name: &str| {
-                let place = model.about().parameters.iter().position(|p| p.name == name);
-                place.map(|place| explanation.refit.values.as_slice()[place])
-            };
-            let given = parameters.iter().map(|p| Given {
-                name: p.name.clone(),
-                value: value(&p.name).unwrap_or(p.start),
-                range: Some(p.range),
-            });
-            self.setting.given.extend(given);
-        }
-        self.explanation = explanation;
-    }
-}
-
-impl Candidate {
-    /// What is to be found.
-    fn unknowns(&self) -> &[Added] {
-        match &self.change {
-            Change::Model { parameters, .. } => parameters,
-            Change::Sensor { parameter, .. } => std::slice::from_ref(parameter),
-        }
-    }
-}
-
-impl Trial {
-    fn rival(&self, behind: f64) -> Rival {
-        Rival {
-            effect: self.candidate.effect.clone(),
-            at: self.candidate.at.clone(),
-            behind,
-        }
-    }
-
-    /// The effect's parameters with their standard errors.
-    fn parameters(&self) -> Vec<(String, f64, f64)> {
-        let refit = &self.explanation.refit;
-        match &self.candidate.change {
-            Change::Model { model, parameters } => {
-                let errors = refit.stderr();
-                let of = |added: &Added| {
-                    let place = model.about().parameters.iter().position(|p| p.name == added.name)?;
-                    let free = refit.free.iter().position(|free| free.parameter == place)?;
-                    Some((added.effect_name.clone(), refit.estimate[free], errors[free]))
-                };
-                parameters.iter().filter_map(of).collect()
-            }
-            Change::Sensor { form, parameter, .. } => {
-                let place = refit.nuisance.suspect.map_or(0, |(place, _)| place);
-                let coefficient = refit.coefficients[place];
-                let value = if *form == Form::Delay {
-                    coefficient
-                } else {
-                    coefficient.exp()
-                };
-                vec![(parameter.effect_name.clone(), value, f64::NAN)]
+        progress: Progress<'_>,
+    ) -> Result<Self, PredictError> {
+        let mut place = 0;
+        while self.findings.len() > 1 && place + 1 < self.findings.len() {
+            let others: Vec<Finding> = self
+                .findings
+                .iter()
+                .enumerate()
+                .filter(|(k, _)| *k != place)
+                .map(|(_, f)| f.clone())
+                .collect();
+            progress(&format!(
+                "trying without {} at {}",
+                self.findings[place].effect, self.findings[place].at
+            ));
+            let state = base.with_all(&others, &self.state, evidence, progress)?;
+            match state {
+                Some(state) if !judge.is_missed(&self.state, &state) => {
+                    self.state = state;
+                    self.findings = others;
+                }
+                _ => place += 1,
             }
         }
+        self.state.update(&mut self.findings);
+        Ok(self)
     }
 }

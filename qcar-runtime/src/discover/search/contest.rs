@@ -1,0 +1,175 @@
+//! Many explanations, few of which deserve a sharp look: a knock-out.
+//!
+//! A wrong model that is pressed to fit a precise measurement hides its fault in all its parameters and ends in a poor
+//! local minimum. So each explanation is first fitted from several starts to a part of the lines, with a tolerance in
+//! which only the large features count. The best go on, sharply; all lines are kept for the last.
+
+use rayon::prelude::*;
+
+use super::Progress;
+use crate::discover::evidence::Evidence;
+use crate::discover::explain::{Explanandum, Explanation};
+use crate::discover::predict::PredictError;
+use crate::discover::refit::Refit;
+use crate::response::parameters::Values;
+
+/// A round of the knock-out.
+struct Stage {
+    /// It looks at every so many-th value.
+    thinned: usize,
+    /// Whether large features alone count.
+    tolerant: bool,
+    /// Evaluations of a fit.
+    evaluations: usize,
+    /// Starts of an explanation that go on.
+    starts: usize,
+    /// Explanations that go on.
+    kept: usize,
+}
+
+const STAGES: [Stage; 4] = [
+    Stage {
+        thinned: 6,
+        tolerant: true,
+        evaluations: 3,
+        starts: 2,
+        kept: 14,
+    },
+    Stage {
+        thinned: 3,
+        tolerant: true,
+        evaluations: 8,
+        starts: 2,
+        kept: 8,
+    },
+    Stage {
+        thinned: 3,
+        tolerant: false,
+        evaluations: 12,
+        starts: 1,
+        kept: 4,
+    },
+    Stage {
+        thinned: 1,
+        tolerant: false,
+        evaluations: 25,
+        starts: 1,
+        kept: 4,
+    },
+];
+
+/// An explanation of several, with its place among those that entered.
+pub struct Finalist {
+    /// Its place.
+    pub entrant: usize,
+    /// How well it explains.
+    pub explanation: Explanation,
+    /// Sum of squares with the penalty of its unknowns.
+    pub score: f64,
+}
+
+/// An explanation that enters the contest.
+pub struct Entrant<'a> {
+    /// The explanation.
+    pub explanandum: Explanandum<'a>,
+    /// Number of its unknowns beside those of the base model.
+    pub unknowns: usize,
+    /// What it is called.
+    pub name: String,
+}
+
+/// One start of one entrant, and how far it has come.
+struct Runner {
+    entrant: usize,
+    values: Values,
+    refit: Option<Refit>,
+    score: f64,
+}
+
+/// The best of the entrants, the very best first. `tolerance` is the share of every value that is forgiven at first.
+///
+/// # Errors
+/// Where a parameter has no value.
+pub fn contest(
+    entrants: &[Entrant],
+    evidence: &Evidence,
+    tolerance: f64,
+    progress: Progress<'_>,
+) -> Result<Vec<Finalist>, PredictError> {
+    let mut field = Vec::new();
+    for (entrant, of) in entrants.iter().enumerate() {
+        field.extend(of.explanandum.starts()?.into_iter().map(|values| Runner {
+            entrant,
+            values,
+            refit: None,
+            score: f64::INFINITY,
+        }));
+    }
+    for stage in &STAGES {
+        let thinned = evidence.thinned(stage.thinned);
+        let seen = if stage.tolerant {
+            thinned.tolerant(tolerance)
+        } else {
+            thinned
+        };
+        let fitted = field
+            .into_par_iter()
+            .filter_map(|runner| runner.run(entrants, &seen, stage));
+        field = best(fitted.collect(), stage);
+        progress(&told(entrants, &field));
+    }
+    let finalists = field.into_iter().map(|runner| {
+        let explanandum = &entrants[runner.entrant].explanandum;
+        Ok(Finalist {
+            entrant: runner.entrant,
+            score: runner.score,
+            explanation: explanandum.explanation(runner.refit.ok_or(PredictError::NoNumber)?, evidence)?,
+        })
+    });
+    finalists.collect()
+}
+
+/// Who is left, the best first.
+fn told(entrants: &[Entrant], field: &[Runner]) -> String {
+    let mut names: Vec<&str> = field
+        .iter()
+        .map(|runner| entrants[runner.entrant].name.as_str())
+        .collect();
+    names.dedup();
+    format!("looking into {}", names.join(", "))
+}
+
+impl Runner {
+    /// `None` where the model gives no number.
+    fn run(self, entrants: &[Entrant], evidence: &Evidence, stage: &Stage) -> Option<Runner> {
+        let entrant = &entrants[self.entrant];
+        let refit = entrant
+            .explanandum
+            .refit(&self.values, evidence, stage.evaluations)
+            .ok()?;
+        let score = refit.chi2 + (refit.residuals as f64).ln() * entrant.unknowns as f64;
+        score.is_finite().then(|| Runner {
+            entrant: self.entrant,
+            values: refit.values.clone(),
+            refit: Some(refit),
+            score,
+        })
+    }
+}
+
+/// Of each of the best entrants the best runners, the very best first.
+fn best(mut field: Vec<Runner>, stage: &Stage) -> Vec<Runner> {
+    field.sort_by(|a, b| a.score.total_cmp(&b.score));
+    let mut entrants: Vec<usize> = Vec::new();
+    let mut runners = Vec::new();
+    for runner in field {
+        let before = entrants.iter().filter(|&&entrant| entrant == runner.entrant).count();
+        let is_new = before == 0;
+        let different = entrants.iter().collect::<std::collections::BTreeSet<_>>().len();
+        if before < stage.starts && (!is_new || different < stage.kept) {
+            entrants.push(runner.entrant);
+            runners.push(runner);
+        }
+    }
+    runners
+}

@@ -1,0 +1,343 @@
+//! A model with the effects that were taken so far, and what is tried on it.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use super::contest::{Entrant, Finalist, contest};
+use super::{Finding, Progress};
+use crate::discover::candidate::{Added, Candidate, Change, Workshop};
+use crate::discover::evidence::Evidence;
+use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
+use crate::discover::nuisance::{Form, Nuisance};
+use crate::discover::predict::PredictError;
+
+/// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
+const SUSPECT: [f64; 2] = [1.0, 0.02];
+/// The most that is forgiven at first, as a share of every value.
+const TOLERANCE: f64 = 0.1;
+/// The least: what lines differ by from what a smooth response would be.
+const LEAST_TOLERANCE: f64 = 0.003;
+
+/// What is known so far.
+#[derive(Clone)]
+pub struct State {
+    workshop: Arc<dyn Workshop>,
+    setting: Setting,
+    nuisance: Nuisance,
+    /// What was taken.
+    taken: Vec<Taken>,
+    /// How well it explains the evidence.
+    pub explanation: Explanation,
+}
+
+/// An effect in the model.
+#[derive(Clone)]
+struct Taken {
+    effect: String,
+    at: String,
+    unknowns: Vec<Unknown>,
+}
+
+/// A number that belongs to an effect, by its name in the effect.
+#[derive(Clone)]
+enum Unknown {
+    /// A parameter of the model, by its name there.
+    Parameter(String, String),
+    /// A coefficient of the sensors' errors.
+    Coefficient(String, usize, Form),
+}
+
+/// A candidate that did well, and how well it explains.
+pub struct Contender {
+    /// What it is.
+    pub candidate: Candidate,
+    /// How well it explains.
+    pub explanation: Explanation,
+    /// Sum of squares with the penalty of its unknowns.
+    pub score: f64,
+    /// What the evidence says of its parameters.
+    pub parameters: Vec<(String, f64, f64)>,
+    /// True where one of them ended at the end of its plausible range.
+    pub at_bound: bool,
+    taken: Taken,
+    nuisance: Nuisance,
+}
+
+impl Contender {
+    /// Number of its unknowns.
+    pub fn unknowns(&self) -> usize {
+        self.candidate.unknowns().len()
+    }
+}
+
+impl State {
+    /// The base model, refitted.
+    ///
+    /// # Errors
+    /// Where it lacks what was measured, or a parameter has no value.
+    pub fn base(
+        workshop: Box<dyn Workshop>,
+        setting: &Setting,
+        evidence: &Evidence,
+        progress: Progress<'_>,
+    ) -> Result<Self, PredictError> {
+        setting.check(workshop.model().about())?;
+        let workshop: Arc<dyn Workshop> = Arc::from(workshop);
+        let nuisance = Nuisance::of(evidence);
+        let explanandum = Explanandum {
+            model: workshop.model(),
+            added: &[],
+            setting,
+            known: None,
+            nuisance: nuisance.clone(),
+        };
+        let explanation = alone(explanandum, evidence, progress)?;
+        Ok(State {
+            workshop,
+            setting: setting.clone(),
+            nuisance,
+            taken: Vec::new(),
+            explanation,
+        })
+    }
+
+    /// The best of all candidates, the very best first.
+    ///
+    /// # Errors
+    /// Where a parameter has no value.
+    pub fn contenders(&self, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Contender>, PredictError> {
+        let candidates = self.workshop.candidates();
+        progress(&format!("trying {} effects at their places", candidates.len()));
+        let known = self.known();
+        let mut entrants = Vec::new();
+        let mut entered = Vec::new();
+        for (place, candidate) in candidates.iter().enumerate() {
+            if let Some(explanandum) = self.explanandum(candidate, &known) {
+                entrants.push(Entrant {
+                    explanandum,
+                    unknowns: candidate.unknowns().len(),
+                    name: format!("{} at {}", candidate.effect, candidate.at),
+                });
+                entered.push(place);
+            }
+        }
+        let finalists = contest(&entrants, evidence, self.tolerance(evidence), progress)?;
+        let nuisances = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
+        let finalists: Vec<(usize, Nuisance, Finalist)> = finalists
+            .into_iter()
+            .map(|f| (entered[f.entrant], nuisances(&f), f))
+            .collect();
+        drop(entrants);
+        let mut candidates: Vec<Option<Candidate>> = candidates.into_iter().map(Some).collect();
+        let contender = |(place, nuisance, finalist): (usize, Nuisance, Finalist)| {
+            Some(Contender::new(candidates[place].take()?, nuisance, finalist))
+        };
+        Ok(finalists.into_iter().filter_map(contender).collect())
+    }
+
+    /// A candidate with what is known; `None` for a sensor that the evidence does not have.
+    fn explanandum<'a>(
+        &'a self,
+        candidate: &'a Candidate,
+        known: &'a BTreeMap<String, f64>,
+    ) -> Option<Explanandum<'a>> {
+        let (model, added, nuisance) = match &candidate.change {
+            Change::Model { model, parameters } => (&**model, parameters.as_slice(), self.nuisance.clone()),
+            Change::Sensor { .. } => (self.workshop.model(), &[][..], suspecting(&self.nuisance, candidate)?),
+        };
+        Some(Explanandum {
+            model,
+            added,
+            setting: &self.setting,
+            known: Some(known),
+            nuisance,
+        })
+    }
+
+    /// Values of the parameters that the explanation has found.
+    fn known(&self) -> BTreeMap<String, f64> {
+        self.explanation.named.iter().cloned().collect()
+    }
+
+    /// What is forgiven at first: as much as the present model is wrong by, for what is wrong with it must be seen.
+    fn tolerance(&self, evidence: &Evidence) -> f64 {
+        self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE)
+    }
+
+    /// Sum of squares with the penalty of all that was taken.
+    pub fn score(&self) -> f64 {
+        let unknowns: usize = self.taken.iter().map(|taken| taken.unknowns.len()).sum();
+        let refit = &self.explanation.refit;
+        refit.chi2 + (refit.residuals as f64).ln() * unknowns as f64
+    }
+
+    /// With a contender in the model.
+    pub fn with(&self, contender: &Contender) -> Self {
+        let mut state = self.assuming(&contender.candidate, &contender.taken, &contender.nuisance);
+        state.explanation = contender.explanation.clone();
+        state
+    }
+
+    fn assuming(&self, candidate: &Candidate, taken: &Taken, nuisance: &Nuisance) -> Self {
+        let mut state = self.clone();
+        state.nuisance = nuisance.clone();
+        if let Some(workshop) = self.workshop.with(&candidate.effect, &candidate.at) {
+            state.workshop = Arc::from(workshop);
+        }
+        if let Change::Model { parameters, .. } = &candidate.change {
+            state.setting.given.extend(parameters.iter().map(|p| Given {
+                name: p.name.clone(),
+                value: p.start,
+                range: Some(p.range),
+            }));
+        }
+        state.taken.push(taken.clone());
+        state
+    }
+
+    /// With all of these effects in the model, refitted from `known` values; `None` where they do not go together.
+    ///
+    /// # Errors
+    /// Where a parameter has no value.
+    pub fn with_all(
+        &self,
+        findings: &[Finding],
+        known: &State,
+        evidence: &Evidence,
+        progress: Progress<'_>,
+    ) -> Result<Option<Self>, PredictError> {
+        let mut state = self.clone();
+        for finding in findings {
+            let candidates = state.workshop.candidates();
+            let wanted = |c: &&Candidate| c.effect == finding.effect && c.at == finding.at;
+            let Some(candidate) = candidates.iter().find(wanted) else {
+                return Ok(None);
+            };
+            let sensor = suspecting(&state.nuisance, candidate);
+            let nuisance = sensor.unwrap_or_else(|| state.nuisance.clone());
+            let taken = Taken::new(candidate, &nuisance);
+            state = state.assuming(candidate, &taken, &nuisance);
+        }
+        let values = known.known();
+        let explanandum = Explanandum {
+            model: state.workshop.model(),
+            added: &[],
+            setting: &state.setting,
+            known: Some(&values),
+            nuisance: state.nuisance.clone(),
+        };
+        state.explanation = alone(explanandum, evidence, progress)?;
+        Ok(Some(state))
+    }
+
+    /// Gives findings the values that the present explanation has for them.
+    pub fn update(&self, findings: &mut [Finding]) {
+        for finding in findings {
+            let taken = self
+                .taken
+                .iter()
+                .find(|t| t.effect == finding.effect && t.at == finding.at);
+            if let Some(taken) = taken {
+                finding.parameters = taken.parameters(&self.explanation);
+            }
+        }
+    }
+}
+
+/// The best fit of one model.
+fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) -> Result<Explanation, PredictError> {
+    // What cannot be predicted at all is an error here, where among many it only drops out.
+    let start = explanandum.starts()?.swap_remove(0);
+    explanandum.refit(&start, evidence, 1)?;
+    let entrant = Entrant {
+        explanandum,
+        unknowns: 0,
+        name: "the model alone".into(),
+    };
+    let best = contest(&[entrant], evidence, TOLERANCE, progress)?.into_iter().next();
+    best.map(|finalist| finalist.explanation).ok_or(PredictError::NoNumber)
+}
+
+/// With the sensor of a candidate under suspicion; `None` where it is none, or not in the evidence.
+fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
+    let Change::Sensor {
+        location, axis, form, ..
+    } = &candidate.change
+    else {
+        return None;
+    };
+    let sigma = SUSPECT[usize::from(*form == Form::Delay)];
+    nuisance.clone().suspecting(location, *axis, *form, sigma)
+}
+
+impl Taken {
+    fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
+        let unknowns = match &candidate.change {
+            Change::Model { parameters, .. } => {
+                let unknown = |p: &Added| Unknown::Parameter(p.effect_name.clone(), p.name.clone());
+                parameters.iter().map(unknown).collect()
+            }
+            Change::Sensor { form, parameter, .. } => {
+                let place = nuisance.suspects.last().map_or(0, |(place, _)| *place);
+                vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
+            }
+        };
+        Taken {
+            effect: candidate.effect.clone(),
+            at: candidate.at.clone(),
+            unknowns,
+        }
+    }
+
+    /// What an explanation says of the effect: name, value, standard error.
+    fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
+        let refit = &explanation.refit;
+        let errors = refit.stderr();
+        let of = |unknown: &Unknown| match unknown {
+            Unknown::Parameter(effect_name, name) => {
+                let free = free_of(explanation, name)?;
+                Some((effect_name.clone(), refit.estimate[free], errors[free]))
+            }
+            Unknown::Coefficient(effect_name, place, form) => {
+                let (coefficient, error) = (refit.coefficients[*place], refit.coefficient_stderr[*place]);
+                let (value, error) = match form {
+                    Form::Delay => (coefficient, error),
+                    _ => (coefficient.exp(), coefficient.exp() * error),
+                };
+                Some((effect_name.clone(), value, error))
+            }
+        };
+        self.unknowns.iter().filter_map(of).collect()
+    }
+
+    fn is_at_bound(&self, explanation: &Explanation) -> bool {
+        self.unknowns.iter().any(|unknown| match unknown {
+            Unknown::Parameter(_, name) => {
+                free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0)
+            }
+            Unknown::Coefficient(..) => false,
+        })
+    }
+}
+
+/// Place of a parameter among the free ones.
+fn free_of(explanation: &Explanation, name: &str) -> Option<usize> {
+    let place = explanation.named.iter().position(|(known, _)| known == name)?;
+    explanation.refit.free.iter().position(|free| free.parameter == place)
+}
+
+impl Contender {
+    fn new(candidate: Candidate, nuisance: Nuisance, finalist: Finalist) -> Self {
+        let taken = Taken::new(&candidate, &nuisance);
+        let explanation = finalist.explanation;
+        Contender {
+            candidate,
+            score: finalist.score,
+            parameters: taken.parameters(&explanation),
+            at_bound: taken.is_at_bound(&explanation),
+            explanation,
+            taken,
+            nuisance,
+        }
+    }
+}
