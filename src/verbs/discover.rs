@@ -98,12 +98,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     let bench = bench(campaign, model)?;
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
-    let told = |what: &str| {
-        showing.tell(format!("{}: {what}", campaign.name));
-        if std::env::var("QT").is_ok() {
-            eprintln!("{:.2} {}", begun.elapsed().as_secs_f64(), what);
-        }
-    };
+    let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));
     let found = discover(Box::new(bench.clone()), &setting(campaign), &evidence, &told);
     drop(showing);
     let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;

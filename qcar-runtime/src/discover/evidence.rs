@@ -236,8 +236,8 @@ impl Evidence {
     }
 
     /// The same with only the runs that `keep` wants.
-    pub fn only(&self, keep: impl Fn(&Run) -> bool) -> Self {
-        let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(&self.runs[run])).collect();
+    pub fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(run)).collect();
         let place = |run: usize| kept.iter().position(|&k| k == run);
         let series = self.series.iter().filter_map(|series| {
             let run = place(series.run)?;

@@ -73,6 +73,21 @@ impl Gap {
     }
 }
 
+impl Gap {
+    /// The gap of each run; NaN of one without series.
+    pub fn by_run(&self, evidence: &Evidence) -> Vec<f64> {
+        let of_run = |run: usize| {
+            let series = evidence
+                .series
+                .iter()
+                .zip(&self.residuals)
+                .filter(move |(s, _)| s.run == run);
+            rms(series.flat_map(|(_, residuals)| residuals.iter().copied()))
+        };
+        (0..evidence.runs.len()).map(of_run).collect()
+    }
+}
+
 /// Root of the mean square; NaN of nothing.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));

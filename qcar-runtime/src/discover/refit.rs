@@ -13,7 +13,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::Nuisance;
-use super::predict::{Free, PredictError, Prediction, predict, predict_sides};
+use super::predict::{Free, PredictError, Prediction, predict_sides};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Problem, Stop, minimize};
@@ -107,8 +107,6 @@ pub fn refit_with(
         step: 1e-6,
         evaluations,
     };
-    // What cannot be predicted at all is found before the search, in which nothing can fail.
-    predict(model, values, &[], evidence, Role::Fit)?;
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let count = posterior.sigmas.len();
     let start: Vec<f64> = free
@@ -126,6 +124,9 @@ pub fn refit_with(
         upper: free.iter().map(|f| f.upper).chain(priors).collect(),
     };
     let outcome = minimize(&mut posterior, &start, &bounds, &options);
+    if let Some(error) = posterior.refused.take() {
+        return Err(error);
+    }
     let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
     let information = Information::new(&outcome.jacobian, &inside);
     posterior.move_to(&outcome.x);
@@ -188,6 +189,8 @@ struct Posterior<'a> {
     /// Of the sensors' errors, then of the factors of the recorded side, where there is one.
     sigmas: Vec<f64>,
     residuals: usize,
+    /// Why the model cannot say anything of the evidence at all.
+    refused: Option<PredictError>,
 }
 
 impl<'a> Posterior<'a> {
@@ -203,6 +206,7 @@ impl<'a> Posterior<'a> {
             sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
+            refused: None,
         }
     }
 
@@ -280,9 +284,13 @@ impl Problem for Posterior<'_> {
         self.move_to(x);
         let both = [&self.values, &self.side];
         let predictions = predict_sides(self.model, both, &self.free, self.evidence, Role::Fit);
-        let Ok(predictions) = predictions else {
-            residual.fill(f64::NAN);
-            return;
+        let predictions = match predictions {
+            Ok(predictions) => predictions,
+            Err(error) => {
+                self.refused = Some(error);
+                residual.fill(f64::NAN);
+                return;
+            }
         };
         let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
         for prediction in &predictions {

@@ -4,6 +4,8 @@
 //! local minimum. So each explanation is first fitted from several starts to a part of the lines, with a tolerance in
 //! which only the large features count. The best go on, sharply; all lines are kept for the last.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use super::Progress;
@@ -13,8 +15,20 @@ use crate::discover::predict::PredictError;
 use crate::discover::refit::Refit;
 use crate::response::parameters::Values;
 
+/// What the explanations are held against.
+pub struct Looks<'a> {
+    /// What is worth a first look: a part of all.
+    pub first: Evidence,
+    /// All there is.
+    pub all: &'a Evidence,
+    /// The share of every value that is forgiven at first.
+    pub tolerance: f64,
+}
+
 /// A round of the knock-out.
 struct Stage {
+    /// Whether it looks at a part only.
+    first: bool,
     /// It looks at every so many-th value.
     thinned: usize,
     /// Whether large features alone count.
@@ -23,38 +37,48 @@ struct Stage {
     evaluations: usize,
     /// Starts of an explanation that go on.
     starts: usize,
-    /// Explanations that go on.
+    /// Explanations that go on,
     kept: usize,
+    /// if they gain this share of what the best of them gains over no change at all.
+    share: f64,
 }
 
 const STAGES: [Stage; 4] = [
     Stage {
+        first: true,
         thinned: 6,
         tolerant: true,
         evaluations: 3,
         starts: 2,
         kept: 14,
+        share: 0.2,
     },
     Stage {
+        first: false,
         thinned: 3,
         tolerant: true,
         evaluations: 8,
         starts: 2,
         kept: 8,
+        share: 0.3,
     },
     Stage {
+        first: false,
         thinned: 3,
         tolerant: false,
         evaluations: 12,
         starts: 1,
         kept: 4,
+        share: 0.3,
     },
     Stage {
+        first: false,
         thinned: 1,
         tolerant: false,
         evaluations: 25,
         starts: 1,
         kept: 4,
+        share: 0.0,
     },
 ];
 
@@ -86,16 +110,11 @@ struct Runner {
     score: f64,
 }
 
-/// The best of the entrants, the very best first. `tolerance` is the share of every value that is forgiven at first.
+/// The best of the entrants, the very best first. One without unknowns is no change at all: it sets the measure.
 ///
 /// # Errors
 /// Where a parameter has no value.
-pub fn contest(
-    entrants: &[Entrant],
-    evidence: &Evidence,
-    tolerance: f64,
-    progress: Progress<'_>,
-) -> Result<Vec<Finalist>, PredictError> {
+pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> Result<Vec<Finalist>, PredictError> {
     let mut field = Vec::new();
     for (entrant, of) in entrants.iter().enumerate() {
         field.extend(of.explanandum.starts()?.into_iter().map(|values| Runner {
@@ -106,16 +125,11 @@ pub fn contest(
         }));
     }
     for stage in &STAGES {
-        let thinned = evidence.thinned(stage.thinned);
-        let seen = if stage.tolerant {
-            thinned.tolerant(tolerance)
-        } else {
-            thinned
-        };
+        let seen = looks.at(stage);
         let fitted = field
             .into_par_iter()
             .filter_map(|runner| runner.run(entrants, &seen, stage));
-        field = best(fitted.collect(), stage);
+        field = best(fitted.collect(), entrants, stage);
         progress(&told(entrants, &field));
     }
     let finalists = field.into_iter().map(|runner| {
@@ -123,10 +137,21 @@ pub fn contest(
         Ok(Finalist {
             entrant: runner.entrant,
             score: runner.score,
-            explanation: explanandum.explanation(runner.refit.ok_or(PredictError::NoNumber)?, evidence)?,
+            explanation: explanandum.explanation(runner.refit.ok_or(PredictError::NoNumber)?, looks.all)?,
         })
     });
     finalists.collect()
+}
+
+impl Looks<'_> {
+    fn at(&self, stage: &Stage) -> Evidence {
+        let thinned = if stage.first { &self.first } else { self.all }.thinned(stage.thinned);
+        if stage.tolerant {
+            thinned.tolerant(self.tolerance)
+        } else {
+            thinned
+        }
+    }
 }
 
 /// Who is left, the best first.
@@ -158,18 +183,23 @@ impl Runner {
 }
 
 /// Of each of the best entrants the best runners, the very best first.
-fn best(mut field: Vec<Runner>, stage: &Stage) -> Vec<Runner> {
+fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage) -> Vec<Runner> {
     field.sort_by(|a, b| a.score.total_cmp(&b.score));
-    let mut entrants: Vec<usize> = Vec::new();
-    let mut runners = Vec::new();
-    for runner in field {
-        let before = entrants.iter().filter(|&&entrant| entrant == runner.entrant).count();
-        let is_new = before == 0;
-        let different = entrants.iter().collect::<std::collections::BTreeSet<_>>().len();
-        if before < stage.starts && (!is_new || different < stage.kept) {
-            entrants.push(runner.entrant);
-            runners.push(runner);
+    let unchanged = field.iter().find(|runner| entrants[runner.entrant].unknowns == 0);
+    let least = match (field.first(), unchanged) {
+        (Some(first), Some(unchanged)) => unchanged.score - stage.share * (unchanged.score - first.score),
+        _ => f64::INFINITY,
+    };
+    let mut passed: BTreeMap<usize, usize> = BTreeMap::new();
+    field.retain(|runner| {
+        let is_measure = entrants[runner.entrant].unknowns == 0;
+        let room = passed.contains_key(&runner.entrant) || passed.len() < stage.kept;
+        let starts = passed.get(&runner.entrant).copied().unwrap_or(0);
+        let passes = is_measure || room && starts < stage.starts && runner.score <= least;
+        if passes && !is_measure {
+            passed.insert(runner.entrant, starts + 1);
         }
-    }
-    runners
+        passes
+    });
+    field
 }

@@ -3,8 +3,9 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::contest::{Entrant, Finalist, contest};
+use super::contest::{Entrant, Finalist, Looks, contest};
 use super::{Finding, Progress};
+use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
@@ -17,6 +18,9 @@ const SUSPECT: [f64; 2] = [1.0, 0.02];
 const TOLERANCE: f64 = 0.1;
 /// The least: what lines differ by from what a smooth response would be.
 const LEAST_TOLERANCE: f64 = 0.003;
+
+/// A run whose gap is more than this share of the largest is worth a first look.
+const MUCH: f64 = 0.25;
 
 /// What is known so far.
 #[derive(Clone)]
@@ -57,8 +61,6 @@ pub struct Contender {
     pub score: f64,
     /// What the evidence says of its parameters.
     pub parameters: Vec<(String, f64, f64)>,
-    /// True where one of them ended at the end of its plausible range.
-    pub at_bound: bool,
     taken: Taken,
     nuisance: Nuisance,
 }
@@ -109,8 +111,12 @@ impl State {
         let candidates = self.workshop.candidates();
         progress(&format!("trying {} effects at their places", candidates.len()));
         let known = self.known();
-        let mut entrants = Vec::new();
-        let mut entered = Vec::new();
+        let mut entrants = vec![Entrant {
+            explanandum: self.unchanged(&known),
+            unknowns: 0,
+            name: "no change".into(),
+        }];
+        let mut entered = vec![candidates.len()];
         for (place, candidate) in candidates.iter().enumerate() {
             if let Some(explanandum) = self.explanandum(candidate, &known) {
                 entrants.push(Entrant {
@@ -121,7 +127,7 @@ impl State {
                 entered.push(place);
             }
         }
-        let finalists = contest(&entrants, evidence, self.tolerance(evidence), progress)?;
+        let finalists = contest(&entrants, &self.looks(evidence), progress)?;
         let nuisances = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
         let finalists: Vec<(usize, Nuisance, Finalist)> = finalists
             .into_iter()
@@ -130,7 +136,7 @@ impl State {
         drop(entrants);
         let mut candidates: Vec<Option<Candidate>> = candidates.into_iter().map(Some).collect();
         let contender = |(place, nuisance, finalist): (usize, Nuisance, Finalist)| {
-            Some(Contender::new(candidates[place].take()?, nuisance, finalist))
+            Some(Contender::new(candidates.get_mut(place)?.take()?, nuisance, finalist))
         };
         Ok(finalists.into_iter().filter_map(contender).collect())
     }
@@ -154,14 +160,36 @@ impl State {
         })
     }
 
+    /// The present model itself.
+    fn unchanged<'a>(&'a self, known: &'a BTreeMap<String, f64>) -> Explanandum<'a> {
+        Explanandum {
+            model: self.workshop.model(),
+            added: &[],
+            setting: &self.setting,
+            known: Some(known),
+            nuisance: self.nuisance.clone(),
+        }
+    }
+
     /// Values of the parameters that the explanation has found.
     fn known(&self) -> BTreeMap<String, f64> {
         self.explanation.named.iter().cloned().collect()
     }
 
-    /// What is forgiven at first: as much as the present model is wrong by, for what is wrong with it must be seen.
-    fn tolerance(&self, evidence: &Evidence) -> f64 {
-        self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE)
+    /// First at the fitted runs in which the present model is wrong most, and with as much tolerance as it needs itself:
+    /// what is wrong with it must be seen.
+    fn looks<'e>(&self, evidence: &'e Evidence) -> Looks<'e> {
+        let gaps = self.explanation.gap.by_run(evidence);
+        let fitted = |run: usize| evidence.runs[run].role == Role::Fit;
+        let most = (0..gaps.len())
+            .filter(|&run| fitted(run))
+            .map(|run| gaps[run])
+            .fold(0.0, f64::max);
+        Looks {
+            first: evidence.only(|run| fitted(run) && gaps[run] > MUCH * most),
+            all: evidence,
+            tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
+        }
     }
 
     /// Sum of squares with the penalty of all that was taken.
@@ -219,13 +247,7 @@ impl State {
             state = state.assuming(candidate, &taken, &nuisance);
         }
         let values = known.known();
-        let explanandum = Explanandum {
-            model: state.workshop.model(),
-            added: &[],
-            setting: &state.setting,
-            known: Some(&values),
-            nuisance: state.nuisance.clone(),
-        };
+        let explanandum = state.unchanged(&values);
         state.explanation = alone(explanandum, evidence, progress)?;
         Ok(Some(state))
     }
@@ -254,7 +276,12 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
         unknowns: 0,
         name: "the model alone".into(),
     };
-    let best = contest(&[entrant], evidence, TOLERANCE, progress)?.into_iter().next();
+    let looks = Looks {
+        first: evidence.clone(),
+        all: evidence,
+        tolerance: TOLERANCE,
+    };
+    let best = contest(&[entrant], &looks, progress)?.into_iter().next();
     best.map(|finalist| finalist.explanation).ok_or(PredictError::NoNumber)
 }
 
@@ -309,15 +336,6 @@ impl Taken {
         };
         self.unknowns.iter().filter_map(of).collect()
     }
-
-    fn is_at_bound(&self, explanation: &Explanation) -> bool {
-        self.unknowns.iter().any(|unknown| match unknown {
-            Unknown::Parameter(_, name) => {
-                free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0)
-            }
-            Unknown::Coefficient(..) => false,
-        })
-    }
 }
 
 /// Place of a parameter among the free ones.
@@ -334,7 +352,6 @@ impl Contender {
             candidate,
             score: finalist.score,
             parameters: taken.parameters(&explanation),
-            at_bound: taken.is_at_bound(&explanation),
             explanation,
             taken,
             nuisance,
