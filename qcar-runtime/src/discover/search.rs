@@ -40,6 +40,8 @@ pub struct Finding {
     pub effect: String,
     /// Its place.
     pub at: String,
+    /// Which of its forms fits best; `None` where it has only one.
+    pub form: Option<String>,
     /// Its parameters: name, value and standard error, SI.
     pub parameters: Vec<(String, f64, f64)>,
     /// By how much it lowers the sum of squares of the fitted runs.

@@ -86,6 +86,7 @@ impl<'a> Judge<'a> {
         Finding {
             effect: contender.candidate.effect.clone(),
             at: contender.candidate.at.clone(),
+            form: contender.candidate.form.clone(),
             parameters: contender.parameters.clone(),
             evidence: state.explanation.refit.chi2 - contender.explanation.refit.chi2,
             closed: self.closed(&state.explanation, &contender.explanation),

@@ -1,6 +1,6 @@
 //! A model with the effects that were taken so far, and what is tried on it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
@@ -128,17 +128,25 @@ impl State {
             }
         }
         let finalists = contest(&entrants, &self.looks(evidence), progress)?;
-        let nuisances = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
-        let finalists: Vec<(usize, Nuisance, Finalist)> = finalists
+        let nuisance = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
+        let finalists: Vec<_> = finalists
             .into_iter()
-            .map(|f| (entered[f.entrant], nuisances(&f), f))
+            .map(|f| (entered[f.entrant], nuisance(&f), f))
             .collect();
         drop(entrants);
         let mut candidates: Vec<Option<Candidate>> = candidates.into_iter().map(Some).collect();
-        let contender = |(place, nuisance, finalist): (usize, Nuisance, Finalist)| {
-            Some(Contender::new(candidates.get_mut(place)?.take()?, nuisance, finalist))
-        };
-        Ok(finalists.into_iter().filter_map(contender).collect())
+        let mut contenders = Vec::new();
+        // The best form stands for the effect.
+        let mut met = BTreeSet::new();
+        for (place, nuisance, finalist) in finalists {
+            let Some(candidate) = candidates.get_mut(place).and_then(Option::take) else {
+                continue;
+            };
+            if met.insert((candidate.effect.clone(), candidate.at.clone())) {
+                contenders.push(Contender::new(candidate, nuisance, finalist));
+            }
+        }
+        Ok(contenders)
     }
 
     /// A candidate with what is known; `None` for a sensor that the evidence does not have.
@@ -209,7 +217,10 @@ impl State {
     fn assuming(&self, candidate: &Candidate, taken: &Taken, nuisance: &Nuisance) -> Self {
         let mut state = self.clone();
         state.nuisance = nuisance.clone();
-        if let Some(workshop) = self.workshop.with(&candidate.effect, &candidate.at) {
+        if let Some(workshop) = self
+            .workshop
+            .with(&candidate.effect, &candidate.at, candidate.form.as_deref())
+        {
             state.workshop = Arc::from(workshop);
         }
         if let Change::Model { parameters, .. } = &candidate.change {
@@ -237,7 +248,7 @@ impl State {
         let mut state = self.clone();
         for finding in findings {
             let candidates = state.workshop.candidates();
-            let wanted = |c: &&Candidate| c.effect == finding.effect && c.at == finding.at;
+            let wanted = |c: &&Candidate| c.effect == finding.effect && c.at == finding.at && c.form == finding.form;
             let Some(candidate) = candidates.iter().find(wanted) else {
                 return Ok(None);
             };
