@@ -2,7 +2,7 @@
 
 use super::rolling::Rolling;
 use super::sampling::Grid;
-use crate::model::Model;
+use crate::model::{Contact, Model};
 use crate::solver::{After, Event, Step, System};
 
 /// A rolling model with its records.
@@ -11,8 +11,8 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     grid: Grid,
     /// Each output on the fine grid.
     fine: Vec<Vec<f64>>,
-    /// Room for one state and for its outputs.
-    room: (Vec<f64>, Vec<f64>),
+    /// Room for a state, its derivative, and the signals.
+    room: [Vec<f64>; 3],
     /// Force of the tyre on the wheel in z and x at the samples, N.
     pub force: [Vec<f64>; 2],
     /// Area of its contact at the samples, m².
@@ -25,13 +25,16 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     last: (f64, bool),
 }
 
+/// The signals behind the outputs: force of the tyre in z and x, and its deflection.
+const OF_CONTACT: usize = 3;
+
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     pub fn new(rolling: Rolling<'a, M>, grid: Grid, states: usize, outputs: usize) -> Self {
         let samples = || Vec::with_capacity(grid.samples());
         Self {
             rolling,
             fine: (0..outputs).map(|_| Vec::with_capacity(grid.points())).collect(),
-            room: (vec![0.0; states], vec![0.0; outputs]),
+            room: [states, states, outputs + OF_CONTACT].map(|n| vec![0.0; n]),
             force: [samples(), samples()],
             area: samples(),
             lift_offs: Vec::new(),
@@ -49,7 +52,12 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
 
 impl<M: Model + ?Sized> System for Recorder<'_, M> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.last = (t, self.rolling.derivative(t, x, dx));
+        let (dx, signals) = dx.split_at_mut(x.len());
+        self.last = (t, observe(&self.rolling, t, x, dx, signals));
+    }
+
+    fn signals(&self) -> usize {
+        self.room[2].len()
     }
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
@@ -57,18 +65,23 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        let (x, y) = &mut self.room;
+        let [x, dx, signals] = &mut self.room;
         for (t, is_sample) in self.grid.on(step) {
-            step.at(t, x);
-            let (touch, contact) = self.rolling.outputs(t, x, y);
-            for (fine, y) in self.fine.iter_mut().zip(y.iter()) {
+            // The forces bend where the ground is lost or found, and a step across that says little of them.
+            if step.is_cut() {
+                step.at(t, x);
+                observe(&self.rolling, t, x, dx, signals);
+            } else {
+                step.signals_at(t, signals);
+            }
+            for (fine, y) in self.fine.iter_mut().zip(signals.iter()) {
                 fine.push(*y);
             }
             if is_sample {
-                self.force[0].push(contact.force[0]);
-                self.force[1].push(contact.force[1]);
-                self.area
-                    .push(touch.map_or(0.0, |touch| self.rolling.tyre.area(touch.deflection)));
+                let [.., z, x, deflection] = signals[..] else { continue };
+                self.force[0].push(z);
+                self.force[1].push(x);
+                self.area.push(self.rolling.tyre.area(deflection));
             }
         }
     }
@@ -97,4 +110,14 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
         }
         After::Restart
     }
+}
+
+/// Derivative and signals at time `t`, and whether the tyre is on the ground.
+#[inline]
+fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], dx: &mut [f64], signals: &mut [f64]) -> bool {
+    let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);
+    let contact = rolling.motion(t, x, dx, outputs);
+    let Contact { s, force, .. } = contact.unwrap_or_default();
+    of_contact.copy_from_slice(&[force[0], force[1], -s]);
+    contact.is_some()
 }

@@ -103,26 +103,19 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
     }
 
-    /// `dx/dt` at time `t`, and whether the tyre is on the ground.
+    /// `dx/dt` and the outputs of the model at time `t`, and the contact that they stem from; none in the air.
     #[inline]
-    pub fn derivative(&self, t: f64, x: &[f64], dx: &mut [f64]) -> bool {
-        let touch = self.touch(t, x);
-        let contact = self.contact(touch.as_ref(), x);
+    pub fn motion(&self, t: f64, x: &[f64], dx: &mut [f64], y: &mut [f64]) -> Option<Contact> {
+        let contact = self.touch(t, x).map(|touch| self.contact(Some(&touch), x));
+        let driven = self.driven(contact.unwrap_or_default());
         self.model
-            .rolling_derivative(&self.constants, x, &self.inputs, &self.driven(contact), dx);
+            .rolling_derivative(&self.constants, x, &self.inputs, &driven, dx);
         for &place in &self.locked {
             dx[place] = 0.0;
         }
-        touch.is_some()
-    }
-
-    /// The outputs of the model at time `t`, and the contact they stem from.
-    pub fn outputs(&self, t: f64, x: &[f64], y: &mut [f64]) -> (Option<Touch>, Contact) {
-        let touch = self.touch(t, x);
-        let contact = self.contact(touch.as_ref(), x);
         self.model
-            .rolling_outputs(&self.constants, x, &self.inputs, &self.driven(contact), y);
-        (touch, contact)
+            .rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
+        contact
     }
 
     /// The contact of the tyre with the road at time `t`.

@@ -29,6 +29,11 @@ impl Control {
         }
     }
 
+    /// Allows no step longer than `longest` (s), where that is a number.
+    pub fn limit(&mut self, longest: f64) {
+        self.longest = self.longest.min(longest);
+    }
+
     /// End and length of the next step from `t`; it reaches `end` exactly rather than leave a sliver before it.
     pub fn next(&self, t: f64, end: f64) -> (f64, f64) {
         let left = end - t;

@@ -12,6 +12,8 @@ pub struct Rk4 {
     stage: Vec<f64>,
     /// The stages' derivatives, and that at the end of the step, which the dense output needs.
     k: [Vec<f64>; 5],
+    /// The mean of each signal over the step.
+    means: Vec<f64>,
     watch: Watch,
     effort: Effort,
 }
@@ -30,6 +32,7 @@ impl Rk4 {
             x_end: row(),
             stage: row(),
             k: std::array::from_fn(|_| row()),
+            means: Vec::new(),
             watch: Watch::new(states, events),
             effort: Effort::default(),
         }
@@ -40,6 +43,9 @@ impl Rk4 {
     /// `breaks` are the ascending times at which the right-hand side jumps.
     pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
         self.effort = Effort::default();
+        let signals = system.signals();
+        self.k.iter_mut().for_each(|k| k.resize(x.len() + signals, 0.0));
+        self.means.resize(signals, 0.0);
         self.x.copy_from_slice(x);
         let (mut reason, mut time) = (Reason::End, span.0);
         for leg in legs(span, breaks) {
@@ -105,13 +111,18 @@ impl Rk4 {
             }
             system.derivative(t + c * h, &self.stage, &mut self.k[stage]);
         }
+        let states = self.x.len();
         let [k0, k1, k2, k3, k_end] = &mut self.k;
+        let mean = |i: usize| (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]) / 6.0;
         for (i, out) in self.x_end.iter_mut().enumerate() {
-            *out = self.x[i] + h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
+            *out = self.x[i] + h * mean(i);
+        }
+        for (i, out) in self.means.iter_mut().enumerate() {
+            *out = mean(states + i);
         }
         system.derivative(t + h, &self.x_end, k_end);
         self.effort.evaluations += 4;
-        all_finite(&self.x_end) && all_finite(k_end)
+        all_finite(&self.x_end) && all_finite(&k_end[..states])
     }
 
     /// Makes a step the past, up to the first event that ends it: what follows, which event, and when.
@@ -126,6 +137,8 @@ impl Rk4 {
             states,
             slopes,
             quartic: &[],
+            means: &self.means,
+            cut: false,
         };
         let cut = self.watch.first_cut(system, &step, &mut self.effort);
         match &cut {

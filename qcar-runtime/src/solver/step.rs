@@ -15,10 +15,14 @@ pub struct Step<'a> {
     pub(super) length: f64,
     /// State at `start` and at `start + length`.
     pub(super) states: [&'a [f64]; 2],
-    /// Derivative at `start` and at `start + length`.
+    /// Derivative at `start` and at `start + length`, and behind it the signals.
     pub(super) slopes: [&'a [f64]; 2],
     /// The term of fourth order divided by the length; empty for a cubic.
     pub(super) quartic: &'a [f64],
+    /// The mean of each signal over the step.
+    pub(super) means: &'a [f64],
+    /// True where an event cut the step short.
+    pub(super) cut: bool,
 }
 
 impl<'a> Step<'a> {
@@ -46,8 +50,36 @@ impl<'a> Step<'a> {
         }
     }
 
+    /// Writes the signals at time `t` of the step: the slopes of the interpolants of their integrals.
+    ///
+    /// They are exact at both ends; between them they are accurate to the order of the dense output less one.
+    pub fn signals_at(&self, t: f64, signals: &mut [f64]) {
+        let (states, n) = (self.states[0].len(), signals.len());
+        let [y0, y1] = self.slopes.map(|slopes| &slopes[states..][..n]);
+        let means = &self.means[..n];
+        let a = (t - self.start) / self.length;
+        let b = 1.0 - a;
+        let weights = [b * (b - 2.0 * a), 6.0 * a * b, a * (a - 2.0 * b)];
+        for i in 0..n {
+            signals[i] = weights[0] * y0[i] + weights[1] * means[i] + weights[2] * y1[i];
+        }
+        let weight = 2.0 * a * b * (b - a);
+        for (signal, q) in signals.iter_mut().zip(self.quartic.iter().skip(states)) {
+            *signal += weight * q;
+        }
+    }
+
+    /// True where an event cut the step short: the stages of its method lie beyond the event.
+    pub fn is_cut(&self) -> bool {
+        self.cut
+    }
+
     /// The same step, ended at `t` by an event.
     pub(super) fn until(&self, t: f64) -> Self {
-        Self { end: t, ..*self }
+        Self {
+            end: t,
+            cut: true,
+            ..*self
+        }
     }
 }
