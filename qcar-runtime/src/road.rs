@@ -177,6 +177,15 @@ impl Road {
         &self.segments[k]
     }
 
+    /// True where nothing but piece `k` lies below the circle.
+    #[inline]
+    pub(crate) fn carries(&self, k: usize, circle: &Circle) -> bool {
+        let (vertices, [x, _]) = (&self.vertices, circle.centre);
+        let begins = k == 0 || vertices[k - 1][0] <= x - circle.radius;
+        let ends = vertices.get(k).is_none_or(|end| x + circle.radius <= end[0]);
+        begins && ends
+    }
+
     pub(crate) fn bounds(&self) -> &Bounds {
         &self.bounds
     }

@@ -28,6 +28,8 @@ mod force;
 pub use area::Overlap;
 pub use circle::{segment_area, segment_deflection};
 
+use std::cell::Cell;
+
 use crate::road::Road;
 
 /// A tyre's geometry.
@@ -160,10 +162,17 @@ impl Tyre {
     ///
     /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled
     /// (except [`Geometry::Radial`], which looks at each piece of the road in the circle).
-    #[inline]
     pub fn touch(&self, road: &Road, wheel: &Wheel) -> Option<Touch> {
+        self.touch_near(road, wheel, &Cell::new(0))
+    }
+
+    /// As [`Tyre::touch`], with a memory of the piece of road that was last under the wheel.
+    ///
+    /// Where that piece still is all that the circle is over, which is most of the time, nothing is searched for.
+    #[inline]
+    pub(crate) fn touch_near(&self, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
         match self.geometry {
-            Geometry::Area => area::touch(self, road, wheel),
+            Geometry::Area => area::touch(self, road, wheel, piece),
             Geometry::Point => point::touch(self, road, wheel),
             Geometry::Radial => radial::touch(self, road, wheel),
         }

@@ -1,5 +1,7 @@
 //! A model whose tyre rolls over a road: the right-hand side of thesis figure 3.2.
 
+use std::cell::Cell;
+
 use super::car::Car;
 use super::equilibrium;
 use super::failure::{SimulateError, positive};
@@ -27,6 +29,8 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     locked: Vec<usize>,
     /// The constant force in x that balances the rolling drag on a flat road, N.
     pub traction: f64,
+    /// The piece of road that was last under the tyre.
+    piece: Cell<usize>,
     /// Up to where the road has no further vertical step, m, for a tyre that feels such a step at once.
     smooth_until: f64,
 }
@@ -69,6 +73,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             wheel: WheelStates::new(contact),
             locked: car.locked(contact),
             traction: 0.0,
+            piece: Cell::new(0),
             smooth_until: f64::INFINITY,
         };
         let mut x = vec![0.0; about.states.len()];
@@ -124,7 +129,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         let mut wheel = self.wheel(t, x);
         // Before a step has become an event, the solver looks ahead as if there were none.
         wheel.position[0] = wheel.position[0].min(self.smooth_until);
-        self.tyre.touch(self.road, &wheel)
+        self.tyre.touch_near(self.road, &wheel, &self.piece)
     }
 
     /// Deflection of the tyre at time `t`, m.

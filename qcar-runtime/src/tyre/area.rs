@@ -1,5 +1,7 @@
 //! The area that the unloaded circle has in common with the ground (thesis section 3.3.2.2).
 
+use std::cell::Cell;
+
 use super::patches::{Line, Patch, candidates, patches};
 use super::sweep::{Sweep, Sweeps};
 use super::{Change, Touch, Tyre, Wheel, against};
@@ -22,12 +24,16 @@ pub struct Overlap {
 
 /// The contact by area.
 #[inline]
-pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel) -> Option<Touch> {
+pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
     let circle = Circle {
         centre: wheel.position,
         radius: tyre.radius,
     };
+    if road.carries(piece.get(), &circle) {
+        return straight(tyre, wheel, &Line::new(road.segment(piece.get()), &circle));
+    }
     let (first, last) = candidates(road, &circle)?;
+    piece.set(last);
     if first == last {
         let line = Line::new(road.segment(first), &circle);
         straight(tyre, wheel, &line)

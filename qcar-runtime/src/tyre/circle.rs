@@ -27,7 +27,7 @@ pub fn segment_area(deflection: f64) -> f64 {
     let deflection = deflection.clamp(0.0, 2.0);
     let cosine = 1.0 - deflection;
     let sine = flat_chord(deflection) / 2.0;
-    sine.atan2(cosine) - cosine * sine
+    angle(sine, cosine) - cosine * sine
 }
 
 /// The inverse of [`segment_area`]: a power series in `area^(2/3)`, polished by Newton's method where that is slow.
