@@ -66,13 +66,13 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
     fn accept(&mut self, step: &Step<'_>) {
         let [x, dx, signals] = &mut self.room;
+        let smooth = step.has_signals();
         for (t, is_sample) in self.grid.on(step) {
-            // The forces bend where the ground is lost or found, and a step across that says little of them.
-            if step.is_cut() {
+            if smooth {
+                step.signals_at(t, signals);
+            } else {
                 step.at(t, x);
                 observe(&self.rolling, t, x, dx, signals);
-            } else {
-                step.signals_at(t, signals);
             }
             for (fine, y) in self.fine.iter_mut().zip(signals.iter()) {
                 fine.push(*y);

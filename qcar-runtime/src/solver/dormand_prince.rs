@@ -117,7 +117,7 @@ impl DormandPrince {
                 continue;
             }
             self.effort.accepted += 1;
-            let cut = self.settle(system, t, t_end, h);
+            let cut = self.settle(system, (t, t_end), h, error);
             t = cut.map_or(t_end, |(_, crossing)| crossing.time);
             match cut {
                 Some((After::Stop, crossing)) => return (Reason::Event(crossing.index), t),
@@ -258,7 +258,13 @@ impl DormandPrince {
     }
 
     /// Makes an accepted step the past, up to the first event that ends it: that event, with what follows.
-    fn settle<S: System>(&mut self, system: &mut S, t: f64, t_end: f64, h: f64) -> Option<(After, Crossing)> {
+    fn settle<S: System>(
+        &mut self,
+        system: &mut S,
+        (t, t_end): (f64, f64),
+        h: f64,
+        error: f64,
+    ) -> Option<(After, Crossing)> {
         self.make_dense();
         let states = [&self.x[..], &self.x_end[..]];
         let slopes = [&self.k[0][..], &self.k[6][..]];
@@ -270,7 +276,7 @@ impl DormandPrince {
             slopes,
             quartic: &self.quartic,
             means: &self.means,
-            cut: false,
+            error,
         };
         let cut = self.watch.first_cut(system, &step, &mut self.effort);
         match cut {
@@ -323,7 +329,7 @@ const ERROR: [f64; 6] = [
     -9.0 / 1000.0,
     1.0 / 50.0,
 ];
-/// Weights of the quartic of the dense output: of those of fourth order, near the one with the least error.
+/// Weights of the quartic of the dense output: of the family of fourth order, near the one with the least error.
 const DENSE: [f64; 6] = [
     -259.0 / 200.0,
     93.0 / 20.0,

@@ -12,8 +12,6 @@ pub struct Rk4 {
     stage: Vec<f64>,
     /// The stages' derivatives, and that at the end of the step, which the dense output needs.
     k: [Vec<f64>; 5],
-    /// The mean of each signal over the step.
-    means: Vec<f64>,
     watch: Watch,
     effort: Effort,
 }
@@ -32,7 +30,6 @@ impl Rk4 {
             x_end: row(),
             stage: row(),
             k: std::array::from_fn(|_| row()),
-            means: Vec::new(),
             watch: Watch::new(states, events),
             effort: Effort::default(),
         }
@@ -45,7 +42,6 @@ impl Rk4 {
         self.effort = Effort::default();
         let signals = system.signals();
         self.k.iter_mut().for_each(|k| k.resize(x.len() + signals, 0.0));
-        self.means.resize(signals, 0.0);
         self.x.copy_from_slice(x);
         let (mut reason, mut time) = (Reason::End, span.0);
         for leg in legs(span, breaks) {
@@ -113,12 +109,8 @@ impl Rk4 {
         }
         let states = self.x.len();
         let [k0, k1, k2, k3, k_end] = &mut self.k;
-        let mean = |i: usize| (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]) / 6.0;
         for (i, out) in self.x_end.iter_mut().enumerate() {
-            *out = self.x[i] + h * mean(i);
-        }
-        for (i, out) in self.means.iter_mut().enumerate() {
-            *out = mean(states + i);
+            *out = self.x[i] + h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
         }
         system.derivative(t + h, &self.x_end, k_end);
         self.effort.evaluations += 4;
@@ -137,8 +129,8 @@ impl Rk4 {
             states,
             slopes,
             quartic: &[],
-            means: &self.means,
-            cut: false,
+            means: &[],
+            error: f64::INFINITY,
         };
         let cut = self.watch.first_cut(system, &step, &mut self.effort);
         match &cut {

@@ -21,9 +21,13 @@ pub struct Step<'a> {
     pub(super) quartic: &'a [f64],
     /// The mean of each signal over the step.
     pub(super) means: &'a [f64],
-    /// True where an event cut the step short.
-    pub(super) cut: bool,
+    /// The estimated error of the step over what is tolerated; infinite where there is no estimate, or where an event
+    /// has cut the step short and the stages of the method lie beyond it.
+    pub(super) error: f64,
 }
+
+/// An error so far below the tolerance shows a smooth step.
+const SMOOTH: f64 = 0.1;
 
 impl<'a> Step<'a> {
     /// The state where the step begins.
@@ -69,16 +73,19 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// True where an event cut the step short: the stages of its method lie beyond the event.
-    pub fn is_cut(&self) -> bool {
-        self.cut
+    /// True where the signals between the ends of the step are as good as its ends.
+    ///
+    /// That asks for a step shorter than the tolerance would have it, as it is where something else limits its length:
+    /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step.
+    pub fn has_signals(&self) -> bool {
+        self.error < SMOOTH
     }
 
     /// The same step, ended at `t` by an event.
     pub(super) fn until(&self, t: f64) -> Self {
         Self {
             end: t,
-            cut: true,
+            error: f64::INFINITY,
             ..*self
         }
     }
