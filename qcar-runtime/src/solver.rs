@@ -11,8 +11,8 @@ mod step;
 // Where an event lies on a step.
 mod events;
 // How long the next step may be.
-mod fastest;
 mod control;
+mod fastest;
 // The two methods.
 mod dormand_prince;
 mod rk4;
@@ -104,6 +104,8 @@ pub enum Reason {
     NotFinite,
     /// The tolerance cannot be met after this time with a step that still advances it.
     StepTooSmall,
+    /// Events follow one another without an end after this time, as those of a ball that comes to rest.
+    Crowded,
     /// The limit of attempted steps is used up.
     TooManySteps,
 }
@@ -123,6 +125,7 @@ impl std::fmt::Display for Report {
             Reason::Event(index) => write!(f, "stopped by event {index} at t = {t} s"),
             Reason::NotFinite => write!(f, "the state or its derivative is not finite after t = {t} s"),
             Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s, however short the step"),
+            Reason::Crowded => write!(f, "events follow one another without an end after t = {t} s"),
             Reason::TooManySteps => write!(
                 f,
                 "{} steps were not enough: it got to t = {t} s; the model may be too stiff for an explicit method",

@@ -114,7 +114,13 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
 /// Derivative and signals at time `t`, and whether the tyre is on the ground.
 #[inline]
-fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], dx: &mut [f64], signals: &mut [f64]) -> bool {
+fn observe<M: Model + ?Sized>(
+    rolling: &Rolling<'_, M>,
+    t: f64,
+    x: &[f64],
+    dx: &mut [f64],
+    signals: &mut [f64],
+) -> bool {
     let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);
     let contact = rolling.motion(t, x, dx, outputs);
     let Contact { s, force, .. } = contact.unwrap_or_default();

@@ -118,8 +118,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         for &place in &self.locked {
             dx[place] = 0.0;
         }
-        self.model
-            .rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
+        self.model.rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
         contact
     }
 

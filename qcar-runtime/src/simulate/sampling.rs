@@ -56,7 +56,9 @@ impl AntiAlias {
         let taps = self.taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
         for (distance, tap) in taps {
             let beside = from(reach - distance).iter().zip(from(reach + distance));
-            out.iter_mut().zip(beside).for_each(|(out, (a, b))| *out += tap * (a + b));
+            out.iter_mut()
+                .zip(beside)
+                .for_each(|(out, (a, b))| *out += tap * (a + b));
         }
         out
     }

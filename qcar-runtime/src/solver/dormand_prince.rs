@@ -93,6 +93,7 @@ impl DormandPrince {
     fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64), shortest: f64) -> (Reason, f64) {
         let mut t = start;
         let mut fresh = true;
+        let mut crowd = 0;
         while t < end {
             if std::mem::take(&mut fresh) && !self.begin(system, t, end) {
                 return (Reason::NotFinite, t);
@@ -118,9 +119,11 @@ impl DormandPrince {
             }
             self.effort.accepted += 1;
             let cut = self.settle(system, (t, t_end), h, error);
-            t = cut.map_or(t_end, |(_, crossing)| crossing.time);
+            let before = std::mem::replace(&mut t, cut.map_or(t_end, |(_, crossing)| crossing.time));
+            crowd = if t - before < shortest { crowd + 1 } else { 0 };
             match cut {
                 Some((After::Stop, crossing)) => return (Reason::Event(crossing.index), t),
+                Some(_) if crowd > MOST_AT_ONCE => return (Reason::Crowded, t),
                 Some(_) => fresh = true,
                 None => {}
             }
@@ -308,6 +311,9 @@ fn combine<const N: usize>(out: &mut [f64], x: &[f64], h: f64, a: [f64; N], k: [
 fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     (1..N).fold(a[0] * b[0], |sum, i| sum + a[i] * b[i])
 }
+
+/// Several events may happen at one time, but so many in a row are one that comes back.
+const MOST_AT_ONCE: usize = 4;
 
 /// Modes of up to so much a step are damped, with a margin to where they are not, 5.7.
 const STABLE: f64 = 5.2;

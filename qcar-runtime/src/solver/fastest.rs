@@ -31,7 +31,10 @@ pub(super) fn fastest_rate<S: System>(
     let mut growth = 1.0;
     for iteration in 0..ITERATIONS {
         let shrink = 1.0 / norm(moved);
-        moved.iter_mut().zip(x).for_each(|(moved, x)| *moved = x + *moved * shrink);
+        moved
+            .iter_mut()
+            .zip(x)
+            .for_each(|(moved, x)| *moved = x + *moved * shrink);
         system.derivative(t, moved, moved_slope);
         for (moved, (there, here)) in moved.iter_mut().zip(moved_slope.iter().zip(slope)) {
             *moved = there - here;
