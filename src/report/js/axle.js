@@ -11,12 +11,12 @@ function axles(data) {
   const drawings = ['z', 'x'].map((axis) => axleDrawing(shown, axis, fresh)).filter((part) => part);
   const element = section('axle', 'Vehicle and axle',
     h('p', {}, after
-      ? ['The model with what it lacked; ', key('after', 'what is new'), ` stands out. Values are those of the last fit.`]
+      ? ['The model with what it lacked; ', key('after', 'what is new'), ' stands out. Values are those found together with it.']
       : 'The model with its fitted values.'),
     h('div', { class: 'drawings' }, drawings),
     details('Masses and links as a table', axleTable(shown, fresh)),
-    details(`Equations of motion of ${before.name}`, h('pre', { tabindex: 0 }, before.equations)),
-    after && details(`Equations of motion of ${after.name}`, h('pre', { tabindex: 0 }, after.equations)));
+    details(`Equations of motion of ${before.name}`, equationSheet(before.equations)),
+    after && details(`Equations of motion of ${after.name}`, equationSheet(after.equations)));
   return { element, draw: () => drawings.forEach((drawing) => drawn(drawing)) };
 }
 
@@ -113,7 +113,7 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
   }
   const box = axis === 'z' ? { x: low, y: centre - thick / 2, width: high - low, height: thick } : { x: centre - thick / 2, y: low, width: thick, height: high - low };
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
-  const lines = axis === 'z' && box.width > 110 ? [label.join('  ')] : label;
+  const lines = axis === 'z' && box.width > 110 ? [label.join(' · ')] : label;
   const text = lines.map((line, at) => svg('text', { x, y: y + 4.5 + (at - (lines.length - 1) / 2) * 15, 'text-anchor': 'middle', class: at ? 'value' : 'name' }, line));
   return svg('g', { class: kind }, svg('rect', { ...box, rx: 3 }), text);
 }
@@ -140,7 +140,7 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
   const middle = (from + to) / 2;
   const text = axis === 'z'
     ? lines.map((line, index) => svg('text', { x: centre + 20 + spread / 2, y: middle + 4 + (index - (lines.length - 1) / 2) * 15, class: index ? 'value' : 'name' }, line))
-    : [svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]), svg('text', { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' }, lines.slice(1).join('  '))];
+    : [svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]), svg('text', { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' }, lines.slice(1).join(' · '))];
   const levers = ends.filter((end) => { const level = place.get(end.point).level; return level !== high && level !== low; });
   const arms = levers.map((end) => svg('path', { class: 'arm', d: line(axis, centre, middle, lane(place.get(end.point).lanes[0]), along(place.get(end.point).level)) }));
   return svg('g', { class: `link${isNew(link) ? ' new' : ''}` }, svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`), arms, shapes, text);

@@ -72,8 +72,7 @@ function heatMap(role, tiles, readout) {
     const [channel, level] = row.split(' @ ');
     return svg('text', { x: left - 8, y: top + at * cell + 13, 'text-anchor': 'end' }, `${channel}, ${levelText(Number(level), tiles[0])}`);
   });
-  const every = Math.ceil(columns.length / 9);
-  const ticks = columns.map((from, at) => (at % every ? null : svg('text', { x: left + at * wide, y: height - 20, 'text-anchor': 'middle' }, number(from, 2))));
+  const ticks = mapTicks(tiles).map(([value, share]) => svg('text', { x: left + share * w, y: height - 20, 'text-anchor': 'middle' }, plain(value, 3)));
   const marker = svg('rect', { class: 'marker', width: wide, height: cell - 1, visibility: 'hidden' });
   const unit = tiles.length && tiles[0].kind !== 'harmonic' ? 'time, s' : 'frequency, Hz';
   const map = svg('svg', { class: 'heat', viewBox: `0 0 ${left + w + 8} ${height}`, tabindex: 0, role: 'application', 'aria-label': `Gap ${role} over ${unit} for each sensor and level. Arrow keys move from tile to tile.` },
@@ -82,9 +81,20 @@ function heatMap(role, tiles, readout) {
   return figure(`gap-${role}`, role === 'before' ? 'The model of the campaign' : 'The model with what was missing', h('div', { class: 'scroll' }, map));
 }
 
+// Round values along the bands, and how far along they are.
+function mapTicks(tiles) {
+  if (!tiles.length) return [];
+  const low = Math.min(...tiles.map((tile) => tile.span[0]));
+  const high = Math.max(...tiles.map((tile) => tile.span[1]));
+  const log = tiles[0].kind === 'harmonic';
+  const along = (v) => (log ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
+  const values = log ? [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200] : [...Array(6).keys()].map((n) => low + ((high - low) * n) / 5);
+  return values.filter((v) => v >= low * 0.999 && v <= high * 1.001).map((v) => [v, along(v)]);
+}
+
 function levelText(level, tile) {
   const units = { harmonic: 'mm/s', passage: 'mm' };
-  return units[tile.kind] ? `${number(1e3 * level)} ${units[tile.kind]}` : number(level, 2);
+  return units[tile.kind] ? `${plain(1e3 * level, 3)} ${units[tile.kind]}` : plain(level, 2);
 }
 
 function tileText(role, tile) {
@@ -154,10 +164,20 @@ function effectPart(effect) {
       rivals.length ? table('Rivals', [['effect', 'text'], ['behind by', 'number']], rivals) : null));
 }
 
+function changeLine(kind, sign, heading, text) {
+  return h('p', { class: kind }, h('span', { class: 'sign' }, sign), heading === 'equations' ? h('span', { class: 'equation' }, formula(text)) : h('code', {}, text));
+}
+
+// Masses and links of both directions may share a name.
+function direction(name) {
+  const [axis, rest] = name.split('.');
+  return rest ? h('span', { class: 'direction' }, `${axis} direction`) : null;
+}
+
 function changesPart(changes) {
   const parts = Object.entries(changes).map(([heading, own]) => h('div', { class: 'changes' }, h('h4', {}, words(heading)),
-    own.map((change) => h('div', { class: 'change' },
-      change.before === null ? null : h('p', { class: 'gone' }, h('span', { class: 'sign' }, '−'), h('code', {}, change.before)),
-      change.after === null ? null : h('p', { class: 'come' }, h('span', { class: 'sign' }, '+'), h('code', {}, change.after))))));
+    own.map((change) => h('div', { class: 'change' }, direction(change.name),
+      change.before === null ? null : changeLine('gone', '−', heading, change.before),
+      change.after === null ? null : changeLine('come', '+', heading, change.after)))));
   return h('div', {}, h('h3', {}, 'How the model changes'), parts);
 }

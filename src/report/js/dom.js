@@ -66,6 +66,26 @@ function details(summary, ...children) {
   return h('details', {}, h('summary', {}, summary), children);
 }
 
+// `z_wheel` as a letter with its index, in whatever surrounds it.
+function formula(text) {
+  return text.split(/([A-Za-z]\p{M}*_\w+)/u).map((part, at) => {
+    if (at % 2 === 0) return part;
+    const [letter, ...index] = part.split('_');
+    return [h('i', {}, letter), h('sub', {}, index.join(' '))];
+  });
+}
+
+// The text of a stage of equations: headings stand at the margin.
+function equationSheet(text) {
+  const lines = text.split('\n').filter((line) => line.trim());
+  const parts = lines.map((line) => {
+    if (!line.startsWith(' ')) return h('h4', {}, line);
+    const deep = line.startsWith('        ');
+    return h('p', { class: deep ? 'continued' : null }, formula(line.trim()));
+  });
+  return h('div', { class: 'equations', tabindex: 0, role: 'region', 'aria-label': 'Equations' }, parts);
+}
+
 function key(role, text) {
   return h('span', { class: `key ${role}` }, text);
 }

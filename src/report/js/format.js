@@ -14,6 +14,11 @@ function number(value, digits = 3) {
     .replace(/,/g, '\u2009'));
 }
 
+// The same without zeros at the end: for what is given, not measured.
+function plain(value, digits = 5) {
+  return number(Number(value.toPrecision(digits)), String(Math.abs(Number(value.toPrecision(digits)))).replace(/^0\.0*|\./g, '').length || 1);
+}
+
 function minus(text) {
   return text.replace('-', '−');
 }
@@ -37,6 +42,11 @@ const SCALES = {
 function inUnit(value, unit) {
   const [factor, written] = SCALES[unit] || [1, unit];
   return { factor, unit: written === '1' ? '' : pretty(written), value: value === null ? null : value * factor };
+}
+
+function given(value, unit) {
+  const scaled = inUnit(value, unit);
+  return `${plain(scaled.value)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
 }
 
 function quantity(value, unit, digits = 3) {

@@ -11,7 +11,7 @@ function modes({ modes: { before, after }, model }) {
 
 function modeTable(role, name, set) {
   const rows = set.map((mode) => [number(mode.frequency), percent(mode.damping), shapeDrawing(mode.parts)]);
-  return figure(`modes-${role}`, null, table(words(name), [['frequency, Hz', 'number'], ['damping', 'number'], ['shape', 'text']], rows, { class: `table modes ${role}` }));
+  return figure(`modes-${role}`, null, table(words(name), [['frequency, Hz', 'number'], ['damping', 'number'], ['shape', 'text']], rows, { class: `table modes of-${role}` }));
 }
 
 function shapeDrawing(parts) {

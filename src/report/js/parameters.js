@@ -1,19 +1,20 @@
 // The fitted parameters: values, errors, correlations and what keeps an error from being known.
 
-function parameters({ fit, discover }) {
+function parameters({ fit, refitted }) {
   const own = Object.values(fit.parameters);
+  const changed = refitted.length > 0;
   const rows = own.map((parameter) => {
     const row = [parameter.name, inUnit(0, parameter.unit).unit, scaledNumber(parameter.start, parameter.unit),
       scaledNumber(parameter.value, parameter.unit), parameter.stderr === null ? '' : scaledNumber(parameter.stderr, parameter.unit, 2),
-      parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr), rangeBar(parameter), remark(parameter)];
+      parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr), rangeBar(parameter, found(refitted, parameter.name)), remark(parameter), ...(changed ? [refittedCell(found(refitted, parameter.name), parameter.unit)] : [])];
     row.class = parameter.fitted ? null : 'still';
     return row;
   });
   const ended = `${fit.converged ? 'Converged' : 'Did not converge'}: ${fit.stopped}. ${fit.minima.length ? fit.minima[0].starts : 0} of ${fit.starts} starts found this minimum, cost ${number(fit.cost)} (${number(fit.start_cost)} at the start values).`;
   const element = section('parameters', 'Parameters',
     h('p', {}, `Of the model ${fit.model}, fitted to the rig runs before anything was added. ${ended}`),
-    discover.effects.length ? h('p', { class: 'caution' }, 'While an effect is missing, these values bend to make up for it. Those found together with the effect are below, under discovery.') : null,
-    table('Fitted parameters', [['parameter', 'text'], ['unit', 'text'], ['start', 'number'], ['value', 'number'], ['standard error', 'number'], ['relative', 'number'], ['in its range', 'text'], ['remark', 'text']], rows),
+    changed ? h('p', { class: 'caution' }, 'While an effect is missing, the fitted values bend to make up for it. The last column holds those that were found together with the effect, from all runs that may be fitted.') : null,
+    table('Fitted parameters', [['parameter', 'text'], ['unit', 'text'], ['start', 'number'], ['value', 'number'], ['standard error', 'number'], ['relative', 'number'], ['in its range', 'text'], ['remark', 'text'], ...(changed ? [['with the effect', 'number']] : [])], rows),
     correlations(fit.correlations));
   return { element };
 }
@@ -38,12 +39,21 @@ const WHY = {
   not_converged: () => 'the search did not end at a minimum',
 };
 
+function found(refitted, name) {
+  return refitted.find((own) => own.name === name) || null;
+}
+
+function refittedCell(own, unit) {
+  if (!own || own.stderr === null) return '';
+  return h('span', { class: 'after' }, measured(own.value, own.stderr, unit));
+}
+
 // Where a value lies between its bounds, with its start.
-function rangeBar({ range, value, start, fitted }) {
+function rangeBar({ range, value, start, fitted }, after) {
   if (!range || !fitted) return '';
   const at = (v) => `${(100 * Math.min(1, Math.max(0, (v - range[0]) / (range[1] - range[0])))).toFixed(1)}%`;
   return h('span', { class: 'range', role: 'img', 'aria-label': `between ${number(range[0])} and ${number(range[1])}` },
-    h('span', { class: 'tick start', style: `left:${at(start)}` }), h('span', { class: 'tick before', style: `left:${at(value)}` }));
+    h('span', { class: 'tick start', style: `left:${at(start)}` }), h('span', { class: 'tick before', style: `left:${at(value)}` }), after && h('span', { class: 'tick after', style: `left:${at(after.value)}` }));
 }
 
 function correlations(pairs) {

@@ -8,7 +8,7 @@ function colour(name) {
 
 // What a curve stands for decides how it is drawn, everywhere.
 const ROLES = {
-  measured: { label: 'measured', width: 2.2 },
+  measured: { label: 'measured', width: 4 },
   band: { label: 'band', width: 0 },
   start: { label: 'start values', width: 1.1, dash: [2, 4] },
   before: { label: 'before', width: 1.6, dash: [7, 4] },
@@ -26,8 +26,8 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
     height,
     class: 'plot',
     scales: { x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) }, y: { range: y.range || padded } },
-    axes: [axis(x, 44, x.log ? 30 : 50), axis(y, 58, 40)],
-    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '–' : number(v, 4)) }, ...series],
+    axes: [axis(x, 26, x.log ? 30 : 50), axis(y, 46, 40)],
+    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : number(v, 4)) }, ...series],
     bands: bands(curves),
     cursor: { sync: sync && { key: sync, setSeries: false }, points: { size: 6 }, drag: { x: true, y: false } },
     legend: { live: true },
@@ -48,13 +48,13 @@ function seriesOf({ role, label, values, hidden }, digits) {
     label: label || usual, class: role, width, dash, show: !hidden, spanGaps: false,
     stroke: width > 0 ? () => colour(role) : undefined,
     points: { show: false },
-    value: (u, v) => (v === null || v === undefined ? '–' : number(v, digits)),
+    value: (u, v) => (v === null || v === undefined ? '' : number(v, digits)),
   };
 }
 
 function axis({ label, ticks }, size, space) {
   return {
-    label, size, space, labelSize: 18, labelFont: '12px system-ui, sans-serif', font: '11.5px system-ui, sans-serif', gap: 4,
+    label, size, space, labelSize: 16, labelFont: '12px system-ui, sans-serif', font: '11.5px system-ui, sans-serif', gap: 4,
     stroke: () => colour('muted'),
     grid: { stroke: () => colour('grid'), width: 1 },
     ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
@@ -65,10 +65,6 @@ function axis({ label, ticks }, size, space) {
 
 function tight(u, low, high) {
   return [low, high];
-}
-
-function plain(value) {
-  return minus(String(Number(value.toPrecision(6))));
 }
 
 function padded(u, low, high) {

@@ -7,7 +7,7 @@ function track({ track: own, simulate }) {
   const charts = [];
   const traces = h('div', { class: 'columns two' });
   const variants = h('div', { class: 'columns two' });
-  const runs = own.runs.map((run) => [run.file, `${number(3.6 * run.speed)} km/h, ${words(run.cleat)} (${roleName(run.role)})`]);
+  const runs = own.runs.map((run) => [run.file, `${plain(3.6 * run.speed, 3)} km/h, ${words(run.cleat)} (${roleName(run.role)})`]);
   const show = (file) => {
     charts.splice(0).forEach(forget);
     const run = own.runs.find((candidate) => candidate.file === file);
@@ -17,7 +17,7 @@ function track({ track: own, simulate }) {
   const first = own.runs[Math.floor(own.runs.length / 2)].file;
   const histograms = errorFigures(own.histograms);
   const element = section('track', 'Over the cleat',
-    h('p', {}, 'Accelerations ', key('measured', 'measured'), ' and simulated with the parameters of the rig, ', key('before', 'before'), changed ? [' and ', key('after', 'with what was missing')] : null,
+    h('p', {}, 'Accelerations ', key('measured', 'measured'), ' and simulated: ', key('before', 'before'), ', with the parameters of the rig fit', changed ? [', and ', key('after', 'with what was missing'), ', with the parameters that were found together with it'] : null,
       '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.'),
     select('Run', runs, first, show), traces,
     h('h3', {}, 'Errors over all runs'),
@@ -34,8 +34,9 @@ const SECONDS = { label: 'time, s' };
 const ACCELERATION = { label: 'acceleration, m/s²' };
 
 function drawTraces(run, place) {
-  place.replaceChildren(...run.traces.map((trace) => traceColumn(trace, 'trace')));
-  return run.traces.map((trace, at) => plot(place.children[at].querySelector('.canvas'), {
+  const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
+  place.replaceChildren(...traces.map((trace) => traceColumn(trace, 'trace')));
+  return traces.map((trace, at) => plot(place.children[at].querySelector('.canvas'), {
     x: SECONDS, y: ACCELERATION, at: run.time, sync: 'track',
     curves: [{ role: 'measured', values: trace.measured }, { role: 'before', values: trace.before }, ...(trace.after ? [{ role: 'after', values: trace.after }] : [])],
   }));
@@ -82,26 +83,28 @@ function histogramDrawing({ before, after }) {
   const bars = sets.flatMap(([role, own], index) => own.counts.map((count, at) => (count === 0 ? null : svg('rect', {
     class: `bar ${role}`, x: x(bin(own, at)) + index * thin + 0.5, y: y(count), width: Math.max(1, thin - 1), height: top + tall - y(count),
   }, svg('title', {}, `${role}: ${count} of ${number(100 * width * bin(own, at))} to ${number(100 * width * (bin(own, at) + 1))} %`)))));
-  const every = Math.max(1, Math.ceil((high - low) / 6));
+  const every = [1, 2, 4, 10, 20, 40].find((step) => (high - low) / step <= 5) || 100;
   const ticks = [];
   for (let edge = Math.ceil(low / every) * every; edge <= high; edge += every) ticks.push(edge);
   return svg('svg', { class: 'histogram', viewBox: '0 0 244 142', role: 'img', 'aria-label': sets.map(([role, own]) => `${role}: ${own.counts.join(', ')} runs in bins of 5 percent from ${number(100 * own.start)} percent`).join('; ') },
     svg('path', { class: 'frame', d: `M${left} ${top}V${top + tall}H${left + w}` }), svg('path', { class: 'zero', d: `M${x(0)} ${top}V${top + tall}` }), bars,
-    ticks.map((edge) => svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, number(100 * width * edge))),
+    ticks.map((edge) => svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, plain(100 * width * edge, 3))),
     [0, most].map((count) => svg('text', { x: left - 5, y: y(count) + 4, 'text-anchor': 'end' }, String(count))),
     svg('text', { x: left + w / 2, y: 136, 'text-anchor': 'middle' }, 'error, %'));
 }
 
-const MODELS = [['before', 'before'], ['after', 'with what was missing'], ['longitudinally_locked', 'locked'], ['pure_vertical', 'vertical']];
+const MODELS = [['before', 'before', ['z', 'x']], ['after', 'with what was missing', ['z', 'x']], ['longitudinally_locked', 'locked', ['z']], ['pure_vertical', 'vertical', ['z']]];
 
+// A locked model does not move along x, so its errors there say nothing.
 function summaryTable(simulate) {
-  const models = MODELS.filter(([name]) => simulate[name]);
-  const rows = Object.keys(simulate.before.summary).map((place) => [words(place), ...models.flatMap(([name]) => {
-    const own = simulate[name].summary[place] || {};
-    return ['peak', 'after_shake'].map((metric) => (own[metric] ? `${percent(own[metric].median)} (${percent(own[metric].worst)})` : '–'));
-  })]);
-  const headings = models.flatMap(([, text]) => [[`peak, ${text}`, 'number'], [`after-shake, ${text}`, 'number']]);
-  return table('Median (worst) size of the errors', [['mass', 'text'], ...headings], rows);
+  const rows = Object.keys(simulate.before.summary).flatMap((place) => MODELS
+    .filter(([name, , axes]) => simulate[name] && axes.some((axis) => place.endsWith(axis)))
+    .map(([name, text], at) => {
+      const own = simulate[name].summary[place] || {};
+      const sizes = ['peak', 'after_shake'].flatMap((metric) => (own[metric] ? [percent(own[metric].median), percent(own[metric].worst)] : ['–', '–']));
+      return [at === 0 ? words(place) : '', text, ...sizes];
+    }));
+  return table('Size of the errors', [['mass', 'text'], ['model', 'text'], ['peak, median', 'number'], ['worst', 'number'], ['after-shake, median', 'number'], ['worst', 'number']], rows);
 }
 
 function errorTable(simulate) {

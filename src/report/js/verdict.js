@@ -2,12 +2,16 @@
 
 function verdict(data) {
   const { summary, discover } = data;
-  const sentence = summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1);
   const element = section('verdict', 'Verdict',
-    h('p', { class: 'lead' }, `${words(sentence)}.`),
+    h('p', { class: 'lead' }, lead(data)),
     h('p', {}, consequence(discover, summary)),
     h('div', { class: 'answers' }, [fitAnswer(data), cleatAnswer(data), gapAnswer(discover), ...discover.effects.map(effectAnswer)]));
   return { element };
+}
+
+function lead({ summary, discover }) {
+  if (summary.verdict === 'found') return `Missing: ${discover.effects.map((effect) => `${words(effect.name)} at ${words(effect.at)}`).join(', and ')}.`;
+  return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
 }
 
 function consequence(discover, { verdict: kind }) {

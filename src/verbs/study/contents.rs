@@ -6,7 +6,7 @@ use qcar_dsl::difference::Difference;
 use serde::{Serialize, Serializer};
 
 use super::axle::Axle;
-use super::gap::{Explanation, Patch, changes, explanations, patches};
+use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::gather::Study;
 use super::record::{Record, record};
 use super::rig::{Ratio, ratios};
@@ -30,6 +30,7 @@ pub struct Contents<'a> {
     track: Option<Track>,
     gap_map: GapMap,
     kappa: Vec<Explanation>,
+    refitted: Vec<Refitted>,
     changes: Option<Changes>,
     record: Record,
 }
@@ -89,6 +90,7 @@ impl<'a> Contents<'a> {
                 after: patches(&discovery.after.gap.tiles),
             },
             kappa: explanations(study),
+            refitted: refitted(study),
             changes: changes(study).map(Changes),
             record: record(study),
         }

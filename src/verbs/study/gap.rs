@@ -1,7 +1,7 @@
 //! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
-use qcar_runtime::discover::evidence::Kind;
+use qcar_runtime::discover::evidence::{Kind, Stimulus};
 use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::{Kappa, Place, kappa_map, refit};
 use serde::Serialize;
@@ -65,6 +65,33 @@ pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
     tiles.iter().map(patch).collect()
 }
 
+/// A parameter as the search has it, with all that was found.
+#[derive(Serialize)]
+pub struct Refitted {
+    name: String,
+    value: f64,
+    /// `None` for one that was not fitted, or is not determined.
+    stderr: Option<f64>,
+}
+
+/// The parameters of the model with what it lacked; none where nothing was found.
+pub fn refitted(of: &Study) -> Vec<Refitted> {
+    let Some(after) = &of.after else { return Vec::new() };
+    let explanation = &of.answer.discovery.after;
+    let errors = explanation.refit.stderr();
+    let error = |place: usize| {
+        let free = explanation.refit.free.iter().position(|free| free.parameter == place)?;
+        Some(errors[free]).filter(|error| error.is_finite())
+    };
+    let parameters = after.model.about().parameters.iter().enumerate();
+    let refitted = parameters.map(|(place, parameter)| Refitted {
+        name: parameter.name.to_string(),
+        value: after.values.as_slice()[place],
+        stderr: error(place),
+    });
+    refitted.collect()
+}
+
 /// Uncertainty added to every value, as its share: a wrong model that is pressed to fit hides its fault.
 const TOLERANCE: f64 = 0.1;
 
@@ -74,9 +101,13 @@ const SHOWN: usize = 8;
 /// The places that explain the gap best.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
     let (model, before) = (&*of.fitted.model, &of.answer.discovery.before);
-    let tolerant = of.answer.evidence.tolerant(TOLERANCE);
+    let sweeps = of
+        .answer
+        .evidence
+        .only(|run| matches!(run.stimulus, Stimulus::Sweep { .. }));
+    let tolerant = sweeps.tolerant(TOLERANCE);
     let eased = refit(model, &before.refit.values, &before.refit.free, &tolerant);
-    let map = eased.and_then(|eased| kappa_map(model, &eased, &of.answer.evidence));
+    let map = eased.and_then(|eased| kappa_map(model, &eased, &sweeps));
     let about = model.about();
     let explanation = |kappa: &Kappa| {
         let (place, sensor) = match &kappa.place {
