@@ -42,8 +42,8 @@ const STILL: f64 = 1e-6;
 pub fn modes(model: &dyn Model, values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values);
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
-    // A that is not a number has no Schur form to wait for.
-    if a.iter().any(|value| !value.is_finite()) {
+    // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
+    if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
         return Vec::new();
     }
     let roots = a.clone().complex_eigenvalues();

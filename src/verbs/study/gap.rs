@@ -98,13 +98,16 @@ const TOLERANCE: f64 = 0.1;
 /// Places whose κ is shown.
 const SHOWN: usize = 8;
 
-/// The places that explain the gap best.
+/// The places that explain the gap of the sweeps best; none without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
     let (model, before) = (&*of.fitted.model, &of.answer.discovery.before);
     let sweeps = of
         .answer
         .evidence
         .only(|run| matches!(run.stimulus, Stimulus::Sweep { .. }));
+    if sweeps.series.is_empty() {
+        return Vec::new();
+    }
     let tolerant = sweeps.tolerant(TOLERANCE);
     let eased = refit(model, &before.refit.values, &before.refit.free, &tolerant);
     let map = eased.and_then(|eased| kappa_map(model, &eased, &sweeps));
