@@ -101,10 +101,8 @@ const SHOWN: usize = 8;
 /// The places that explain the gap of the sweeps best; none without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
     let (model, before) = (&*of.fitted.model, &of.answer.discovery.before);
-    let sweeps = of
-        .answer
-        .evidence
-        .only(|run| matches!(run.stimulus, Stimulus::Sweep { .. }));
+    let evidence = &of.answer.evidence;
+    let sweeps = evidence.only(|run| matches!(evidence.runs[run].stimulus, Stimulus::Sweep { .. }));
     if sweeps.series.is_empty() {
         return Vec::new();
     }
