@@ -75,6 +75,13 @@ fn the_drive_lacks_its_dry_friction() {
     let model = load(&file.to_string_lossy()).expect("a valid model");
     let (found, after) = fitted(&campaign, &*model, &[("f_c", 5.0, 0.1, 100.0), ("k_p", 1e5, 1e3, 1e6)]);
     assert!(after.fit < 0.5 * before.fit, "{} to {}", before.fit, after.fit);
+    // Nothing holds the carriage: without setting it right, drift would hide nine tenths of what friction explains.
+    assert!(
+        after.held_out < 0.2 * before.held_out,
+        "{} to {}",
+        before.held_out,
+        after.held_out
+    );
     for (found, published) in found.estimate.iter().zip([95.11, 203.5, -3.16, 20.39]) {
         assert!((found / published - 1.0).abs() < 0.03, "{found}, published {published}");
     }

@@ -6,6 +6,8 @@
 
 // Swept sines: the first harmonics at each frequency.
 mod sweep;
+// Where a model that drifts is set right.
+mod restart;
 // Any other excitation: the responses themselves.
 mod history;
 // Rides over an obstacle: their impact and after-shake.
@@ -14,6 +16,7 @@ pub mod means;
 
 use means::Means;
 use nalgebra::Complex;
+pub use restart::Restart;
 
 use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::{InputError, Place, Problem};
@@ -74,8 +77,8 @@ pub enum Stimulus {
         rate: f64,
         /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
         band_limited: bool,
-        /// What sensors of position and velocity saw at first.
-        initial: Vec<(Point, f64)>,
+        /// From where the model sets out, and where it is set right; the first is at the first sample.
+        restarts: Vec<Restart>,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),

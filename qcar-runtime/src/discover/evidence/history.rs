@@ -2,8 +2,9 @@
 
 use nalgebra::Complex;
 
+use super::restart::restarts;
 use super::{Evidence, Kind, Recordings, Run, Series, Stimulus, excitation_of};
-use crate::campaign::{Campaign, Quantity};
+use crate::campaign::Campaign;
 use crate::error::InputError;
 use crate::model::About;
 use crate::spectrum::transform;
@@ -47,13 +48,12 @@ impl Evidence {
             signals.push((point, samples));
         }
         let (place, rate) = (self.runs.len(), history.sample_rate);
-        let mut initial = Vec::new();
+        let mut recorded = Vec::new();
         for sensor in responses {
             let samples = signal(&history, &sensor)?;
-            if matches!(sensor.quantity, Quantity::Displacement | Quantity::Velocity) {
-                initial.push((sensor.clone(), samples[0]));
-            }
-            self.series.push(series(place, sensor, &samples, (history.start, rate)));
+            self.series
+                .push(series(place, sensor.clone(), &samples, (history.start, rate)));
+            recorded.push((sensor, samples));
         }
         self.runs.push(Run {
             name: run.file.clone(),
@@ -66,7 +66,7 @@ impl Evidence {
                 },
                 rate,
                 band_limited,
-                initial,
+                restarts: restarts(about, run.role, &recorded, rate),
             },
         });
         Ok(())

@@ -88,7 +88,7 @@ fn prepare<'a>(
         inputs,
         rate,
         band_limited,
-        initial,
+        restarts,
     } = &evidence.runs[run].stimulus
     else {
         return Err(no_input(about, evidence, run, "record"));
@@ -112,26 +112,28 @@ fn prepare<'a>(
         band: (0.0, *rate),
         nodes: 0,
     };
-    Ok(Replay::new(model, recorded, how, start(about, initial), readings))
+    let restarts = restarts
+        .iter()
+        .map(|restart| (restart.sample, states(about, &restart.seen)));
+    Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
 }
 
-/// At rest, each mass where its sensor saw it at first.
-fn start(about: &About, initial: &[(Point, f64)]) -> Vec<f64> {
-    let value = |state: &crate::model::State| {
-        let here = |point: &Point| {
-            let kind = match point.quantity {
-                Quantity::Displacement => StateKind::Position,
-                Quantity::Velocity => StateKind::Velocity,
-                Quantity::Acceleration | Quantity::Force => return false,
-            };
-            kind == state.kind && point.location == state.location && point.axis.name() == state.axis
+/// The states that were seen, with their values.
+fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
+    let place = |point: &Point| {
+        let kind = match point.quantity {
+            Quantity::Displacement => StateKind::Position,
+            Quantity::Velocity => StateKind::Velocity,
+            Quantity::Acceleration | Quantity::Force => return None,
         };
-        initial
+        about
+            .states
             .iter()
-            .find(|(point, _)| here(point))
-            .map_or(0.0, |(_, value)| *value)
+            .position(|s| s.kind == kind && s.location == point.location && s.axis == point.axis.name())
     };
-    about.states.iter().map(value).collect()
+    seen.iter()
+        .filter_map(|(point, value)| Some((place(point)?, *value)))
+        .collect()
 }
 
 fn no_input(about: &About, evidence: &Evidence, run: usize, location: &str) -> PredictError {

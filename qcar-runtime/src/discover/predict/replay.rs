@@ -23,8 +23,8 @@ pub struct Replay<'a> {
     model: &'a dyn Model,
     recorded: Vec<Recorded<'a>>,
     how: Between,
-    /// States at the start.
-    start: Vec<f64>,
+    /// At some samples, in their order: states and what they are then. All others go on, from zero at first.
+    restarts: Vec<(usize, Vec<(usize, f64)>)>,
     readings: Vec<Reading>,
     /// For each fineness that was needed, the inputs at each node.
     nodes: [OnceLock<Vec<Vec<f64>>>; FINER.len()],
@@ -39,14 +39,14 @@ impl<'a> Replay<'a> {
         model: &'a dyn Model,
         recorded: Vec<Recorded<'a>>,
         how: Between,
-        start: Vec<f64>,
+        restarts: Vec<(usize, Vec<(usize, f64)>)>,
         readings: Vec<Reading>,
     ) -> Self {
         Self {
             model,
             recorded,
             how,
-            start,
+            restarts,
             readings,
             nodes: Default::default(),
         }
@@ -84,13 +84,17 @@ impl<'a> Replay<'a> {
         let about = self.model.about();
         let mut constants = vec![0.0; about.constants];
         self.model.prepare(p, &mut constants);
-        let mut x = self.start.clone();
+        let mut x = vec![0.0; about.states.len()];
+        let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; about.outputs.len()];
         let mut stages = Stages::new(x.len());
         let h = 1.0 / (self.how.rate * steps as f64);
         let mut signals = vec![Vec::new(); self.readings.len()];
         for sample in inputs.chunks(2 * steps).enumerate() {
             let first = 2 * steps * sample.0;
+            if let Some((_, states)) = restarts.next_if(|(at, _)| *at == sample.0) {
+                states.iter().for_each(|&(state, value)| x[state] = value);
+            }
             self.model.outputs(&constants, &x, &inputs[first], &mut y);
             for (signal, reading) in signals.iter_mut().zip(&self.readings) {
                 signal.push(match *reading {
