@@ -5,7 +5,7 @@
 //! its calibration, is not in it: see [`nuisance`](super::nuisance).
 
 // Swept sines: the first harmonics at each frequency.
-mod sweep;
+pub(super) mod sweep;
 // Where a model that drifts is set right.
 mod restart;
 // Any other excitation: the responses themselves.

@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::gap::Gap;
 use super::nuisance::Nuisance;
 use super::predict::{Free, PredictError};
-use super::refit::{Refit, refit_with};
+use super::refit::{Refit, refit_with, settle};
 use crate::campaign::Role;
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -108,6 +108,7 @@ impl Explanandum<'_> {
     /// # Errors
     /// Where the model lacks what was measured.
     pub fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
+        let refit = settle(self.model, refit, evidence)?;
         let gap = Gap::of(self.model, &refit, evidence)?;
         let names = self.model.about().parameters.iter().map(|p| p.name.to_string());
         let named = names.zip(refit.values.as_slice().iter().copied()).collect();

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::evidence::{Evidence, Kind, Series};
-use super::predict::{PredictError, predict_sides};
+use super::predict::{PredictError, predict_sides, unsteady};
 use super::refit::{Refit, scaled};
 use crate::campaign::Role;
 use crate::model::Model;
@@ -51,8 +51,10 @@ impl Gap {
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
         for role in [Role::Fit, Role::HeldOut] {
-            for prediction in predict_sides(model, [&refit.values, &refit.side], &[], evidence, role)? {
+            let unsteady = unsteady(model, &refit.values, evidence, role)?;
+            for mut prediction in predict_sides(model, [&refit.values, &refit.side], &[], evidence, role)? {
                 let series = &evidence.series[prediction.series];
+                prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);
                 let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
                 scaled(series, differences, &mut residuals[prediction.series]);

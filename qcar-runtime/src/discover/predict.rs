@@ -8,10 +8,14 @@ mod nonlinear;
 mod input;
 // A model driven by them.
 mod replay;
+// What sweeps add to the balance, since they never settle.
+mod unsteady;
 // Time histories.
 mod history;
 // Rides over an obstacle.
 mod cleat;
+
+pub use unsteady::unsteady;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -45,6 +49,16 @@ pub struct Prediction {
     pub value: Vec<Complex<f64>>,
     /// For each free parameter the derivatives of the values.
     pub slopes: Vec<Vec<Complex<f64>>>,
+}
+
+impl Prediction {
+    /// Adds what was found to be missing; nothing where nothing was.
+    pub fn add(&mut self, missing: &[Complex<f64>]) {
+        self.value
+            .iter_mut()
+            .zip(missing)
+            .for_each(|(value, missing)| *value += missing);
+    }
 }
 
 /// Why a model says nothing of the evidence.

@@ -13,10 +13,10 @@ use nalgebra::{Complex, DMatrix};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::Nuisance;
-use super::predict::{Free, PredictError, Prediction, predict_sides};
+use super::predict::{Free, PredictError, Prediction, predict_sides, unsteady};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
-use crate::least_squares::{Bounds, Options, Problem, Stop, minimize};
+use crate::least_squares::{Bounds, Options, Outcome, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
 
@@ -101,55 +101,41 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let options = Options {
-        gradient: 1e-5,
-        cost: 1e-6,
-        step: 1e-6,
-        evaluations,
-    };
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
-    let count = posterior.sigmas.len();
-    let start: Vec<f64> = free
-        .iter()
-        .map(|free| values.as_slice()[free.parameter])
-        .chain(std::iter::repeat_n(0.0, count))
-        .collect();
-    let priors = posterior.sigmas.iter().map(|sigma| MOST * sigma);
-    let bounds = Bounds {
-        lower: free
-            .iter()
-            .map(|f| f.lower)
-            .chain(priors.clone().map(|most| -most))
-            .collect(),
-        upper: free.iter().map(|f| f.upper).chain(priors).collect(),
-    };
-    let outcome = minimize(&mut posterior, &start, &bounds, &options);
-    if let Some(error) = posterior.refused.take() {
-        return Err(error);
-    }
-    let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
-    let information = Information::new(&outcome.jacobian, &inside);
-    posterior.move_to(&outcome.x);
-    Ok(Refit {
-        values: posterior.values,
-        side: posterior.side,
-        estimate: outcome.x[..free.len()].to_vec(),
-        covariance: spread(&information, 0..free.len()),
-        coefficient_stderr: spread(&information, free.len()..free.len() + count)
-            .diagonal()
-            .map(f64::sqrt)
-            .as_slice()
-            .to_vec(),
-        at_bound: outcome.at_bound[..free.len()].to_vec(),
-        free: free.to_vec(),
-        coefficients: outcome.x[free.len()..][..posterior.nuisance.len()].to_vec(),
-        chi2: 2.0 * outcome.cost,
-        residuals: outcome.residual.len() - count,
-        nuisance: posterior.nuisance,
-        evaluations: outcome.evaluations,
-        stop: outcome.stop,
-    })
+    let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
+    start.resize(posterior.variables(), 0.0);
+    let outcome = posterior.search(&start, evaluations)?;
+    Ok(posterior.refit(outcome))
 }
+
+/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone does not look at: see
+/// [`unsteady`].
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
+    let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
+    if model.about().linear || !evidence.of_role(Role::Fit).any(swept) {
+        return Ok(refit);
+    }
+    let mut posterior = Posterior::new(
+        model,
+        refit.values.clone(),
+        &refit.free,
+        evidence,
+        refit.nuisance.clone(),
+    );
+    let mut settled = refit;
+    for _ in 0..ROUNDS {
+        posterior.unsteady = unsteady(model, &settled.values, evidence, Role::Fit)?;
+        let outcome = posterior.search(&posterior.place(&settled), MOST_EVALUATIONS)?;
+        settled = posterior.refit(outcome);
+    }
+    Ok(settled)
+}
+
+/// Rounds of a refit with what its sweeps add to their balance: the second has it from where the first arrived.
+const ROUNDS: usize = 2;
 
 /// True for a run that records one side of the car.
 fn of_one_side(run: &Run) -> bool {
@@ -191,6 +177,8 @@ struct Posterior<'a> {
     residuals: usize,
     /// Why the model cannot say anything of the evidence at all.
     refused: Option<PredictError>,
+    /// What the sweeps add to their balance, series by series.
+    unsteady: Vec<Vec<Complex<f64>>>,
 }
 
 impl<'a> Posterior<'a> {
@@ -207,7 +195,69 @@ impl<'a> Posterior<'a> {
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
+            unsteady: vec![Vec::new(); evidence.series.len()],
         }
+    }
+
+    /// The best place that is found from `start`.
+    fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
+        let options = Options {
+            gradient: 1e-5,
+            cost: 1e-6,
+            step: 1e-6,
+            evaluations,
+        };
+        let priors: Vec<f64> = self.sigmas.iter().map(|sigma| MOST * sigma).collect();
+        let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
+        let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
+        let bounds = Bounds {
+            lower: lower.collect(),
+            upper: upper.collect(),
+        };
+        let outcome = minimize(self, start, &bounds, &options);
+        self.refused.take().map_or(Ok(outcome), Err)
+    }
+
+    /// What was found.
+    fn refit(&mut self, outcome: Outcome) -> Refit {
+        let count = self.free.len();
+        let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
+        let information = Information::new(&outcome.jacobian, &inside);
+        self.move_to(&outcome.x);
+        Refit {
+            values: self.values.clone(),
+            side: self.side.clone(),
+            estimate: outcome.x[..count].to_vec(),
+            covariance: spread(&information, 0..count),
+            coefficient_stderr: self.coefficient_stderr(&information),
+            at_bound: outcome.at_bound[..count].to_vec(),
+            free: self.free.clone(),
+            coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
+            chi2: 2.0 * outcome.cost,
+            residuals: self.residuals,
+            nuisance: self.nuisance.clone(),
+            evaluations: outcome.evaluations,
+            stop: outcome.stop,
+        }
+    }
+
+    fn coefficient_stderr(&self, information: &Information) -> Vec<f64> {
+        let coefficients = self.free.len()..self.variables();
+        let errors = spread(information, coefficients).diagonal().map(f64::sqrt);
+        errors.as_slice().to_vec()
+    }
+
+    /// The place of a refit.
+    fn place(&self, refit: &Refit) -> Vec<f64> {
+        let factor =
+            |free: &Free| (refit.side.as_slice()[free.parameter] / refit.values.as_slice()[free.parameter]).ln();
+        let factors = self
+            .free
+            .iter()
+            .map(factor)
+            .map(|factor| if factor.is_finite() { factor } else { 0.0 });
+        let place = refit.estimate.iter().chain(&refit.coefficients).copied();
+        place.chain(factors).take(self.variables()).collect()
     }
 
     fn move_to(&mut self, x: &[f64]) {
@@ -293,8 +343,9 @@ impl Problem for Posterior<'_> {
             }
         };
         let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
-        for prediction in &predictions {
-            self.rows(prediction, x, &mut rows, &mut columns);
+        for mut prediction in predictions {
+            prediction.add(&self.unsteady[prediction.series]);
+            self.rows(&prediction, x, &mut rows, &mut columns);
         }
         rows.extend(
             x[self.free.len()..]

@@ -11,10 +11,10 @@ use crate::transmissibility::{Point, points, signal};
 
 /// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
 /// proportion.
-const ORDERS: usize = 3;
+pub(in crate::discover) const ORDERS: usize = 3;
 
 /// Wide enough for eight unknowns a line, and narrow enough to follow a mode.
-const AROUND: Neighbourhood = Neighbourhood {
+pub(in crate::discover) const AROUND: Neighbourhood = Neighbourhood {
     lines: 10,
     width: 0.035,
 };

@@ -132,15 +132,27 @@ pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> R
         field = best(fitted.collect(), entrants, stage);
         progress(&told(entrants, &field));
     }
-    let finalists = field.into_iter().map(|runner| {
-        let explanandum = &entrants[runner.entrant].explanandum;
+    let finalists = field.into_par_iter().map(|runner| {
+        let entrant = &entrants[runner.entrant];
+        let refit = runner.refit.ok_or(PredictError::NoNumber)?;
+        let explanation = entrant.explanandum.explanation(refit, looks.all)?;
         Ok(Finalist {
             entrant: runner.entrant,
-            score: runner.score,
-            explanation: explanandum.explanation(runner.refit.ok_or(PredictError::NoNumber)?, looks.all)?,
+            score: entrant.score(&explanation.refit),
+            explanation,
         })
     });
-    finalists.collect()
+    let mut finalists = finalists.collect::<Result<Vec<_>, _>>()?;
+    // What sweeps show beyond their steady harmonics is seen only now, and may change the order.
+    finalists.sort_by(|a, b| a.score.total_cmp(&b.score));
+    Ok(finalists)
+}
+
+impl Entrant<'_> {
+    /// Sum of squares with the penalty of the unknowns.
+    fn score(&self, refit: &Refit) -> f64 {
+        refit.chi2 + (refit.residuals as f64).ln() * self.unknowns as f64
+    }
 }
 
 impl Looks<'_> {
@@ -172,7 +184,7 @@ impl Runner {
             .explanandum
             .refit(&self.values, evidence, stage.evaluations)
             .ok()?;
-        let score = refit.chi2 + (refit.residuals as f64).ln() * entrant.unknowns as f64;
+        let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
             entrant: self.entrant,
             values: refit.values.clone(),

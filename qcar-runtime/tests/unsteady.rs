@@ -1,0 +1,159 @@
+//! Sweeps of an axle with dry friction, integrated in fine steps, from levels at which it sticks to those at which it
+//! slips, against what discovery predicts of them.
+
+#[path = "support/strut.rs"]
+mod strut;
+
+use std::collections::BTreeMap;
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use qcar_runtime::campaign::{Campaign, Role};
+use qcar_runtime::discover::evidence::Kind;
+use qcar_runtime::discover::predict::{predict, unsteady};
+use qcar_runtime::discover::refit::{refit, settle};
+use qcar_runtime::discover::{Evidence, Free, Gap};
+use qcar_runtime::model::Model;
+use qcar_runtime::response::parameters::Values;
+use strut::{Parts, Strut};
+
+const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 95.0, 9e5];
+const DRY: Parts = Parts {
+    powertrain: false,
+    friction: true,
+};
+const RATE: f64 = 500.0;
+/// Steps of the integration for each sample.
+const STEPS: usize = 8;
+const SECONDS: f64 = 34.0;
+const LEVELS: [(f64, &str); 3] = [(0.01, "fit"), (0.05, "fit"), (0.2, "held_out")];
+
+/// Velocity of the pad: a sine of constant amplitude that sweeps from 0.45 to 32 Hz, faded in and out.
+fn velocity(t: f64, level: f64) -> f64 {
+    let (first, octaves, length) = (0.45, 70.0f64.ln(), SECONDS - 2.0);
+    let phase = TAU * first * length / octaves * ((octaves * t / length).exp() - 1.0);
+    let edge = (t / 4.0).min(length - t).clamp(0.0, 1.0);
+    level * (PI / 2.0 * edge).sin().powi(2) * phase.sin()
+}
+
+/// The pad at every half step: position, velocity, acceleration.
+fn pad(level: f64) -> Vec<[f64; 3]> {
+    let half = 0.5 / (RATE * STEPS as f64);
+    let count = (SECONDS / half) as usize + 2;
+    let mut position = 0.0;
+    let at = |k: usize| {
+        let t = k as f64 * half;
+        let now = velocity(t, level);
+        let [before, after] = [-half, half].map(|by| velocity(t + by, level));
+        position += half * (now + velocity(t - half, level)) / 2.0;
+        [position, now, (after - before) / (2.0 * half)]
+    };
+    (0..count).map(at).collect()
+}
+
+/// Samples of pad, wheel and body by classical Runge-Kutta.
+fn record(model: &Strut, level: f64) -> String {
+    let (pad, h) = (pad(level), 1.0 / (RATE * STEPS as f64));
+    let n = model.about().states.len();
+    let f = |k: usize, x: &[f64]| {
+        let mut dx = vec![0.0; n];
+        model.derivative(&P, x, &[pad[k][0], pad[k][1], 0.0], &mut dx);
+        dx
+    };
+    let add = |x: &[f64], k: &[f64], h: f64| -> Vec<f64> { x.iter().zip(k).map(|(x, k)| x + h * k).collect() };
+    let mut x = vec![0.0; n];
+    let mut text = "time,pad,wheel,body\n".to_string();
+    for step in 0..(SECONDS * RATE) as usize * STEPS {
+        let k = 2 * step;
+        if step % STEPS == 0 {
+            let mut y = vec![0.0; 3];
+            model.outputs(&P, &x, &[pad[k][0], pad[k][1], 0.0], &mut y);
+            let _ = writeln!(text, "{:.4},{:.7},{:.7},{:.7}", step as f64 * h, pad[k][2], y[1], y[0]);
+        }
+        let k1 = f(k, &x);
+        let k2 = f(k + 1, &add(&x, &k1, 0.5 * h));
+        let k3 = f(k + 1, &add(&x, &k2, 0.5 * h));
+        let k4 = f(k + 2, &add(&x, &k3, h));
+        let slope: Vec<f64> = (0..n)
+            .map(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0)
+            .collect();
+        x = add(&x, &slope, h);
+    }
+    text
+}
+
+fn campaign(folder: &Path, model: &Strut) -> Campaign {
+    let mut toml = "format = 1\nname = \"dry\"\nmodel = \"strut\"\n".to_string();
+    for name in ["pad", "wheel", "body"] {
+        let _ = writeln!(
+            toml,
+            "[[channel]]\nname = \"{name}\"\nlocation = \"{name}\"\nside = \"left\"\naxis = \"z\"\n\
+             quantity = \"acceleration\"\nunit = \"m/s^2\""
+        );
+    }
+    for (run, (level, role)) in LEVELS.into_iter().enumerate() {
+        fs::write(folder.join(format!("{run}.csv")), record(model, level)).expect("a new file");
+        let _ = writeln!(
+            toml,
+            "[[run]]\nkind = \"sweep\"\nfile = \"{run}.csv\"\nrole = \"{role}\"\npeak_velocity = {level}\n\
+             start_frequency = 0.5\nend_frequency = 30.0\nspacing = \"logarithmic\"\nsample_rate = {RATE:?}"
+        );
+    }
+    fs::write(folder.join("campaign.toml"), toml).expect("a new file");
+    Campaign::open(folder).expect("it is a campaign")
+}
+
+fn values(model: &Strut, off: f64) -> Values {
+    let given = model.about().parameters.iter().zip(P).enumerate();
+    let given: BTreeMap<String, f64> = given
+        .map(|(k, (parameter, value))| (parameter.name.to_string(), if k >= 9 { off * value } else { value }))
+        .collect();
+    Values::resolve(model.about(), &given, &BTreeMap::new()).expect("every parameter is given")
+}
+
+/// The worst difference from the first harmonics, relative to these, with and without what is unsteady.
+fn worst(model: &Strut, evidence: &Evidence, role: Role) -> [f64; 2] {
+    let values = values(model, 1.0);
+    let added = unsteady(model, &values, evidence, role).expect("the model has the sensors");
+    let mut worst = [0.0; 2];
+    for mut prediction in predict(model, &values, &[], evidence, role).expect("the model has the sensors") {
+        let series = &evidence.series[prediction.series];
+        for worst in &mut worst {
+            let pairs = series.value.iter().zip(&prediction.value);
+            let errors = pairs.map(|(seen, said)| (seen - said).norm() / seen.norm());
+            if series.kind == Kind::Harmonic(1) {
+                *worst = errors.fold(*worst, f64::max);
+            }
+            prediction.add(&added[prediction.series]);
+        }
+    }
+    worst
+}
+
+#[test]
+fn what_never_settles_is_predicted_as_it_is_measured() {
+    let (folder, model) = (tempfile::tempdir().expect("a place for files"), Strut::new(DRY));
+    let campaign = campaign(folder.path(), &model);
+    let evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    for role in [Role::Fit, Role::HeldOut] {
+        let [steady, unsteady] = worst(&model, &evidence, role);
+        assert!(steady > 0.01, "{steady}");
+        assert!(unsteady < 0.003, "{unsteady}");
+    }
+    let free = |parameter: usize| Free {
+        parameter,
+        lower: 0.3 * P[parameter],
+        upper: 3.0 * P[parameter],
+    };
+    let free = [4, 9, 10].map(free);
+    let fitted = refit(&model, &values(&model, 1.2), &free, &evidence).expect("the model has the sensors");
+    let settled = settle(&model, fitted, &evidence).expect("the model has the sensors");
+    let gap = Gap::of(&model, &settled, &evidence).expect("the model has the sensors");
+    assert!(gap.fit < 1.0 && gap.held_out < 1.0, "{} {}", gap.fit, gap.held_out);
+    for (free, estimate) in settled.free.iter().zip(&settled.estimate) {
+        let error = estimate / P[free.parameter] - 1.0;
+        assert!(error.abs() < 0.01, "parameter {}: {error}", free.parameter);
+    }
+}
