@@ -142,7 +142,7 @@ pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> R
             explanation,
         })
     });
-    let mut finalists = finalists.collect::<Result<Vec<_>, _>>()?;
+    let mut finalists = finalists.collect::<Result<Vec<_>, PredictError>>()?;
     // What sweeps show beyond their steady harmonics is seen only now, and may change the order.
     finalists.sort_by(|a, b| a.score.total_cmp(&b.score));
     Ok(finalists)
