@@ -81,8 +81,7 @@ fn of_run(model: &dyn Model, values: &Values, evidence: &Evidence, run: usize) -
     let readings: Vec<Reading> = sensors
         .map(|signal| reading(about, &signal))
         .collect::<Result<_, SignalError>>()?;
-    let rest = vec![0.0; about.states.len()];
-    let replayed = Replay::new(model, vec![recorded], how, rest, readings).run(values.as_slice());
+    let replayed = Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice());
     let swept = Swept::new(signal, *rate, *band, ORDERS);
     let differences = balanced.into_par_iter().zip(replayed).map(|(balanced, replayed)| {
         let seen = seen(&swept, &replayed, &evidence.series[balanced.series]);
