@@ -184,6 +184,7 @@ impl Tyre {
     }
 
     /// Area in m² that the circle has in common with a flat road at `deflection` (m), equation 3.4 of the thesis.
+    #[inline]
     pub fn area(&self, deflection: f64) -> f64 {
         self.radius * self.radius * segment_area(deflection / self.radius)
     }

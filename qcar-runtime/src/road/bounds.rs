@@ -9,7 +9,7 @@ pub(crate) struct Circle {
     pub radius: f64,
 }
 
-/// Boxes around 8, 64, 512 … segments, level after level, and the highest ground of all.
+/// Boxes around 4, 16, 64 … segments, level after level, and the highest ground of all.
 #[derive(Clone, Debug)]
 pub(crate) struct Bounds {
     levels: Vec<Vec<Box>>,
@@ -23,7 +23,7 @@ struct Box {
 }
 
 /// Segments or boxes in the next larger box, as a power of two.
-const SHIFT: usize = 3;
+const SHIFT: usize = 2;
 /// What is nearer to the circle than this share of its radius squared is looked at piece by piece.
 const MARGIN: f64 = 1e-12;
 

@@ -44,6 +44,28 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         }
     }
 
+    /// Records a car that is at rest in state `x` until a time, s.
+    pub fn rest(&mut self, until: f64, x: &[f64]) {
+        let [_, dx, signals] = &mut self.room;
+        observe(&self.rolling, until, x, dx, signals);
+        while let Some((_, is_sample)) = self.grid.next(until.next_down()) {
+            self.record(is_sample);
+        }
+    }
+
+    /// Takes down the signals in the room.
+    fn record(&mut self, is_sample: bool) {
+        let signals = &self.room[2];
+        for (fine, y) in self.fine.iter_mut().zip(signals) {
+            fine.push(*y);
+        }
+        if let (true, [.., z, x, deflection]) = (is_sample, &signals[..]) {
+            self.force[0].push(*z);
+            self.force[1].push(*x);
+            self.area.push(self.rolling.tyre.area(*deflection));
+        }
+    }
+
     /// Each output at the samples.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
         self.fine.iter().map(|fine| self.grid.decimate(fine)).collect()
@@ -65,24 +87,16 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        let [x, dx, signals] = &mut self.room;
         let smooth = step.has_signals();
-        for (t, is_sample) in self.grid.on(step) {
+        while let Some((t, is_sample)) = self.grid.next(step.end) {
+            let [x, dx, signals] = &mut self.room;
             if smooth {
                 step.signals_at(t, signals);
             } else {
                 step.at(t, x);
                 observe(&self.rolling, t, x, dx, signals);
             }
-            for (fine, y) in self.fine.iter_mut().zip(signals.iter()) {
-                fine.push(*y);
-            }
-            if is_sample {
-                let [.., z, x, deflection] = signals[..] else { continue };
-                self.force[0].push(z);
-                self.force[1].push(x);
-                self.area.push(self.rolling.tyre.area(deflection));
-            }
+            self.record(is_sample);
         }
     }
 

@@ -115,7 +115,7 @@ impl<M: Model + ?Sized> System for Rig<'_, M> {
 
     fn accept(&mut self, step: &Step<'_>) {
         let (x, y) = &mut self.room;
-        for (t, is_sample) in self.grid.on(step) {
+        while let Some((t, is_sample)) = self.grid.next(step.end) {
             step.at(t, x);
             self.recorded.at(t, self.leg, &mut self.inputs);
             self.model.outputs(&self.constants, x, &self.inputs, y);

@@ -80,8 +80,9 @@ pub fn ride<M: Model + ?Sized>(
     let (static_deflection, traction) = (rolling.deflection(start, &x), rolling.traction);
 
     let about = car.model.about();
-    let span = (start, grid.end());
+    let span = (drive.reaches(&tyre).max(start), grid.end());
     let mut recorder = Recorder::new(rolling, grid, about.states.len(), about.outputs.len());
+    recorder.rest(span.0, &x);
     let effort = settings.integrate(about, &mut recorder, span, (drive.longest_step(&tyre), &[]), &mut x)?;
     Ok(Ride {
         time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
@@ -122,6 +123,13 @@ impl Drive<'_> {
     /// When the whole circle of the tyre stands before the first point of the road, s.
     fn start(&self, tyre: &Tyre) -> f64 {
         (self.road.extent()[0] - tyre.radius()) / self.speed
+    }
+
+    /// When the circle of the tyre comes over ground that is not level any more, s: until then a car at rest rests.
+    /// On a road that is level for ever it never does, and nothing is taken for granted.
+    fn reaches(&self, tyre: &Tyre) -> f64 {
+        let uneven = self.road.vertices().windows(2).find(|pair| pair[0][1] != pair[1][1]);
+        uneven.map_or(f64::NEG_INFINITY, |pair| (pair[0][0] - tyre.radius()) / self.speed)
     }
 
     /// The longest step that cannot pass over any part of the road unseen, s.

@@ -1,7 +1,5 @@
 //! Signals as a recorder would take them: on a fine grid, through an anti-alias filter, at the sample rate.
 
-use crate::solver::Step;
-
 /// The anti-alias filter: linear phase, without delay, flat within 0.02 % up to 0.4 of the sample rate.
 ///
 /// A signal is computed on a grid finer than the sample rate and low-passed by a sinc under a Kaiser window (J. F.
@@ -108,15 +106,12 @@ impl Grid {
         self.filter.decimate(fine)
     }
 
-    /// Times of the points that `step` reaches, each given once, and whether each is a sample.
-    pub fn on(&mut self, step: &Step<'_>) -> impl Iterator<Item = (f64, bool)> + use<'_> {
-        let (end, points) = (step.end, self.points());
-        std::iter::from_fn(move || {
-            let (point, time) = (self.next, self.time(self.next));
-            (point < points && time <= end).then(|| {
-                self.next += 1;
-                (time, self.is_sample(point))
-            })
+    /// The time of the next point up to `end` (s), given once, and whether it is a sample.
+    pub fn next(&mut self, end: f64) -> Option<(f64, bool)> {
+        let (point, time) = (self.next, self.time(self.next));
+        (point < self.points() && time <= end).then(|| {
+            self.next += 1;
+            (time, self.is_sample(point))
         })
     }
 

@@ -27,7 +27,7 @@ pub struct Step<'a> {
 }
 
 /// An error so far below the tolerance shows a smooth step.
-const SMOOTH: f64 = 0.1;
+const SMOOTH: f64 = 0.03;
 
 impl<'a> Step<'a> {
     /// The state where the step begins.

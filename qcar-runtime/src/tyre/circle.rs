@@ -1,5 +1,7 @@
 //! The circle's closed forms, accurate for the shortest arcs.
 
+use std::array;
+
 /// Terms of the power series below; the first one left out is below 1e-13 where they are used.
 const TERMS: usize = 12;
 /// Largest squared tangent of the half angle for the series of the arc tangent.
@@ -13,16 +15,23 @@ const DEFLECTION_SERIES: [f64; TERMS] = deflection_series();
 /// The angle of a sine and cosine: twice the arc tangent of its half, by the power series for all but the longest arcs.
 #[inline]
 pub(super) fn angle(sine: f64, cosine: f64) -> f64 {
-    let tangent = sine / (1.0 + cosine);
-    let squared = tangent * tangent;
-    if squared < SHORT_ARC {
-        2.0 * tangent * polynomial(&ARC_TANGENT_SERIES, squared)
+    angles([sine], [cosine])[0]
+}
+
+/// Several angles at once: the processor computes them side by side.
+#[inline]
+pub(super) fn angles<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> [f64; N] {
+    let tangent: [f64; N] = array::from_fn(|i| sine[i] / (1.0 + cosine[i]));
+    let squared = tangent.map(|tangent| tangent * tangent);
+    if squared.iter().all(|squared| *squared < SHORT_ARC) {
+        array::from_fn(|i| 2.0 * tangent[i] * polynomial(&ARC_TANGENT_SERIES, squared[i]))
     } else {
-        sine.atan2(cosine)
+        array::from_fn(|i| sine[i].atan2(cosine[i]))
     }
 }
 
 /// Area that the unit circle has in common with a flat road at `deflection` (0 to 2): equation 3.4 of the thesis.
+#[inline]
 pub fn segment_area(deflection: f64) -> f64 {
     let deflection = deflection.clamp(0.0, 2.0);
     let cosine = 1.0 - deflection;
@@ -34,7 +43,7 @@ pub fn segment_area(deflection: f64) -> f64 {
 #[inline]
 pub fn segment_deflection(area: f64) -> f64 {
     // Deflection of the parabola that osculates the circle: area = 4/3 sqrt(2 d³).
-    let parabolic = (area * area * (9.0 / 32.0)).cbrt();
+    let parabolic = (area * area * (9.0 / 32.0)).powf(1.0 / 3.0);
     let start = parabolic * polynomial(&DEFLECTION_SERIES, parabolic);
     if parabolic < SMALL_DEFLECTION {
         start

@@ -3,7 +3,9 @@
 //! The two meet at the turning point, where the circle moves along itself. At an angle θ ahead of it the circle
 //! advances with `v·n = w sin θ`, so in the frame of the turning point all integrals are those of sines and cosines.
 
-use super::circle::angle;
+use std::array;
+
+use super::circle::angles;
 use super::{combined, dot};
 
 /// Integrals over the arcs that advance, or over those that retreat; `n` is the normal out of the circle.
@@ -63,7 +65,7 @@ impl Sweeps {
     /// Adds the lower arc between two points of the circle, from the rear to the front, and says which angle it spans.
     #[inline]
     pub fn add(&mut self, from: [f64; 2], to: [f64; 2]) -> f64 {
-        let (from, to) = (self.rim(from), self.rim(to));
+        let [from, to] = self.rims([from, to]);
         if from.sine < 0.0 && 0.0 < to.sine {
             self.ahead = self.ahead.plus(&to.sweep, 1.0);
             self.behind = self.behind.plus(&from.sweep, -1.0);
@@ -95,22 +97,21 @@ impl Sweeps {
     }
 
     #[inline]
-    fn rim(&self, point: [f64; 2]) -> Rim {
-        let [x, z] = [point[0] * self.per_radius, point[1] * self.per_radius];
+    fn rims(&self, points: [[f64; 2]; 2]) -> [Rim; 2] {
+        let [along, down] = [self.along, [self.along[1], -self.along[0]]].map(|v| v.map(|v| v * self.per_radius));
         let (sine, cosine) = (
-            x * self.along[0] + z * self.along[1],
-            x * self.along[1] - z * self.along[0],
+            points.map(|point| dot(point, along)),
+            points.map(|point| dot(point, down)),
         );
-        let angle = angle(sine, cosine);
-        let moment = [0.5 * (angle - sine * cosine), 0.5 * sine * sine];
-        Rim {
-            angle,
-            sine,
+        let angle = angles(sine, cosine);
+        array::from_fn(|i| Rim {
+            angle: angle[i],
+            sine: sine[i],
             sweep: Sweep {
-                flux: 1.0 - cosine,
-                moment,
+                flux: 1.0 - cosine[i],
+                moment: [0.5 * (angle[i] - sine[i] * cosine[i]), 0.5 * sine[i] * sine[i]],
             },
-        }
+        })
     }
 }
 
