@@ -6,10 +6,14 @@
 //! elastic reversal of the friction; where the velocity is above a tenth of its peak for a sine.
 //!
 //! A gradient is that between wheel and body: where a sub-frame yields under the load, it is that of both in series.
+//! [`value_for`] takes them apart with a model.
 
 mod regression;
+// What a model has for gradients.
+mod rig;
 
 pub use regression::Estimate;
+pub use rig::{Slope, gradient, value_for};
 
 /// What a quasi-static cycle says.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]

@@ -5,11 +5,14 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::kc::{Estimate, KcError, SineSamples, cycle, sines};
+use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
+use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
+use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::json;
+use crate::parameters;
 use crate::table::{Table, number};
 
 // Start values in campaign.toml.
@@ -52,6 +55,9 @@ pub(crate) struct Gradient {
     pub unit: &'static str,
     /// The parameter of the thesis's table 3.1 that it measures.
     pub parameter: Option<&'static str>,
+    /// The value of that parameter with which the campaign's model has this gradient, its others at their start values:
+    /// larger than the gradient where a sub-frame yields. None where the model or its values cannot tell.
+    pub parameter_value: Option<f64>,
     /// The campaign's start value of that parameter.
     pub start: Option<f64>,
 }
@@ -97,6 +103,11 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
             remedy,
         )
         .into());
+    }
+    if let Some((model, values)) = model(campaign) {
+        found
+            .iter_mut()
+            .for_each(|gradient| take_apart(gradient, &model, &values));
     }
     Ok(found)
 }
@@ -157,8 +168,36 @@ fn gradient(
         uncertainty: of.uncertainty(),
         unit,
         parameter,
+        parameter_value: None,
         start,
     }
+}
+
+/// What is clamped on a K&C rig.
+const CLAMPED: &str = "body";
+
+/// The campaign's model with its start values; `None` where the campaign does not have them all.
+fn model(campaign: &Campaign) -> Option<(Loaded, Values)> {
+    let model = catalogue::of_campaign(campaign, None).ok()?;
+    let values = parameters::resolve(model.about(), [campaign.manifest().as_path()], &[]).ok()?;
+    model.check_inertias(values.as_slice()).ok()?;
+    Some((model, values))
+}
+
+/// Asks the model what a parameter must be for it to have a gradient.
+fn take_apart(gradient: &mut Gradient, model: &Loaded, values: &Values) {
+    let axis = if gradient.test == "longitudinal" { "x" } else { "z" };
+    let slope = if gradient.quantity == "damping" {
+        Slope::Damping
+    } else {
+        Slope::Stiffness
+    };
+    let mut parameters = model.about().parameters.iter();
+    let place = gradient
+        .parameter
+        .and_then(|name| parameters.position(|p| p.name == name));
+    gradient.parameter_value =
+        place.and_then(|place| kc::value_for(&**model, values, place, (CLAMPED, axis, slope), gradient.value));
 }
 
 fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
@@ -174,7 +213,16 @@ fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
 }
 
 fn text(of: &[Gradient]) -> String {
-    let mut table = Table::new(["test", "quantity", "unit", "value", "uncertainty", "parameter", "start"]);
+    let mut table = Table::new([
+        "test",
+        "quantity",
+        "unit",
+        "value",
+        "uncertainty",
+        "parameter",
+        "parameter_value",
+        "start",
+    ]);
     for gradient in of {
         table.row(vec![
             gradient.test.into(),
@@ -183,6 +231,7 @@ fn text(of: &[Gradient]) -> String {
             number(gradient.value, 4),
             number(gradient.uncertainty, 2),
             gradient.parameter.unwrap_or("-").into(),
+            gradient.parameter_value.map_or("-".into(), |value| number(value, 4)),
             gradient.start.map_or("-".into(), |start| number(start, 4)),
         ]);
     }

@@ -16,7 +16,8 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
     let mut problems = Vec::new();
     for gradient in gradients.iter().filter(|gradient| gradient.start.is_some()) {
         let name = gradient.parameter.unwrap_or_default();
-        let value: f64 = format!("{:.4e}", gradient.value).parse().unwrap_or(gradient.value);
+        let exact = gradient.parameter_value.unwrap_or(gradient.value);
+        let value: f64 = format!("{exact:.4e}").parse().unwrap_or(exact);
         match campaign.parameter(name).and_then(|parameter| parameter.range) {
             Some((low, high)) if !(low..=high).contains(&value) => {
                 let place = Place::Name(format!("parameters.{name}.range"));

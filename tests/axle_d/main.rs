@@ -1,0 +1,7 @@
+//! The benchmark's car, axle_d on an area tyre: over a cleat and on a K&C rig.
+
+#[path = "../../benches/cleat/mod.rs"]
+mod cleat;
+
+mod cleat_run;
+mod kc_rig;
