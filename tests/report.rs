@@ -1,0 +1,183 @@
+//! The report as a reader meets it: in a browser, wide and narrow, light and dark, without a network.
+
+use std::fs;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use serde_json::Value;
+
+const PROBE: &str = include_str!("browser/probe.js");
+
+/// A page around the report, since a window cannot be as narrow as a telephone.
+const FRAME: &str = "<!doctype html><script>addEventListener('message', (event) => \
+                     document.documentElement.setAttribute('data-found', event.data));</script>";
+
+/// What the browser is called.
+const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
+
+/// A campaign with nothing missing, and one that hides an effect.
+const CAMPAIGNS: [(&str, &str); 2] = [("axle_a_rig", "none"), ("axle_c_study", "found")];
+
+#[test]
+fn a_study_writes_all_that_it_promises() {
+    let folder = tempfile::tempdir().unwrap();
+    let (campaign, verdict) = CAMPAIGNS[0];
+    let said = study(campaign, folder.path());
+    let result: Value = serde_json::from_str(&fs::read_to_string(folder.path().join("study.json")).unwrap()).unwrap();
+    assert_eq!(result["discover"]["verdict"], verdict, "{said}");
+    for file in [
+        "report.html",
+        "fit/parameters.toml",
+        "fit/transmissibility.csv",
+        "kc/gradients.json",
+        "cleat/errors.csv",
+        "cleat/v30_h30.csv",
+        "discovery/discovery.json",
+    ] {
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+    let report = folder.path().join("report.html").display().to_string();
+    assert!(said.contains(&report), "{said}");
+}
+
+#[test]
+fn the_report_is_whole_in_a_browser() {
+    let Some(browser) = browser() else {
+        // Past the capture of the test's output, so that nobody takes this for a check.
+        let mut out = std::io::stderr();
+        writeln!(
+            out,
+            "not checked: the report in a browser, since Chromium is absent (apt-get install chromium)"
+        )
+        .unwrap();
+        return;
+    };
+    for (campaign, verdict) in CAMPAIGNS {
+        let folder = tempfile::tempdir().unwrap();
+        let said = study(campaign, folder.path());
+        for (width, theme) in [(1280, "light"), (1280, "dark"), (400, "light"), (400, "dark")] {
+            let found = look(&browser, folder.path(), width, theme);
+            check(&found, width, theme);
+            assert_eq!(verdict == "found", figures(&found).contains(&"gap-after"), "{said}");
+        }
+    }
+}
+
+fn check(found: &Value, width: u64, theme: &str) {
+    let place = format!("{width} px, {theme}: {found}");
+    for list in ["errors", "violations", "blank", "requests"] {
+        assert_eq!(found[list], Value::Array(Vec::new()), "{list} at {place}");
+    }
+    assert_eq!(found["width"], width, "{place}");
+    assert_eq!(found["overflow"], 0, "{place}");
+    assert_eq!(found["unlabelled"], 0, "{place}");
+    assert_eq!(found["bad_numbers"], 0, "{place}");
+    assert_eq!(found["sections"].as_array().unwrap().len(), 10, "{place}");
+    for figure in [
+        "axle-z",
+        "axle-x",
+        "rig-magnitude",
+        "rig-phase",
+        "rig-coherence",
+        "modes-before",
+        "trace",
+        "variant",
+        "gap-before",
+    ] {
+        assert!(figures(found).contains(&figure), "no {figure} at {place}");
+    }
+    assert!(found["keyboard"]["plot"].as_u64().unwrap() > 2, "{place}");
+    assert!(
+        found["keyboard"]["map"]
+            .as_str()
+            .unwrap()
+            .contains("times the uncertainty"),
+        "{place}"
+    );
+    assert_ne!(found["themes"][0], found["themes"][1], "{place}");
+}
+
+fn figures(found: &Value) -> Vec<&str> {
+    found["figures"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(Value::as_str)
+        .collect()
+}
+
+fn study(campaign: &str, out: &Path) -> String {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("models/campaigns")
+        .join(campaign);
+    let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .arg("study")
+        .args([&campaign, Path::new("--out"), out])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn browser() -> Option<PathBuf> {
+    let path = std::env::var_os("PATH")?;
+    let folders: Vec<PathBuf> = std::env::split_paths(&path).collect();
+    let candidates = BROWSERS
+        .iter()
+        .flat_map(|name| folders.iter().map(move |folder| folder.join(name)));
+    candidates.into_iter().find(|file| file.is_file())
+}
+
+/// Opens the report with the probe before its scripts, and gives what that has found.
+fn look(browser: &Path, folder: &Path, width: u64, theme: &str) -> Value {
+    let report = fs::read_to_string(folder.join("report.html")).unwrap();
+    let opened = report
+        .replacen(
+            "<html lang=\"en\">",
+            &format!("<html lang=\"en\" data-theme=\"{theme}\">"),
+            1,
+        )
+        .replacen("<style>", &format!("<script>{PROBE}</script><style>"), 1);
+    fs::write(folder.join("probed.html"), opened).unwrap();
+    let page = folder.join("frame.html");
+    let frame =
+        format!("{FRAME}<iframe src=\"probed.html\" width=\"{width}\" height=\"900\" frameborder=\"0\"></iframe>");
+    fs::write(&page, frame).unwrap();
+    let profile = tempfile::tempdir().unwrap();
+    let output = Command::new(browser)
+        .args([
+            "--headless",
+            "--no-sandbox",
+            "--disable-gpu",
+            "--no-first-run",
+            "--hide-scrollbars",
+        ])
+        .args([
+            "--disable-background-networking",
+            "--disable-component-update",
+            "--disable-sync",
+        ])
+        .args([
+            "--host-resolver-rules=MAP * ~NOTFOUND",
+            "--virtual-time-budget=10000",
+            "--dump-dom",
+        ])
+        .arg("--window-size=1400,1000")
+        .arg(format!("--user-data-dir={}", profile.path().display()))
+        .arg(format!("file://{}", page.display()))
+        .output()
+        .unwrap();
+    let dom = String::from_utf8_lossy(&output.stdout);
+    let found = dom
+        .split("data-found=\"")
+        .nth(1)
+        .and_then(|rest| rest.split('"').next());
+    let found = found.unwrap_or_else(|| panic!("the probe said nothing: {}", String::from_utf8_lossy(&output.stderr)));
+    let json = found
+        .replace("&quot;", "\"")
+        .replace("&lt;", "<")
+        .replace("&gt;", ">")
+        .replace("&amp;", "&");
+    serde_json::from_str(&json).unwrap()
+}
