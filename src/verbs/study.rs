@@ -65,7 +65,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
     put(&arguments.out, "report.html", &report::page(&title, &contents))?;
     let result = match arguments.format {
-        Format::Text => summary::text(&study, &arguments.out),
+        Format::Text => summary::text(&study, &contents.result.summary, &arguments.out),
         Format::Json => json,
     };
     if study.fitted.fit.converged {

@@ -42,7 +42,8 @@ pub struct Result<'a> {
     pub campaign: &'a str,
     /// The name of the model.
     pub model: &'a str,
-    summary: Summary,
+    /// The answer.
+    pub summary: Summary,
     fit: fitted::Result<'a>,
     kc: &'a [Gradient],
     modes: Shapes,
@@ -77,13 +78,14 @@ impl<'a> Contents<'a> {
     pub fn of(study: &'a Study) -> Self {
         let discovery = &study.answer.discovery;
         let after = study.after.as_ref();
+        let rig = ratios(study);
         Contents {
-            result: Result::of(study),
+            result: Result::of(study, summary(study, &rig)),
             axles: Axles {
                 before: Axle::of(&study.compiled, study.fitted.values().as_slice()),
                 after: after.map(|after| Axle::of(&after.compiled, after.values.as_slice())),
             },
-            rig: ratios(study),
+            rig,
             track: track(study),
             gap_map: GapMap {
                 before: patches(&discovery.before.gap.tiles),
@@ -98,11 +100,11 @@ impl<'a> Contents<'a> {
 }
 
 impl<'a> Result<'a> {
-    fn of(study: &'a Study) -> Self {
+    fn of(study: &'a Study, summary: Summary) -> Self {
         Result {
             campaign: &study.fitted.campaign.name,
             model: &study.fitted.fit.model,
-            summary: summary(study),
+            summary,
             fit: fitted::result(&study.fitted),
             kc: &study.gradients,
             modes: shapes(study),

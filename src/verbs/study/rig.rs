@@ -19,7 +19,8 @@ use crate::verbs::fit::files::{Compared, compare};
 #[derive(Serialize)]
 pub struct Ratio {
     run: String,
-    role: &'static str,
+    /// `fit` or `held_out`.
+    pub role: &'static str,
     channel: String,
     /// True where the cost holds it.
     fitted: bool,
@@ -32,8 +33,10 @@ pub struct Ratio {
     start: Polar,
     before: Polar,
     after: Option<Polar>,
-    quality_before: Quality,
-    quality_after: Option<Quality>,
+    /// Of the fitted model.
+    pub quality_before: Quality,
+    /// Of the model with what it lacked.
+    pub quality_after: Option<Quality>,
 }
 
 /// Magnitude and phase.

@@ -5,10 +5,11 @@ use std::fmt::Write;
 use std::path::Path;
 
 use qcar_runtime::discover::search::Verdict;
-use qcar_runtime::fit::report::ChannelFit;
+use qcar_runtime::fit::quality::Quality;
 use serde::Serialize;
 
 use super::gather::{Study, Track};
+use super::rig::Ratio;
 use crate::table::{Table, number};
 use crate::verbs::discover::render::sentence;
 use crate::verbs::simulate::compared::Sizes;
@@ -20,46 +21,53 @@ pub struct Summary {
     pub missing: String,
     /// The words' first one: `none`, `found`, `class`, `unknown`.
     pub verdict: Verdict,
-    /// Fit percentages of the fitted and of the held-out runs.
-    pub fit: BTreeMap<&'static str, Percent>,
+    /// Mean fit percentages of the channels of the fitted and of the held-out runs.
+    pub rig_fit: BTreeMap<&'static str, Percent>,
 }
 
-/// The lowest and the mean of the fit percentages over all channels.
+/// Of the fitted model, and of the model with what it lacked.
 #[derive(Serialize)]
 pub struct Percent {
-    mean_magnitude: f64,
-    worst_magnitude: f64,
-    mean_phase: f64,
+    magnitude: BeforeAfter,
+    phase: BeforeAfter,
 }
 
-/// The answer of a study.
-pub fn summary(of: &Study) -> Summary {
+#[derive(Serialize)]
+struct BeforeAfter {
+    before: f64,
+    after: Option<f64>,
+}
+
+/// The answer of a study with these ratios.
+pub fn summary(of: &Study, ratios: &[Ratio]) -> Summary {
     let roles = ["fit", "held_out"].into_iter();
     Summary {
         missing: sentence(&of.answer),
         verdict: of.answer.discovery.verdict,
-        fit: roles
-            .filter_map(|role| Some((role, percent(&of.fitted.fit.channels, role)?)))
-            .collect(),
+        rig_fit: roles.filter_map(|role| Some((role, percent(ratios, role)?))).collect(),
     }
 }
 
-fn percent(of: &[ChannelFit], role: &str) -> Option<Percent> {
-    let of: Vec<&ChannelFit> = of.iter().filter(|channel| channel.role == role).collect();
-    let mean = |value: fn(&ChannelFit) -> f64| of.iter().map(|channel| value(channel)).sum::<f64>() / of.len() as f64;
-    let magnitudes = of.iter().map(|channel| channel.quality.fit_magnitude);
+fn percent(of: &[Ratio], role: &str) -> Option<Percent> {
+    let of: Vec<&Ratio> = of.iter().filter(|ratio| ratio.role == role).collect();
+    let both = |value: fn(&Quality) -> f64| {
+        let before: f64 = of.iter().map(|ratio| value(&ratio.quality_before)).sum();
+        let after: Option<f64> = of.iter().map(|ratio| ratio.quality_after.as_ref().map(value)).sum();
+        BeforeAfter {
+            before: before / of.len() as f64,
+            after: after.map(|after| after / of.len() as f64),
+        }
+    };
     (!of.is_empty()).then(|| Percent {
-        mean_magnitude: mean(|channel| channel.quality.fit_magnitude),
-        mean_phase: mean(|channel| channel.quality.fit_phase),
-        worst_magnitude: magnitudes.fold(f64::INFINITY, f64::min),
+        magnitude: both(|quality| quality.fit_magnitude),
+        phase: both(|quality| quality.fit_phase),
     })
 }
 
 /// What the terminal gets.
-pub fn text(of: &Study, folder: &Path) -> String {
-    let summary = summary(of);
+pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
     let mut out = format!("{}: {}\n\n", of.fitted.campaign.name, summary.missing);
-    out += &fits(&summary);
+    out += &fits(summary);
     if let Some(track) = &of.track {
         let _ = write!(out, "\n{}", cleats(track));
     }
@@ -79,10 +87,18 @@ pub fn text(of: &Study, folder: &Path) -> String {
 }
 
 fn fits(of: &Summary) -> String {
-    let mut table = Table::new(["rig_fit", "magnitude_%", "worst_%", "phase_%"]);
-    for (role, percent) in &of.fit {
-        let numbers = [percent.mean_magnitude, percent.worst_magnitude, percent.mean_phase];
-        let cells = numbers.map(|value| format!("{value:.1}"));
+    let mut table = Table::new([
+        "rig_fit_%",
+        "magnitude_before",
+        "magnitude_after",
+        "phase_before",
+        "phase_after",
+    ]);
+    for (role, percent) in &of.rig_fit {
+        let cells = [&percent.magnitude, &percent.phase].into_iter().flat_map(|own| {
+            let after = own.after.map_or("-".into(), |after| format!("{after:.1}"));
+            [format!("{:.1}", own.before), after]
+        });
         table.row(std::iter::once(role.to_string()).chain(cells).collect());
     }
     table.text()
