@@ -13,6 +13,8 @@ mod history;
 // Rides over an obstacle: their impact and after-shake.
 pub(super) mod cleat;
 pub mod means;
+// Quasi-static K&C cycles.
+pub(super) mod travel;
 
 use means::Means;
 use nalgebra::Complex;
@@ -82,6 +84,8 @@ pub enum Stimulus {
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
+    /// A K&C rig that moved the wheel slowly along an axis, against the body.
+    Travel(Axis),
 }
 
 /// A ride over an obstacle at constant speed.
@@ -116,7 +120,7 @@ impl Stimulus {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),
             Stimulus::History { inputs, .. } => Some(&inputs.signals[0].0),
-            Stimulus::Cleat(_) => None,
+            Stimulus::Cleat(_) | Stimulus::Travel(_) => None,
         }
     }
 }
@@ -147,6 +151,8 @@ pub enum Kind {
     Time,
     /// Means around a time (s) of a passage, as [`Means`] takes them.
     Passage,
+    /// Forces at a travel (m), both positive in compression, or forwards.
+    Travel,
 }
 
 impl Kind {
@@ -162,7 +168,7 @@ impl Kind {
     pub fn complex(self) -> bool {
         match self {
             Kind::Harmonic(_) => true,
-            Kind::Time | Kind::Passage => false,
+            Kind::Time | Kind::Passage | Kind::Travel => false,
         }
     }
 
@@ -170,7 +176,7 @@ impl Kind {
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
-            Kind::Time | Kind::Passage => None,
+            Kind::Time | Kind::Passage | Kind::Travel => None,
         }
     }
 }
@@ -258,6 +264,8 @@ impl Evidence {
             Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
             Test::TimeHistory { band_limited, .. } => self.add_history(campaign, about, run, *band_limited),
             Test::Cleat { .. } => self.add_cleat(campaign, about, run),
+            Test::Bounce => self.add_travel(campaign, about, run, Axis::Z),
+            Test::Longitudinal => self.add_travel(campaign, about, run, Axis::X),
             _ => Ok(()),
         }
     }

@@ -182,7 +182,7 @@ impl Nuisance {
         let form = SENSOR.iter().position(|shape| shape.form == Form::Offset)?;
         let power: f64 = series.value.iter().map(|value| value.norm_sqr()).sum();
         let rms = (power / series.value.len() as f64).sqrt();
-        (series.kind == Kind::Time).then_some((place * SENSOR.len() + form, rms))
+        matches!(series.kind, Kind::Time | Kind::Travel).then_some((place * SENSOR.len() + form, rms))
     }
 
     /// For each value of a series, what each of the coefficients adds to its logarithm.
@@ -197,7 +197,7 @@ impl Nuisance {
                 slopes
             }
             // Over a wide band the mean gain is what counts.
-            Kind::Passage => self.gain(series).into_iter().collect(),
+            Kind::Passage | Kind::Travel => self.gain(series).into_iter().collect(),
             // Driven by what was recorded, a gain is what parameters are too: it stays with the uncertainty of the values.
             Kind::Time => Vec::new(),
         }

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::search::{Finding, Rival, Verdict};
 use qcar_runtime::transmissibility::Point;
@@ -48,8 +49,10 @@ struct Where {
     channel: String,
     harmonic: Option<usize>,
     band_hz: Option<(f64, f64)>,
-    /// Where the values are no harmonics.
+    /// Where the values belong to times.
     window_s: Option<(f64, f64)>,
+    /// Where they belong to a travel of the wheel.
+    travel_m: Option<(f64, f64)>,
     level: f64,
     strength: f64,
 }
@@ -132,7 +135,8 @@ fn place(tile: &Tile) -> Where {
         channel: channel(&tile.sensor),
         harmonic: tile.kind.order(),
         band_hz: tile.kind.order().map(|_| tile.span),
-        window_s: tile.kind.order().is_none().then_some(tile.span),
+        window_s: matches!(tile.kind, Kind::Time | Kind::Passage).then_some(tile.span),
+        travel_m: (tile.kind == Kind::Travel).then_some(tile.span),
         level: tile.level,
         strength: tile.strength,
     }

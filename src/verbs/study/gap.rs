@@ -56,6 +56,7 @@ pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
             Kind::Harmonic(_) => "harmonic",
             Kind::Time => "time",
             Kind::Passage => "passage",
+            Kind::Travel => "travel",
         },
         harmonic: tile.kind.order(),
         span: (rounded(tile.span.0), rounded(tile.span.1)),
