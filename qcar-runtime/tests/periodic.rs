@@ -3,8 +3,9 @@
 #[path = "support/strut.rs"]
 mod strut;
 
-use qcar_runtime::model::Model;
+use qcar_runtime::model::{Model, Quantity, SignalKind};
 use qcar_runtime::response::periodic::{Drive, Periodic};
+use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
 use std::f64::consts::TAU;
 use strut::{Parts, Strut};
 
@@ -80,6 +81,40 @@ fn dry_friction_shows_the_harmonics_that_integration_finds() {
                 let error = (found[order + 1].re - re).hypot(found[order + 1].im - im) / scale;
                 assert!(error < 4e-3, "{} Hz, harmonic {}: {error}", drive.frequency, order + 1);
             }
+        }
+    }
+}
+
+#[test]
+fn a_replayed_sine_settles_to_the_cycle_of_harmonic_balance() {
+    let (model, per_period, periods) = (Strut::new(DRY), 270, 40);
+    // The balance is walked to: each frequency begins with the cycle of the one before.
+    let walk: Vec<Drive> = (0..21).map(|k| drive(1.4 * 1.05f64.powi(k), 0.1)).collect();
+    let cycles = Periodic::new(&model, 0, 15).walk(&P, &walk, &[0, 1], &[]);
+    let (drive, cycle) = (walk[20], &cycles[20]);
+    assert!(cycle.converged);
+    let rate = drive.frequency * f64::from(per_period);
+    let angle = |k: i32| TAU * f64::from(k) / f64::from(per_period);
+    let pad: Vec<f64> = (0..periods * per_period)
+        .map(|k| drive.amplitude * angle(k).cos())
+        .collect();
+    let record = Record {
+        excitation: 0,
+        kind: SignalKind::Motion(Quantity::Acceleration),
+        samples: &pad,
+    };
+    let recorded = Recorded::new(model.about(), &[record], rate, Between::BandLimited).unwrap();
+    let replayed = replay(&model, &P, &recorded, &Settings::default()).unwrap();
+    for (found, samples) in cycle.outputs.iter().zip(&replayed.outputs) {
+        let last = &samples[samples.len() - per_period as usize..];
+        for (order, expected) in found.iter().enumerate().skip(1).take(3) {
+            let sum = |part: fn(f64) -> f64| {
+                let terms = last.iter().zip(0..).map(|(y, k)| y * part(order as f64 * angle(k)));
+                2.0 / f64::from(per_period) * terms.sum::<f64>()
+            };
+            let (re, im) = (sum(f64::cos), -sum(f64::sin));
+            let error = (expected.re - re).hypot(expected.im - im) / found[1].norm();
+            assert!(error < 4e-3, "harmonic {order}: {error}");
         }
     }
 }

@@ -407,6 +407,81 @@ fn a_stiff_problem_stops_with_its_reason() {
     assert!(report.to_string().contains("too stiff"), "{report}");
 }
 
+#[test]
+fn the_fastest_mode_sets_the_pace_before_steps_fail() {
+    // Slow swings of a mass on a spring beside a mode that dies within a millisecond.
+    let two = |t: f64, x: &[f64], dx: &mut [f64]| {
+        dx[0] = x[1];
+        dx[1] = -30.0 * x[0] + 0.1 * x[2];
+        dx[2] = -2000.0 * (x[2] - t.sin());
+    };
+    let report = run(
+        &mut sampled(two, vec![]),
+        settings(1e-6, 3, 1.0),
+        2.0,
+        &mut [1.0, 0.0, 0.0],
+    );
+    // An explicit method of this kind damps at most 5.7 a step.
+    let fewest = 2.0 * 2000.0 / 5.7;
+    assert!(report.effort.rejected < 5, "{:?}", report.effort);
+    assert!((report.effort.accepted as f64) < 1.2 * fewest, "{:?}", report.effort);
+}
+
+/// An oscillator whose displacement and power are signals.
+struct Watched {
+    seen: Vec<(f64, [f64; 2])>,
+    smooth: usize,
+}
+
+impl System for Watched {
+    fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        let (dx, signals) = dx.split_at_mut(2);
+        oscillator(t, x, dx);
+        signals.copy_from_slice(&[x[0], x[1] * dx[1]]);
+    }
+
+    fn signals(&self) -> usize {
+        2
+    }
+
+    fn accept(&mut self, step: &Step<'_>) {
+        if step.has_signals() {
+            self.smooth += 1;
+            for part in [0.0, 0.2, 0.5, 0.8, 1.0] {
+                let t = step.start + part * (step.end - step.start);
+                let mut signals = [0.0; 2];
+                step.signals_at(t, &mut signals);
+                self.seen.push((t, signals));
+            }
+        }
+    }
+}
+
+#[test]
+fn signals_come_with_smooth_steps() {
+    let mut watched = Watched {
+        seen: vec![],
+        smooth: 0,
+    };
+    // The longest step keeps the error far below the tolerance.
+    let report =
+        DormandPrince::new(settings(1e-5, 2, 0.01), 0).integrate(&mut watched, (0.0, 2.0), &[], &mut [1.0, 0.0]);
+    assert_eq!((report.reason, watched.smooth), (Reason::End, report.effort.accepted));
+    for (t, [displacement, power]) in watched.seen {
+        let h = 1e-6;
+        let v = (oscillator_exact(t + h) - oscillator_exact(t - h)) / (2.0 * h);
+        let a = -OMEGA * OMEGA * oscillator_exact(t) - 2.0 * ZETA * OMEGA * v;
+        assert!((displacement - oscillator_exact(t)).abs() < 1e-6, "at {t}");
+        assert!((power - v * a).abs() < 1e-6 * OMEGA.powi(3), "at {t}");
+    }
+    let mut fixed = Watched {
+        seen: vec![],
+        smooth: 0,
+    };
+    let _ = Rk4::new(0.01, 1000, 2, 0).integrate(&mut fixed, (0.0, 2.0), &[], &mut [1.0, 0.0]);
+    assert_eq!(fixed.smooth, 0, "a method without an estimate of its error cannot know");
+}
+
 /// A driven wheel hop with a hardening spring and a digressive damper.
 fn nonlinear(t: f64, x: &[f64], dx: &mut [f64]) {
     dx[0] = x[1];

@@ -52,20 +52,39 @@ impl AntiAlias {
         let mut out: Vec<f64> = from(reach).iter().map(|y| self.taps[0] * y).collect();
         // At the distance of whole samples the taps vanish: of two points a sample, every other one.
         let taps = self.taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
-        for (distance, tap) in taps {
-            let beside = from(reach - distance).iter().zip(from(reach + distance));
-            out.iter_mut()
-                .zip(beside)
+        let beside: Vec<_> = taps
+            .map(|(distance, tap)| (*tap, from(reach - distance), from(reach + distance)))
+            .collect();
+        // A block of samples stays in registers while all taps add to it.
+        let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
+        for (block, out) in blocks.iter_mut().enumerate() {
+            let at = block * BLOCK..(block + 1) * BLOCK;
+            for (tap, before, after) in &beside {
+                let sides = before[at.clone()].iter().zip(&after[at.clone()]);
+                out.iter_mut()
+                    .zip(sides)
+                    .for_each(|(out, (a, b))| *out += tap * (a + b));
+            }
+        }
+        let at = samples - rest.len();
+        for (tap, before, after) in &beside {
+            let sides = before[at..].iter().zip(&after[at..]);
+            rest.iter_mut()
+                .zip(sides)
                 .for_each(|(out, (a, b))| *out += tap * (a + b));
         }
         out
     }
 }
 
+/// Samples that are filtered together.
+const BLOCK: usize = 8;
+
 /// The fine grid of a recording, gone through step by step.
 pub(super) struct Grid {
     filter: AntiAlias,
-    rate: f64,
+    /// Between points, s.
+    spacing: f64,
     samples: usize,
     next: usize,
 }
@@ -75,7 +94,7 @@ impl Grid {
     pub fn new(rate: f64, samples: usize, oversampling: usize) -> Self {
         Self {
             filter: AntiAlias::new(oversampling),
-            rate,
+            spacing: 1.0 / (rate * oversampling as f64),
             samples,
             next: 0,
         }
@@ -116,7 +135,8 @@ impl Grid {
     }
 
     fn time(&self, point: usize) -> f64 {
-        (point as f64 / self.filter.oversampling as f64 - AntiAlias::REACH as f64) / self.rate
+        let first = AntiAlias::REACH * self.filter.oversampling;
+        (point as f64 - first as f64) * self.spacing
     }
 
     fn is_sample(&self, point: usize) -> bool {
