@@ -52,33 +52,15 @@ impl AntiAlias {
         let mut out: Vec<f64> = from(reach).iter().map(|y| self.taps[0] * y).collect();
         // At the distance of whole samples the taps vanish: of two points a sample, every other one.
         let taps = self.taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
-        let beside: Vec<_> = taps
-            .map(|(distance, tap)| (*tap, from(reach - distance), from(reach + distance)))
-            .collect();
-        // A block of samples stays in registers while all taps add to it.
-        let (blocks, rest) = out.as_chunks_mut::<BLOCK>();
-        for (block, out) in blocks.iter_mut().enumerate() {
-            let at = block * BLOCK..(block + 1) * BLOCK;
-            for (tap, before, after) in &beside {
-                let sides = before[at.clone()].iter().zip(&after[at.clone()]);
-                out.iter_mut()
-                    .zip(sides)
-                    .for_each(|(out, (a, b))| *out += tap * (a + b));
-            }
-        }
-        let at = samples - rest.len();
-        for (tap, before, after) in &beside {
-            let sides = before[at..].iter().zip(&after[at..]);
-            rest.iter_mut()
-                .zip(sides)
+        for (distance, tap) in taps {
+            let beside = from(reach - distance).iter().zip(from(reach + distance));
+            out.iter_mut()
+                .zip(beside)
                 .for_each(|(out, (a, b))| *out += tap * (a + b));
         }
         out
     }
 }
-
-/// Samples that are filtered together.
-const BLOCK: usize = 8;
 
 /// The fine grid of a recording, gone through step by step.
 pub(super) struct Grid {
