@@ -17,11 +17,12 @@ const STYLE: [&str; 3] = [
 ];
 
 /// In the order in which they use each other; the last one starts.
-const SCRIPTS: [&str; 15] = [
+const SCRIPTS: [&str; 16] = [
     include_str!("report/js/format.js"),
     include_str!("report/js/dom.js"),
     include_str!("report/js/plot.js"),
     include_str!("report/js/keys.js"),
+    include_str!("report/js/layout.js"),
     include_str!("report/js/axle.js"),
     include_str!("report/js/verdict.js"),
     include_str!("report/js/curves.js"),

@@ -1,6 +1,6 @@
-// The axle as masses and links: z upwards, x to the right.
+// The axle as masses and links: z upwards, x along the page.
 
-const LANE = { z: 168, x: 88 };
+const LANE = { z: 182, x: 88 };
 const STEP = { z: 112, x: 330 };
 const BAR = { z: 36, x: 112 };
 
@@ -43,43 +43,6 @@ function elementsText(link) {
   });
 }
 
-// Levels from the road upwards, a lane for each chain of links.
-function axleLayout(axle, axis) {
-  const points = axle.points.filter((own) => own.axis === axis);
-  const place = new Map(points.map((own) => [own.name, { own, level: own.kind === 'road' || own.kind === 'motion' ? 0 : 1, lanes: [] }]));
-  const links = axle.links.filter((link) => link.axis === axis && link.ends.length > 1).map((link) => ({ link, ends: link.ends.filter((end) => place.has(end.point)) }));
-  const pairs = links.flatMap(({ ends }) => ends.filter((end) => end.share < 0).map((low) => [low.point, ends[0].point]));
-  points.forEach(() => pairs.forEach(([low, high]) => {
-    if (place.get(high).level <= place.get(low).level && place.get(low).level < points.length) place.get(high).level = place.get(low).level + 1;
-  }));
-  const standing = new Set(pairs.map(([, high]) => high));
-  place.forEach((own, name) => {
-    const above = pairs.filter(([low]) => low === name).map(([, high]) => place.get(high).level);
-    if (!standing.has(name) && own.level > 0 && above.length) own.level = Math.max(1, Math.min(...above) - 1);
-  });
-  assignLanes(place, links);
-  return { place, links };
-}
-
-function assignLanes(place, links) {
-  const lanes = [];
-  const extent = ({ ends }) => {
-    const levels = ends.map((end) => place.get(end.point).level);
-    return [Math.min(...levels), Math.max(...levels)];
-  };
-  const byLevel = [...links].sort((a, b) => extent(a)[0] - extent(b)[0] || extent(b)[1] - extent(a)[1]);
-  for (const own of byLevel) {
-    const [low, high] = extent(own);
-    const free = (lane) => lane.every(([from, to]) => high <= from || low >= to);
-    const joins = (lane) => free(lane) && lane.some(([, , names]) => own.ends.some((end) => names.includes(end.point)));
-    let lane = lanes.findIndex(joins);
-    if (lane < 0) lane = lanes.push([]) - 1;
-    lanes[lane].push([low, high, own.ends.map((end) => end.point)]);
-    own.lane = lane;
-    own.ends.forEach((end) => place.get(end.point).lanes.push(lane));
-  }
-}
-
 function axleDrawing(axle, axis, fresh) {
   const { place, links } = axleLayout(axle, axis);
   if (!links.length) return null;
@@ -89,7 +52,7 @@ function axleDrawing(axle, axis, fresh) {
   const lanes = Math.max(...links.map((own) => own.lane)) + 1;
   const across = LANE[axis];
   const upright = axis === 'z';
-  const width = upright ? lanes * across : (top - bottom) * STEP.x + BAR.x + 16;
+  const width = upright ? lanes * across + 16 : (top - bottom) * STEP.x + BAR.x + 16;
   const height = upright ? (top - bottom) * STEP.z + BAR.z + 34 : lanes * across + 20;
   const along = (level) => (upright ? 12 + BAR.z / 2 + (top - level) * STEP.z : 8 + BAR.x / 2 + (level - bottom) * STEP.x);
   const lane = (index) => (upright ? 62 + index * across : 14 + across / 2 + index * across);
@@ -141,8 +104,8 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
   const text = axis === 'z'
     ? lines.map((line, index) => svg('text', { x: centre + 20 + spread / 2, y: middle + 4 + (index - (lines.length - 1) / 2) * 15, class: index ? 'value' : 'name' }, line))
     : [svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]), svg('text', { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' }, lines.slice(1).join(' · '))];
-  const levers = ends.filter((end) => { const level = place.get(end.point).level; return level !== high && level !== low; });
-  const arms = levers.map((end) => svg('path', { class: 'arm', d: line(axis, centre, middle, lane(place.get(end.point).lanes[0]), along(place.get(end.point).level)) }));
+  const pivots = ends.map((end) => place.get(end.point)).filter((own) => own.level !== high && own.level !== low && own.lanes.length);
+  const arms = pivots.map((own) => svg('path', { class: 'arm', d: line(axis, centre, middle, lane(own.lanes.reduce((a, b) => (Math.abs(b - at) < Math.abs(a - at) ? b : a))), along(own.level)) }));
   return svg('g', { class: `link${isNew(link) ? ' new' : ''}` }, svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`), arms, shapes, text);
 }
 

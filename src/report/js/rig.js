@@ -18,7 +18,7 @@ function rig({ rig: ratios }) {
   const element = section('rig', 'Rig fit',
     h('p', {}, 'Transmissibilities ', key('measured', 'measured'), ' with a ', key('band', 'band'), ' of two standard deviations of the noise and of what left and right differ by, and the model ',
       key('start', 'at its start values'), ', ', key('before', 'fitted'), changed ? [', and ', key('after', 'with what it lacked')] : null,
-      '. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve. Coherence near 1 means that the pad explains the response.'),
+      '. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve. Coherence near 1 means that what drives the axle explains its response.'),
     choice('Run', runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]), runs[0][0], show),
     place, qualityTable(ratios, runs, channels));
   show(runs[0][0]);

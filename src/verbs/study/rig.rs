@@ -62,7 +62,7 @@ fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
     let Compared { level, observation, .. } = of;
     let measured = unwrapped(&observation.value);
     let after = after.and_then(|after| after.ratio(level, observation));
-    let quality = |values: &[Complex<f64>]| quality(&observation.frequency, values, &observation.value);
+    let quality = |values: &[Complex<f64>]| known(observation, values);
     let beside = |values: &[Complex<f64>]| Polar::new(values, &nearest(values, &measured));
     Ratio {
         run: level.name.clone(),
@@ -88,6 +88,16 @@ impl Polar {
             phase: curve(phase.iter().map(|phase| phase.to_degrees())),
         }
     }
+}
+
+/// The fit over the lines at which the model is known.
+fn known(of: &Observation, values: &[Complex<f64>]) -> Quality {
+    let lines = of.frequency.iter().zip(values).zip(&of.value);
+    let lines = lines.filter(|((_, value), _)| value.re.is_finite());
+    let (known, measured): (Vec<(f64, Complex<f64>)>, Vec<Complex<f64>>) =
+        lines.map(|((&f, &value), &measured)| ((f, value), measured)).unzip();
+    let (frequency, values): (Vec<f64>, Vec<Complex<f64>>) = known.into_iter().unzip();
+    quality(&frequency, &values, &measured)
 }
 
 fn band(of: &Observation) -> Polar {
