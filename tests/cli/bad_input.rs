@@ -6,7 +6,7 @@ use std::path::Path;
 
 use flate2::read::GzDecoder;
 
-use crate::common::qcar;
+use crate::common::{copy, qcar};
 
 /// Runs in the repository with `FILE` standing for a file of this content.
 fn refused(content: &str, arguments: &[&str], said: &[&str]) {
@@ -137,18 +137,6 @@ fn damaged(change: impl Fn(usize, Vec<&str>) -> String) -> tempfile::TempDir {
     let kept: Vec<String> = changed.into_iter().filter(|line| !line.is_empty()).collect();
     fs::write(folder.path().join("sweep.csv"), kept.join("\n")).unwrap();
     folder
-}
-
-fn copy(from: &Path, to: &Path) {
-    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
-        let target = to.join(entry.file_name());
-        if entry.path().is_dir() {
-            fs::create_dir(&target).unwrap();
-            copy(&entry.path(), &target);
-        } else {
-            fs::copy(entry.path(), target).unwrap();
-        }
-    }
 }
 
 /// Multiplies a column of a table.

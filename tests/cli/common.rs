@@ -1,5 +1,6 @@
 //! What the tests of the command line share: running it as a user would.
 
+use std::fs;
 use std::path::Path;
 use std::process::Command;
 
@@ -36,6 +37,18 @@ pub fn qcar_in(folder: &Path, arguments: &[&str]) -> Ran {
 /// Runs the words of a line as arguments of `qcar` in a folder.
 pub fn run_line(folder: &Path, line: &str) -> Ran {
     qcar_in(folder, &line.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Copies a folder with all that is in it.
+pub fn copy(from: &Path, to: &Path) {
+    fs::create_dir_all(to).unwrap();
+    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
+        let target = to.join(entry.file_name());
+        match entry.file_type().unwrap().is_dir() {
+            true => copy(&entry.path(), &target),
+            false => drop(fs::copy(entry.path(), target).unwrap()),
+        }
+    }
 }
 
 /// A folder that looks like the repository to those who only read its models, and can be written to.

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{qcar, succeeds};
+use crate::common::{copy, qcar, succeeds};
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
 
@@ -109,17 +109,6 @@ fn curves_give_start_values() {
         .count();
     assert_eq!((changed, before.lines().count()), (3, after.lines().count()));
     succeeds(&["kc", campaign.to_str().unwrap()]);
-}
-
-fn copy(from: &Path, to: &Path) {
-    fs::create_dir_all(to).unwrap();
-    for entry in fs::read_dir(from).unwrap().map(Result::unwrap) {
-        let target = to.join(entry.file_name());
-        match entry.file_type().unwrap().is_dir() {
-            true => copy(&entry.path(), &target),
-            false => fs::write(&target, fs::read(entry.path()).unwrap()).unwrap(),
-        }
-    }
 }
 
 #[test]

@@ -1,10 +1,11 @@
 //! Cleat runs of the campaign in the repository, simulated as a user does.
 
 use std::fs;
+use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{qcar, succeeds};
+use crate::common::{copy, qcar, succeeds};
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
 const TRUTH: &str = "models/campaigns/axle_a_rig/truth.toml";
@@ -84,4 +85,42 @@ fn what_cannot_roll_is_refused() {
     }
     let ran = qcar(&["simulate", "models/campaigns/silverbox"]);
     assert_eq!(ran.status, 2, "{}", ran.stdout);
+}
+
+/// What `qcar simulate` says of the campaign with `from` replaced by `to` and its higher cleat by a road of these points.
+fn refused(from: &str, to: &str, road: &[[f64; 2]]) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    assert!(text.contains(from));
+    fs::write(&manifest, text.replace(from, to)).unwrap();
+    let rows: String = road.iter().map(|[x, z]| format!("{x},{z},0\n")).collect();
+    fs::write(folder.path().join("road/given.csv"), format!("x,z,slope\n{rows}")).unwrap();
+    let ran = qcar(&["simulate", folder.path().to_str().unwrap(), "--params", TRUTH]);
+    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{to}\n{}", ran.stderr);
+    ran.stderr
+}
+
+#[test]
+fn a_campaign_that_cannot_be_driven_says_what_to_correct() {
+    let road = |points: &[[f64; 2]]| refused("road/cleat_30.csv.gz", "road/given.csv", points);
+    let rough: Vec<[f64; 2]> = (0..3000)
+        .map(|i| [0.01 * f64::from(i), 0.01 * f64::from(i % 2)])
+        .collect();
+    for (stderr, said) in [
+        (road(&[[0.0, 0.0], [1.0, 0.0]]), "lengthen the road"),
+        (road(&[[0.0, 0.0], [2.0, 0.0], [1.0, 0.0]]), "given.csv"),
+        (road(&rough), "sample it finer"),
+        (refused("speed = 5.5555556", "speed = 0.0", &[]), "speed"),
+        (
+            refused("static_tire_def = 0.02361", "static_tire_def = 0.4", &[]),
+            "static_tire_def",
+        ),
+    ] {
+        assert!(
+            stderr.contains(said) && !stderr.contains("panicked"),
+            "{said}: {stderr}"
+        );
+    }
 }
