@@ -95,7 +95,10 @@ fn refused(from: &str, to: &str, road: &[[f64; 2]]) -> String {
     let text = fs::read_to_string(&manifest).unwrap();
     assert!(text.contains(from));
     fs::write(&manifest, text.replace(from, to)).unwrap();
-    let rows: String = road.iter().map(|[x, z]| format!("{x},{z},0\n")).collect();
+    let next = road.iter().skip(1).chain(road.last());
+    let slope = |[x, z]: &[f64; 2], [next_x, next_z]: &[f64; 2]| (next_z - z) / (next_x - x).max(1e-9);
+    let row = |(here, next): (&[f64; 2], _)| format!("{},{},{}\n", here[0], here[1], slope(here, next));
+    let rows: String = road.iter().zip(next).map(row).collect();
     fs::write(folder.path().join("road/given.csv"), format!("x,z,slope\n{rows}")).unwrap();
     let ran = qcar(&["simulate", folder.path().to_str().unwrap(), "--params", TRUTH]);
     assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{to}\n{}", ran.stderr);
