@@ -92,12 +92,10 @@ impl Polar {
 
 /// The fit over the lines at which the model is known.
 fn known(of: &Observation, values: &[Complex<f64>]) -> Quality {
-    let lines = of.frequency.iter().zip(values).zip(&of.value);
-    let lines = lines.filter(|((_, value), _)| value.re.is_finite());
-    let (known, measured): (Vec<(f64, Complex<f64>)>, Vec<Complex<f64>>) =
-        lines.map(|((&f, &value), &measured)| ((f, value), measured)).unzip();
-    let (frequency, values): (Vec<f64>, Vec<Complex<f64>>) = known.into_iter().unzip();
-    quality(&frequency, &values, &measured)
+    let lines: Vec<usize> = (0..values.len()).filter(|&line| values[line].re.is_finite()).collect();
+    let at = |values: &[Complex<f64>]| lines.iter().map(|&line| values[line]).collect::<Vec<_>>();
+    let frequency: Vec<f64> = lines.iter().map(|&line| of.frequency[line]).collect();
+    quality(&frequency, &at(values), &at(&of.value))
 }
 
 fn band(of: &Observation) -> Polar {
