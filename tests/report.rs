@@ -76,6 +76,7 @@ fn check(found: &Value, width: u64, theme: &str) {
     assert_eq!(found["sections"].as_array().unwrap().len(), 10, "{place}");
     for figure in [
         "axle-z",
+        "loop-bounce",
         "axle-x",
         "rig-magnitude",
         "rig-phase",

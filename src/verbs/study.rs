@@ -15,6 +15,8 @@ mod gather;
 mod rounded;
 // The masses and links of a model.
 mod axle;
+// Cycles of the K&C rig.
+mod loops;
 // Measured and modelled ratios.
 mod rig;
 // Natural vibrations.

@@ -8,6 +8,7 @@ use serde::{Serialize, Serializer};
 use super::axle::Axle;
 use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::gather::Study;
+use super::loops::{Loop, loops};
 use super::record::{Record, record};
 use super::rig::{Ratio, ratios};
 use super::shapes::{Shapes, shapes};
@@ -26,6 +27,7 @@ pub struct Contents<'a> {
     #[serde(flatten)]
     pub result: Result<'a>,
     axles: Axles,
+    loops: Vec<Loop>,
     rig: Vec<Ratio>,
     track: Option<Track>,
     gap_map: GapMap,
@@ -85,6 +87,7 @@ impl<'a> Contents<'a> {
                 before: Axle::of(&study.compiled, study.fitted.values().as_slice()),
                 after: after.map(|after| Axle::of(&after.compiled, after.values.as_slice())),
             },
+            loops: loops(study),
             rig,
             track: track(study),
             gap_map: GapMap {

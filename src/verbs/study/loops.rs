@@ -1,0 +1,43 @@
+//! The quasi-static K&C cycles, to be drawn.
+
+use qcar_runtime::campaign::{Campaign, Run, Test};
+use serde::Serialize;
+
+use super::gather::Study;
+use super::rounded::curve;
+
+/// A cycle of force over displacement.
+#[derive(Serialize)]
+pub struct Loop {
+    test: &'static str,
+    /// m.
+    displacement: Vec<f64>,
+    /// N.
+    force: Vec<f64>,
+}
+
+/// Points that a drawing can show.
+const MOST: usize = 400;
+
+/// The cycles of a study whose gradients were taken.
+pub fn loops(of: &Study) -> Vec<Loop> {
+    let campaign = &of.fitted.campaign;
+    let cycles = campaign.runs.iter().filter_map(|run| match run.test {
+        Test::Bounce => cycle(campaign, run, "bounce"),
+        Test::Longitudinal => cycle(campaign, run, "longitudinal"),
+        _ => None,
+    });
+    cycles.collect()
+}
+
+fn cycle(campaign: &Campaign, run: &Run, test: &'static str) -> Option<Loop> {
+    // What cannot be read has been refused with its gradients.
+    let measured = campaign.curve(run).ok()?;
+    let step = measured.force.len().div_ceil(MOST);
+    let thinned = |values: Vec<f64>| curve(values.into_iter().step_by(step));
+    Some(Loop {
+        test,
+        displacement: thinned(measured.displacement),
+        force: thinned(measured.force),
+    })
+}
