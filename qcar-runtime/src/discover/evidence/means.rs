@@ -21,7 +21,7 @@ pub struct Means {
 }
 
 impl Means {
-    /// Means over `half` s to each side, in whole samples and at least [`FEWEST`] of them.
+    /// Means over `half` s to each side, in whole samples and at least `FEWEST` of them.
     pub fn new(rate: f64, half: f64) -> Self {
         Self {
             rate,
