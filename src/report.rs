@@ -17,7 +17,7 @@ const STYLE: [&str; 3] = [
 ];
 
 /// In the order in which they use each other; the last one starts.
-const SCRIPTS: [&str; 16] = [
+const SCRIPTS: [&str; 17] = [
     include_str!("report/js/format.js"),
     include_str!("report/js/dom.js"),
     include_str!("report/js/plot.js"),
@@ -30,6 +30,7 @@ const SCRIPTS: [&str; 16] = [
     include_str!("report/js/parameters.js"),
     include_str!("report/js/modes.js"),
     include_str!("report/js/track.js"),
+    include_str!("report/js/gap.js"),
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),
     include_str!("report/js/limits.js"),

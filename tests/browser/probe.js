@@ -10,12 +10,16 @@
     const figures = [...document.querySelectorAll('[data-figure]')];
     const root = document.documentElement;
     found.figures = figures.map((figure) => figure.dataset.figure);
-    found.blank = figures.filter((figure) => !('drawn' in figure.dataset) || isBlank(figure)).map((figure) => figure.dataset.figure);
+    found.blank = figures
+      .filter((figure) => !('drawn' in figure.dataset) || isBlank(figure))
+      .map((figure) => figure.dataset.figure);
     found.width = innerWidth;
     found.overflow = root.scrollWidth - root.clientWidth;
     found.requests = performance.getEntriesByType('resource').map((entry) => entry.name);
     found.sections = [...document.querySelectorAll('section > h2')].map((heading) => heading.textContent);
-    found.unlabelled = [...document.querySelectorAll('[role=img], [role=application], [role=region]')].filter((part) => !part.getAttribute('aria-label')).length;
+    found.unlabelled = [...document.querySelectorAll('[role=img], [role=application], [role=region]')].filter(
+      (part) => !part.getAttribute('aria-label'),
+    ).length;
     found.bad_numbers = (document.body.innerText.match(/\b(NaN|undefined|Infinity|null)\b/g) || []).length;
     found.keyboard = keyboard();
     found.themes = themes();
@@ -56,4 +60,4 @@
   }
 
   addEventListener('load', () => setTimeout(look, 1000));
-}());
+})();

@@ -9,14 +9,25 @@ function axles(data) {
   const shown = after || before;
   const fresh = after ? newNames(before, after) : new Set();
   const drawings = ['z', 'x'].map((axis) => axleDrawing(shown, axis, fresh)).filter((part) => part);
-  const element = section('axle', 'Vehicle and axle',
-    h('p', {}, after
-      ? ['The model with what it lacked; ', key('after', 'what is new'), ' stands out. Values are those found together with it.']
-      : 'The model with its fitted values.'),
+  const element = section(
+    'axle',
+    'Vehicle and axle',
+    h(
+      'p',
+      {},
+      after
+        ? [
+            'The model with what it lacked; ',
+            key('after', 'what is new'),
+            ' stands out. Values are those found together with it.',
+          ]
+        : 'The model with its fitted values.',
+    ),
     h('div', { class: 'drawings' }, drawings),
     details('Masses and links as a table', axleTable(shown, fresh)),
     details(`Equations of motion of ${before.name}`, equationSheet(before.equations)),
-    after && details(`Equations of motion of ${after.name}`, equationSheet(after.equations)));
+    after && details(`Equations of motion of ${after.name}`, equationSheet(after.equations)),
+  );
   return { element, draw: () => drawings.forEach((drawing) => drawn(drawing)) };
 }
 
@@ -25,15 +36,39 @@ function newNames(before, after) {
   const known = new Set(names(before));
   const law = (link) => JSON.stringify([link.ends.map((end) => end.point), link.elements.map((e) => [e.kind, e.law])]);
   const laws = new Map(before.links.map((link) => [`${link.axis}.${link.name}`, law(link)]));
-  const changed = after.links.filter((link) => laws.has(`${link.axis}.${link.name}`) && laws.get(`${link.axis}.${link.name}`) !== law(link));
-  return new Set([...names(after).filter((name) => !known.has(name)), ...changed.map((link) => `${link.axis}.${link.name}`)]);
+  const changed = after.links.filter(
+    (link) => laws.has(`${link.axis}.${link.name}`) && laws.get(`${link.axis}.${link.name}`) !== law(link),
+  );
+  return new Set([
+    ...names(after).filter((name) => !known.has(name)),
+    ...changed.map((link) => `${link.axis}.${link.name}`),
+  ]);
 }
 
 function axleTable(axle, fresh) {
   const mark = (own) => (fresh.has(`${own.axis}.${own.name}`) ? 'new' : '');
-  const masses = axle.points.map((own) => [`${own.axis} ${words(own.name)}`, own.kind, own.inertia === null ? '' : quantity(own.inertia, own.angle ? 'kg m^2' : 'kg'), mark(own)]);
-  const links = axle.links.map((link) => [`${link.axis} ${words(link.name)}`, link.ends.map((end) => words(end.point)).join(' – '), elementsText(link).join(', '), mark(link)]);
-  return table('Masses and links', [['name', 'text'], ['what', 'text'], ['value', 'text'], ['', 'text']], [...masses, ...links]);
+  const masses = axle.points.map((own) => [
+    `${own.axis} ${words(own.name)}`,
+    own.kind,
+    own.inertia === null ? '' : quantity(own.inertia, own.angle ? 'kg m^2' : 'kg'),
+    mark(own),
+  ]);
+  const links = axle.links.map((link) => [
+    `${link.axis} ${words(link.name)}`,
+    link.ends.map((end) => words(end.point)).join(' – '),
+    elementsText(link).join(', '),
+    mark(link),
+  ]);
+  return table(
+    'Masses and links',
+    [
+      ['name', 'text'],
+      ['what', 'text'],
+      ['value', 'text'],
+      ['', 'text'],
+    ],
+    [...masses, ...links],
+  );
 }
 
 function elementsText(link) {
@@ -54,12 +89,23 @@ function axleDrawing(axle, axis, fresh) {
   const upright = axis === 'z';
   const width = upright ? lanes * across + 16 : (top - bottom) * STEP.x + BAR.x + 16;
   const height = upright ? (top - bottom) * STEP.z + BAR.z + 34 : lanes * across + 20;
-  const along = (level) => (upright ? 12 + BAR.z / 2 + (top - level) * STEP.z : 8 + BAR.x / 2 + (level - bottom) * STEP.x);
+  const along = (level) =>
+    upright ? 12 + BAR.z / 2 + (top - level) * STEP.z : 8 + BAR.x / 2 + (level - bottom) * STEP.x;
   const lane = (index) => (upright ? 62 + index * across : 14 + across / 2 + index * across);
   const scene = { axis, along, lane, isNew: (own) => fresh.has(`${axis}.${own.name}`) };
   const name = axis === 'z' ? 'Vertical chain, z' : `Longitudinal chain, ${axis}`;
-  const drawing = svg('svg', { viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': `${name}: ${links.map(({ link }) => `${words(link.name)} between ${link.ends.map((end) => words(end.point)).join(' and ')}`).join(', ')}` },
-    links.map((own) => drawLink(own, place, scene)), all.map((own) => drawPoint(own, scene)));
+  const drawing = svg(
+    'svg',
+    {
+      viewBox: `0 0 ${width} ${height}`,
+      width,
+      height,
+      role: 'img',
+      'aria-label': `${name}: ${links.map(({ link }) => `${words(link.name)} between ${link.ends.map((end) => words(end.point)).join(' and ')}`).join(', ')}`,
+    },
+    links.map((own) => drawLink(own, place, scene)),
+    all.map((own) => drawPoint(own, scene)),
+  );
   return figure(`axle-${axis}`, name, drawing);
 }
 
@@ -69,15 +115,30 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
   const centre = along(level);
   const thick = BAR[axis];
   const kind = `point ${own.kind}${isNew(own) ? ' new' : ''}`;
-  const label = own.inertia === null ? [words(own.name)] : [words(own.name), quantity(own.inertia, own.angle ? 'kg m^2' : 'kg')];
+  const label =
+    own.inertia === null ? [words(own.name)] : [words(own.name), quantity(own.inertia, own.angle ? 'kg m^2' : 'kg')];
   if (own.kind === 'road' || own.kind === 'motion') {
-    return svg('g', { class: kind }, svg('path', { d: `M${low} ${centre}H${high}` }),
-      svg('path', { class: 'hatch', d: hatch(low, high, centre) }), svg('text', { x: high + 8, y: centre + 4 }, label[0]));
+    return svg(
+      'g',
+      { class: kind },
+      svg('path', { d: `M${low} ${centre}H${high}` }),
+      svg('path', { class: 'hatch', d: hatch(low, high, centre) }),
+      svg('text', { x: high + 8, y: centre + 4 }, label[0]),
+    );
   }
-  const box = axis === 'z' ? { x: low, y: centre - thick / 2, width: high - low, height: thick } : { x: centre - thick / 2, y: low, width: thick, height: high - low };
+  const box =
+    axis === 'z'
+      ? { x: low, y: centre - thick / 2, width: high - low, height: thick }
+      : { x: centre - thick / 2, y: low, width: thick, height: high - low };
   const [x, y] = [box.x + box.width / 2, box.y + box.height / 2];
   const lines = axis === 'z' && box.width > 110 ? [label.join(' · ')] : label;
-  const text = lines.map((line, at) => svg('text', { x, y: y + 4.5 + (at - (lines.length - 1) / 2) * 15, 'text-anchor': 'middle', class: at ? 'value' : 'name' }, line));
+  const text = lines.map((line, at) =>
+    svg(
+      'text',
+      { x, y: y + 4.5 + (at - (lines.length - 1) / 2) * 15, 'text-anchor': 'middle', class: at ? 'value' : 'name' },
+      line,
+    ),
+  );
   return svg('g', { class: kind }, svg('rect', { ...box, rx: 3 }), text);
 }
 
@@ -98,15 +159,61 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
   const centre = lane(at);
   const symbols = link.elements.length ? link.elements : [{ kind: 'law', law: '' }];
   const spread = symbols.length > 1 ? 22 : 0;
-  const shapes = symbols.map((element, index) => symbol(element.kind, Math.min(from, to), Math.max(from, to), centre + (index - (symbols.length - 1) / 2) * spread, axis));
+  const shapes = symbols.map((element, index) =>
+    symbol(
+      element.kind,
+      Math.min(from, to),
+      Math.max(from, to),
+      centre + (index - (symbols.length - 1) / 2) * spread,
+      axis,
+    ),
+  );
   const lines = [words(link.name), ...elementsText(link).map(shortened)];
   const middle = (from + to) / 2;
-  const text = axis === 'z'
-    ? lines.map((line, index) => svg('text', { x: centre + 20 + spread / 2, y: middle + 4 + (index - (lines.length - 1) / 2) * 15, class: index ? 'value' : 'name' }, line))
-    : [svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]), svg('text', { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' }, lines.slice(1).join(' · '))];
-  const pivots = ends.map((end) => place.get(end.point)).filter((own) => own.level !== high && own.level !== low && own.lanes.length);
-  const arms = pivots.map((own) => svg('path', { class: 'arm', d: line(axis, centre, middle, lane(own.lanes.reduce((a, b) => (Math.abs(b - at) < Math.abs(a - at) ? b : a))), along(own.level)) }));
-  return svg('g', { class: `link${isNew(link) ? ' new' : ''}` }, svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`), arms, shapes, text);
+  const text =
+    axis === 'z'
+      ? lines.map((line, index) =>
+          svg(
+            'text',
+            {
+              x: centre + 20 + spread / 2,
+              y: middle + 4 + (index - (lines.length - 1) / 2) * 15,
+              class: index ? 'value' : 'name',
+            },
+            line,
+          ),
+        )
+      : [
+          svg('text', { x: middle, y: centre - 25, 'text-anchor': 'middle', class: 'name' }, lines[0]),
+          svg(
+            'text',
+            { x: middle, y: centre + 35, 'text-anchor': 'middle', class: 'value' },
+            lines.slice(1).join(' · '),
+          ),
+        ];
+  const pivots = ends
+    .map((end) => place.get(end.point))
+    .filter((own) => own.level !== high && own.level !== low && own.lanes.length);
+  const arms = pivots.map((own) =>
+    svg('path', {
+      class: 'arm',
+      d: line(
+        axis,
+        centre,
+        middle,
+        lane(own.lanes.reduce((a, b) => (Math.abs(b - at) < Math.abs(a - at) ? b : a))),
+        along(own.level),
+      ),
+    }),
+  );
+  return svg(
+    'g',
+    { class: `link${isNew(link) ? ' new' : ''}` },
+    svg('title', {}, `${words(link.name)}: ${elementsText(link).join(', ')}`),
+    arms,
+    shapes,
+    text,
+  );
 }
 
 function shortened(text) {
@@ -121,7 +228,8 @@ function line(axis, across0, along0, across1, along1) {
 function symbol(kind, from, to, centre, axis) {
   const half = kind === 'spring' ? 19 : 13;
   const middle = (from + to) / 2;
-  const at = (a, c) => (axis === 'z' ? `${(centre + c).toFixed(1)} ${a.toFixed(1)}` : `${a.toFixed(1)} ${(centre + c).toFixed(1)}`);
+  const at = (a, c) =>
+    axis === 'z' ? `${(centre + c).toFixed(1)} ${a.toFixed(1)}` : `${a.toFixed(1)} ${(centre + c).toFixed(1)}`;
   const stems = `M${at(from, 0)}L${at(middle - half, 0)}M${at(middle + half, 0)}L${at(to, 0)}`;
   return svg('path', { class: kind, d: stems + BODIES[kind](middle, half, at) });
 }
@@ -131,7 +239,10 @@ const BODIES = {
     const turns = [...Array(8).keys()].map((n) => at(m - half + ((n + 0.5) * half) / 4, n % 2 ? -7 : 7));
     return `M${at(m - half, 0)}L${turns.join('L')}L${at(m + half, 0)}`;
   },
-  damper: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}M${at(m - half, 8)}L${at(m + half, 8)}M${at(m + half, -8)}L${at(m + half, 8)}M${at(m - half, 0)}L${at(m, 0)}M${at(m, -5.5)}L${at(m, 5.5)}`,
-  inerter: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m, -8)}L${at(m, 8)}`,
-  law: (m, half, at) => `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m + half * 0.6, -5)}L${at(m - half * 0.6, 5)}`,
+  damper: (m, half, at) =>
+    `M${at(m - half, -8)}L${at(m + half, -8)}M${at(m - half, 8)}L${at(m + half, 8)}M${at(m + half, -8)}L${at(m + half, 8)}M${at(m - half, 0)}L${at(m, 0)}M${at(m, -5.5)}L${at(m, 5.5)}`,
+  inerter: (m, half, at) =>
+    `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m, -8)}L${at(m, 8)}`,
+  law: (m, half, at) =>
+    `M${at(m - half, -8)}L${at(m + half, -8)}L${at(m + half, 8)}L${at(m - half, 8)}ZM${at(m + half * 0.6, -5)}L${at(m - half * 0.6, 5)}`,
 };

@@ -29,11 +29,20 @@ function section(id, title, ...children) {
 // Columns are `[heading, kind]`, kind being `text` or `number`; rows are arrays of cells.
 function table(caption, columns, rows, attributes = {}) {
   const head = columns.map(([heading, kind]) => h('th', { scope: 'col', class: kind }, heading));
-  const body = rows.map((row) => h('tr', { class: row.class }, row.map((cell, at) => (
-    at === 0 ? h('th', { scope: 'row', class: columns[at][1] }, cell) : h('td', { class: columns[at][1] }, cell)
-  ))));
-  return h('div', { class: 'table', tabindex: 0, role: 'region', 'aria-label': caption, ...attributes },
-    h('table', {}, h('caption', {}, caption), h('thead', {}, h('tr', {}, head)), h('tbody', {}, body)));
+  const body = rows.map((row) =>
+    h(
+      'tr',
+      { class: row.class },
+      row.map((cell, at) =>
+        at === 0 ? h('th', { scope: 'row', class: columns[at][1] }, cell) : h('td', { class: columns[at][1] }, cell),
+      ),
+    ),
+  );
+  return h(
+    'div',
+    { class: 'table', tabindex: 0, role: 'region', 'aria-label': caption, ...attributes },
+    h('table', {}, h('caption', {}, caption), h('thead', {}, h('tr', {}, head)), h('tbody', {}, body)),
+  );
 }
 
 // A figure announces itself; a page is whole when every figure has said that it is drawn.
@@ -49,17 +58,27 @@ function drawn(element) {
 // One of several, by radio buttons in a row.
 let groups = 0;
 function choice(label, options, chosen, change) {
-  const name = `choice-${groups += 1}`;
-  const buttons = options.map(([value, text]) => h('label', {},
-    h('input', { type: 'radio', name, value, checked: value === chosen, onchange: () => change(value) }), h('span', {}, text)));
+  const name = `choice-${(groups += 1)}`;
+  const buttons = options.map(([value, text]) =>
+    h(
+      'label',
+      {},
+      h('input', { type: 'radio', name, value, checked: value === chosen, onchange: () => change(value) }),
+      h('span', {}, text),
+    ),
+  );
   return h('fieldset', { class: 'choice' }, h('legend', {}, label), buttons);
 }
 
 // One of many, by a list.
 function select(label, options, chosen, change) {
   const entries = options.map(([value, text]) => h('option', { value, selected: value === chosen }, text));
-  return h('label', { class: 'select' }, h('span', {}, label),
-    h('select', { onchange: (event) => change(event.target.value) }, entries));
+  return h(
+    'label',
+    { class: 'select' },
+    h('span', {}, label),
+    h('select', { onchange: (event) => change(event.target.value) }, entries),
+  );
 }
 
 function details(summary, ...children) {

@@ -10,13 +10,19 @@ function number(value, digits = 3) {
   }
   const rounded = Number(value.toPrecision(digits));
   const decimals = size === 0 ? 0 : Math.max(0, digits - 1 - Math.floor(Math.log10(size)));
-  return minus(rounded.toLocaleString('en-GB', { minimumFractionDigits: Math.min(decimals, 6), maximumFractionDigits: 6 })
-    .replace(/,/g, '\u2009'));
+  return minus(
+    rounded
+      .toLocaleString('en-GB', { minimumFractionDigits: Math.min(decimals, 6), maximumFractionDigits: 6 })
+      .replace(/,/g, '\u2009'),
+  );
 }
 
 // The same without zeros at the end: for what is given, not measured.
 function plain(value, digits = 5) {
-  return number(Number(value.toPrecision(digits)), String(Math.abs(Number(value.toPrecision(digits)))).replace(/^0\.0*|\./g, '').length || 1);
+  return number(
+    Number(value.toPrecision(digits)),
+    String(Math.abs(Number(value.toPrecision(digits)))).replace(/^0\.0*|\./g, '').length || 1,
+  );
 }
 
 function minus(text) {
@@ -35,7 +41,7 @@ function percent(share, digits = 2) {
 // In how many of a larger unit an SI value is best read.
 const SCALES = {
   'N/m': [1e-3, 'N/mm'],
-  'm': [1e3, 'mm'],
+  m: [1e3, 'mm'],
 };
 
 // A value and its unit; `pair` keeps a value and its error in one scale.
@@ -64,9 +70,15 @@ function measured(value, error, unit) {
   const scaled = inUnit(value, unit);
   if (error === null || !Number.isFinite(error) || error <= 0) return quantity(value, unit, 4);
   const places = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(error * scaled.factor))));
-  const fixed = (x) => minus(Number(x.toFixed(places)).toLocaleString('en-GB', {
-    minimumFractionDigits: places, maximumFractionDigits: places,
-  }).replace(/,/g, '\u2009'));
+  const fixed = (x) =>
+    minus(
+      Number(x.toFixed(places))
+        .toLocaleString('en-GB', {
+          minimumFractionDigits: places,
+          maximumFractionDigits: places,
+        })
+        .replace(/,/g, '\u2009'),
+    );
   return `${fixed(scaled.value)} ± ${fixed(error * scaled.factor)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
 }
 
@@ -82,7 +94,11 @@ function channelName(name) {
 
 // `rig/sweep_025.csv.gz` without what all runs share.
 function runName(file) {
-  return file.split('/').pop().replace(/\.gz$/, '').replace(/\.csv$/, '');
+  return file
+    .split('/')
+    .pop()
+    .replace(/\.gz$/, '')
+    .replace(/\.csv$/, '');
 }
 
 function roleName(role) {

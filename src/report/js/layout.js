@@ -6,7 +6,8 @@ const MOST_LANES = 7;
 function axleLayout(axle, axis) {
   const points = axle.points.filter((own) => own.axis === axis);
   const links = axle.links.filter((link) => link.axis === axis).map((link) => ({ link, ends: grounded(link.ends) }));
-  if (links.some(({ ends }) => ends.some((end) => end.point === GROUND))) points.push({ name: GROUND, axis, kind: 'road', inertia: null });
+  if (links.some(({ ends }) => ends.some((end) => end.point === GROUND)))
+    points.push({ name: GROUND, axis, kind: 'road', inertia: null });
   const place = new Map(points.map((own) => [own.name, { own, level: 0, lanes: [] }]));
   assignLevels(place, links);
   for (let tries = 0; tries < points.length; tries += 1) {
@@ -38,7 +39,9 @@ function assignLevels(place, links) {
   }
   const below = (name) => [...above.keys()].filter((low) => above.get(low).has(name));
   const depth = (name) => (isFloor(name) ? 0 : Math.max(1, ...below(name).map((low) => depth(low) + 1)));
-  place.forEach((own, name) => { own.level = depth(name); });
+  place.forEach((own, name) => {
+    own.level = depth(name);
+  });
   place.forEach((own, name) => {
     if (isFloor(name) || below(name).length || !above.get(name).size) return;
     own.level = Math.max(1, Math.min(...[...above.get(name)].map((high) => place.get(high).level)) - 1);
@@ -52,10 +55,15 @@ function extent(place, ends) {
 
 function assignLanes(place, links) {
   const lanes = [];
-  const sorted = [...links].sort((a, b) => extent(place, a.ends)[0] - extent(place, b.ends)[0] || extent(place, b.ends)[1] - extent(place, a.ends)[1]);
+  const sorted = [...links].sort(
+    (a, b) =>
+      extent(place, a.ends)[0] - extent(place, b.ends)[0] || extent(place, b.ends)[1] - extent(place, a.ends)[1],
+  );
   for (const own of sorted) {
     const [low, high] = extent(place, own.ends);
-    const joins = (lane) => lane.every(([from, to]) => high <= from || low >= to) && lane.some(([, , names]) => own.ends.some((end) => names.includes(end.point)));
+    const joins = (lane) =>
+      lane.every(([from, to]) => high <= from || low >= to) &&
+      lane.some(([, , names]) => own.ends.some((end) => names.includes(end.point)));
     let lane = lanes.findIndex(joins);
     if (lane < 0) lane = lanes.push([]) - 1;
     lanes[lane].push([low, high, own.ends.map((end) => end.point)]);
@@ -69,13 +77,18 @@ function best(place, links, count) {
   const first = links.map((own) => own.lane);
   const orders = count <= MOST_LANES ? permutations([...Array(count).keys()]) : [[...Array(count).keys()]];
   const apply = (order) => {
-    links.forEach((own, at) => { own.lane = order[first[at]]; });
+    links.forEach((own, at) => {
+      own.lane = order[first[at]];
+    });
     occupy(place, links);
   };
   let [least, chosen] = [Infinity, orders[0]];
   for (const order of orders) {
     apply(order);
-    const spans = [...place.values()].reduce((sum, { lanes }) => sum + (lanes.length ? Math.max(...lanes) - Math.min(...lanes) : 0), 0);
+    const spans = [...place.values()].reduce(
+      (sum, { lanes }) => sum + (lanes.length ? Math.max(...lanes) - Math.min(...lanes) : 0),
+      0,
+    );
     const cost = 100 * overlaps(place).length + 30 * crossings(place, links) + spans;
     if (cost < least) [least, chosen] = [cost, order];
   }
@@ -89,10 +102,14 @@ function permutations(items) {
 
 // A point lies across the lanes of the links that end at it; what a lever only turns about is reached by an arm.
 function occupy(place, links) {
-  place.forEach((own) => { own.lanes = []; });
+  place.forEach((own) => {
+    own.lanes = [];
+  });
   for (const { ends, lane } of links) {
     const levels = extent(place, ends);
-    ends.filter((end) => levels.includes(place.get(end.point).level)).forEach((end) => place.get(end.point).lanes.push(lane));
+    ends
+      .filter((end) => levels.includes(place.get(end.point).level))
+      .forEach((end) => place.get(end.point).lanes.push(lane));
   }
 }
 
@@ -103,10 +120,12 @@ function spans(own) {
 // Points that would be drawn over others.
 function overlaps(place) {
   const all = [...place.values()].filter((own) => own.lanes.length);
-  return all.filter((own, at) => all.slice(0, at).some((other) => {
-    const [[a, b], [c, d]] = [spans(own), spans(other)];
-    return other.level === own.level && a <= d && c <= b;
-  }));
+  return all.filter((own, at) =>
+    all.slice(0, at).some((other) => {
+      const [[a, b], [c, d]] = [spans(own), spans(other)];
+      return other.level === own.level && a <= d && c <= b;
+    }),
+  );
 }
 
 function crossings(place, links) {
@@ -122,5 +141,7 @@ function crossings(place, links) {
 // Gives a point a level of its own, above the one that it shares.
 function raise(place, hidden) {
   const level = hidden.level;
-  place.forEach((own) => { if (own === hidden || own.level > level) own.level += 1; });
+  place.forEach((own) => {
+    if (own === hidden || own.level > level) own.level += 1;
+  });
 }

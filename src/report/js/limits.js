@@ -10,7 +10,9 @@ function limits(data) {
     listed(names('only_together'), 'The data determine {} only in combination.'),
     listed(names('at_bound'), '{} rest on a bound of their range, and have no error bar.'),
     listed(loose, 'The relative standard error of {} is above 5 %.'),
-    data.record.runs.some((run) => run.role === 'held_out') ? null : 'No run is held out, so nothing here has been judged on data that the fit has not seen.',
+    data.record.runs.some((run) => run.role === 'held_out')
+      ? null
+      : 'No run is held out, so nothing here has been judged on data that the fit has not seen.',
     data.kc.length ? null : 'There are no K&C curves: friction and static stiffness have not been compared.',
     data.track ? null : 'There are no cleat runs: what the tyre does while it rolls has not been compared.',
     ...data.discover.effects.map(unseen),
@@ -18,7 +20,17 @@ function limits(data) {
     'Before an effect is added the model is linear on the rig: its parameters are those that fit best at the levels driven, and the other levels show how far that carries.',
     'The gap counts what the sensors saw between the lowest and the highest frequency of the runs. An effect that acts elsewhere is not excluded.',
   ].filter((sentence) => sentence);
-  return { element: section('limits', 'What the model cannot say', h('ul', { class: 'limits' }, sentences.map((sentence) => h('li', {}, sentence)))) };
+  return {
+    element: section(
+      'limits',
+      'What the model cannot say',
+      h(
+        'ul',
+        { class: 'limits' },
+        sentences.map((sentence) => h('li', {}, sentence)),
+      ),
+    ),
+  };
 }
 
 function listed(names, sentence) {

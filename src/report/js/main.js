@@ -3,22 +3,39 @@
 function build() {
   const data = JSON.parse(document.getElementById('data').textContent);
   const parts = [
-    verdict(data), axles(data), curves(data), rig(data), parameters(data), modes(data), track(data), discovery(data), record(data), limits(data),
+    verdict(data),
+    axles(data),
+    curves(data),
+    rig(data),
+    parameters(data),
+    modes(data),
+    track(data),
+    discovery(data),
+    record(data),
+    limits(data),
   ].filter((part) => part !== null);
-  const links = parts.filter((part) => part.element.id).map(({ element }) => (
-    h('li', {}, h('a', { href: `#${element.id}` }, element.querySelector('h2').textContent))));
+  const links = parts
+    .filter((part) => part.element.id)
+    .map(({ element }) => h('li', {}, h('a', { href: `#${element.id}` }, element.querySelector('h2').textContent)));
   const page = document.getElementById('report');
-  page.replaceChildren(heading(data), parts[0].element, h('nav', { 'aria-label': 'Contents' }, h('ol', {}, links.slice(1))),
-    ...parts.slice(1).map((part) => part.element));
+  page.replaceChildren(
+    heading(data),
+    parts[0].element,
+    h('nav', { 'aria-label': 'Contents' }, h('ol', {}, links.slice(1))),
+    ...parts.slice(1).map((part) => part.element),
+  );
   parts.forEach((part) => part.draw && part.draw());
 }
 
 function heading(data) {
-  return h('header', {},
+  return h(
+    'header',
+    {},
     h('p', { class: 'kind' }, 'Campaign study'),
     h('h1', {}, data.campaign),
     h('p', { class: 'subject' }, `Model ${data.model}: ${lowered(data.record.model_doc)}`),
-    themeButton());
+    themeButton(),
+  );
 }
 
 function lowered(sentence) {
@@ -31,20 +48,30 @@ function themeButton() {
   const system = matchMedia('(prefers-color-scheme: dark)');
   const isDark = () => (root.dataset.theme ? root.dataset.theme === 'dark' : system.matches);
   const button = h('button', { type: 'button', class: 'theme' });
-  const label = () => { button.textContent = isDark() ? 'Light page' : 'Dark page'; };
+  const label = () => {
+    button.textContent = isDark() ? 'Light page' : 'Dark page';
+  };
   button.addEventListener('click', () => {
     root.dataset.theme = isDark() ? 'light' : 'dark';
     label();
     recolour();
   });
-  system.addEventListener('change', () => { label(); recolour(); });
+  system.addEventListener('change', () => {
+    label();
+    recolour();
+  });
   label();
   return button;
 }
 
 window.addEventListener('error', (event) => {
-  document.getElementById('report').prepend(h('p', { role: 'alert', class: 'failure' },
-    `A part of this report could not be drawn: ${event.message}`));
+  document
+    .getElementById('report')
+    .prepend(h('p', { role: 'alert', class: 'failure' }, `A part of this report could not be drawn: ${event.message}`));
 });
-addEventListener('beforeprint', () => document.querySelectorAll('details').forEach((part) => { part.open = true; }));
+addEventListener('beforeprint', () =>
+  document.querySelectorAll('details').forEach((part) => {
+    part.open = true;
+  }),
+);
 build();

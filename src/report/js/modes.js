@@ -3,15 +3,39 @@
 function modes({ modes: { before, after }, model }) {
   if (!before.length) return null;
   const sets = [['before', model, before], ...(after ? [['after', 'with what it lacked', after]] : [])];
-  const element = section('modes', 'Modes',
-    h('p', {}, 'Undamped natural frequency, damping ratio, and the motion of each mass over that of the largest: bars to the right move with it, bars to the left against it. A pale bar moves out of phase.'),
-    h('div', { class: 'columns wide' }, sets.map(([role, name, set]) => modeTable(role, name, set))));
+  const element = section(
+    'modes',
+    'Modes',
+    h(
+      'p',
+      {},
+      'Undamped natural frequency, damping ratio, and the motion of each mass over that of the largest: bars to the right move with it, bars to the left against it. A pale bar moves out of phase.',
+    ),
+    h(
+      'div',
+      { class: 'columns wide' },
+      sets.map(([role, name, set]) => modeTable(role, name, set)),
+    ),
+  );
   return { element, draw: () => element.querySelectorAll('figure').forEach((own) => drawn(own)) };
 }
 
 function modeTable(role, name, set) {
   const rows = set.map((mode) => [number(mode.frequency), percent(mode.damping), shapeDrawing(mode.parts)]);
-  return figure(`modes-${role}`, null, table(words(name), [['frequency, Hz', 'number'], ['damping', 'number'], ['shape', 'text']], rows, { class: `table modes of-${role}` }));
+  return figure(
+    `modes-${role}`,
+    null,
+    table(
+      words(name),
+      [
+        ['frequency, Hz', 'number'],
+        ['damping', 'number'],
+        ['shape', 'text'],
+      ],
+      rows,
+      { class: `table modes of-${role}` },
+    ),
+  );
 }
 
 function shapeDrawing(parts) {
@@ -22,11 +46,27 @@ function shapeDrawing(parts) {
     const along = Math.cos((part.phase * Math.PI) / 180);
     const length = 58 * part.amplitude * (along < 0 ? -1 : 1);
     const y = 17 * at + 3;
-    return svg('g', {}, svg('title', {}, `${words(part.point)} ${part.axis}: ${number(part.amplitude)} at ${number(part.phase)}°`),
+    return svg(
+      'g',
+      {},
+      svg('title', {}, `${words(part.point)} ${part.axis}: ${number(part.amplitude)} at ${number(part.phase)}°`),
       svg('text', { x: 84, y: y + 9, 'text-anchor': 'end' }, `${words(part.point)} ${part.axis}`),
-      svg('rect', { x: Math.min(zero, zero + length), y, width: Math.max(1, Math.abs(length)), height: 11, style: `opacity:${(0.25 + 0.75 * Math.abs(along)).toFixed(2)}` }));
+      svg('rect', {
+        x: Math.min(zero, zero + length),
+        y,
+        width: Math.max(1, Math.abs(length)),
+        height: 11,
+        style: `opacity:${(0.25 + 0.75 * Math.abs(along)).toFixed(2)}`,
+      }),
+    );
   });
-  const label = moving.map((part) => `${words(part.point)} ${part.axis} ${number(part.amplitude)} at ${number(part.phase, 2)} degrees`).join(', ');
-  return svg('svg', { class: 'shape', viewBox: `0 0 214 ${height}`, width: 214, height, role: 'img', 'aria-label': label },
-    svg('path', { class: 'zero', d: `M${zero} 0V${height}` }), bars);
+  const label = moving
+    .map((part) => `${words(part.point)} ${part.axis} ${number(part.amplitude)} at ${number(part.phase, 2)} degrees`)
+    .join(', ');
+  return svg(
+    'svg',
+    { class: 'shape', viewBox: `0 0 214 ${height}`, width: 214, height, role: 'img', 'aria-label': label },
+    svg('path', { class: 'zero', d: `M${zero} 0V${height}` }),
+    bars,
+  );
 }

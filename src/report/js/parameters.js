@@ -4,18 +4,49 @@ function parameters({ fit, refitted }) {
   const own = Object.values(fit.parameters);
   const changed = refitted.length > 0;
   const rows = own.map((parameter) => {
-    const row = [parameter.name, inUnit(0, parameter.unit).unit, scaledNumber(parameter.start, parameter.unit),
-      scaledNumber(parameter.value, parameter.unit), parameter.stderr === null ? '' : scaledNumber(parameter.stderr, parameter.unit, 2),
-      parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr), rangeBar(parameter, found(refitted, parameter.name)), remark(parameter), ...(changed ? [refittedCell(found(refitted, parameter.name), parameter.unit)] : [])];
+    const row = [
+      parameter.name,
+      inUnit(0, parameter.unit).unit,
+      scaledNumber(parameter.start, parameter.unit),
+      scaledNumber(parameter.value, parameter.unit),
+      parameter.stderr === null ? '' : scaledNumber(parameter.stderr, parameter.unit, 2),
+      parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr),
+      rangeBar(parameter, found(refitted, parameter.name)),
+      remark(parameter),
+      ...(changed ? [refittedCell(found(refitted, parameter.name), parameter.unit)] : []),
+    ];
     row.class = parameter.fitted ? null : 'still';
     return row;
   });
   const ended = `${fit.converged ? 'Converged' : 'Did not converge'}: ${fit.stopped}. ${fit.minima.length ? fit.minima[0].starts : 0} of ${fit.starts} starts found this minimum, cost ${number(fit.cost)} (${number(fit.start_cost)} at the start values).`;
-  const element = section('parameters', 'Parameters',
+  const element = section(
+    'parameters',
+    'Parameters',
     h('p', {}, `Of the model ${fit.model}, fitted to the rig runs before anything was added. ${ended}`),
-    changed ? h('p', { class: 'caution' }, 'While an effect is missing, the fitted values bend to make up for it. The last column holds those that were found together with the effect, from all runs that may be fitted.') : null,
-    table('Fitted parameters', [['parameter', 'text'], ['unit', 'text'], ['start', 'number'], ['value', 'number'], ['standard error', 'number'], ['relative', 'number'], ['in its range', 'text'], ['remark', 'text'], ...(changed ? [['with the effect', 'number']] : [])], rows),
-    correlations(fit.correlations));
+    changed
+      ? h(
+          'p',
+          { class: 'caution' },
+          'While an effect is missing, the fitted values bend to make up for it. The last column holds those that were found together with the effect, from all runs that may be fitted.',
+        )
+      : null,
+    table(
+      'Fitted parameters',
+      [
+        ['parameter', 'text'],
+        ['unit', 'text'],
+        ['start', 'number'],
+        ['value', 'number'],
+        ['standard error', 'number'],
+        ['relative', 'number'],
+        ['in its range', 'text'],
+        ['remark', 'text'],
+        ...(changed ? [['with the effect', 'number']] : []),
+      ],
+      rows,
+    ),
+    correlations(fit.correlations),
+  );
   return { element };
 }
 
@@ -52,12 +83,23 @@ function refittedCell(own, unit) {
 function rangeBar({ range, value, start, fitted }, after) {
   if (!range || !fitted) return '';
   const at = (v) => `${(100 * Math.min(1, Math.max(0, (v - range[0]) / (range[1] - range[0])))).toFixed(1)}%`;
-  return h('span', { class: 'range', role: 'img', 'aria-label': `between ${number(range[0])} and ${number(range[1])}` },
-    h('span', { class: 'tick start', style: `left:${at(start)}` }), h('span', { class: 'tick before', style: `left:${at(value)}` }), after && h('span', { class: 'tick after', style: `left:${at(after.value)}` }));
+  return h(
+    'span',
+    { class: 'range', role: 'img', 'aria-label': `between ${number(range[0])} and ${number(range[1])}` },
+    h('span', { class: 'tick start', style: `left:${at(start)}` }),
+    h('span', { class: 'tick before', style: `left:${at(value)}` }),
+    after && h('span', { class: 'tick after', style: `left:${at(after.value)}` }),
+  );
 }
 
 function correlations(pairs) {
   if (!pairs.length) return h('p', {}, 'No two estimates correlate by more than 0.9.');
-  return table('Estimates that correlate by more than 0.9', [['parameters', 'text'], ['correlation', 'number']],
-    pairs.map(({ between, value }) => [between.join(' and '), number(value)]));
+  return table(
+    'Estimates that correlate by more than 0.9',
+    [
+      ['parameters', 'text'],
+      ['correlation', 'number'],
+    ],
+    pairs.map(({ between, value }) => [between.join(' and '), number(value)]),
+  );
 }

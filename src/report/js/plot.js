@@ -25,7 +25,10 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
     width: Math.max(200, place.clientWidth),
     height,
     class: 'plot',
-    scales: { x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) }, y: { range: y.range || padded } },
+    scales: {
+      x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) },
+      y: { range: y.range || padded },
+    },
     axes: [axis(x, 26, x.log ? 30 : 50), axis(y, 46, 40)],
     series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : number(v, 4)) }, ...series],
     bands: bands(curves),
@@ -45,7 +48,12 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
 function seriesOf({ role, label, values, hidden }, digits) {
   const { width, dash, label: usual } = ROLES[role];
   return {
-    label: label || usual, class: role, width, dash, show: !hidden, spanGaps: false,
+    label: label || usual,
+    class: role,
+    width,
+    dash,
+    show: !hidden,
+    spanGaps: false,
     stroke: width > 0 ? () => colour(role) : undefined,
     points: { show: false },
     value: (u, v) => (v === null || v === undefined ? '' : number(v, digits)),
@@ -54,7 +62,13 @@ function seriesOf({ role, label, values, hidden }, digits) {
 
 function axis({ label, ticks }, size, space) {
   return {
-    label, size, space, labelSize: 16, labelFont: '12px system-ui, sans-serif', font: '11.5px system-ui, sans-serif', gap: 4,
+    label,
+    size,
+    space,
+    labelSize: 16,
+    labelFont: '12px system-ui, sans-serif',
+    font: '11.5px system-ui, sans-serif',
+    gap: 4,
     stroke: () => colour('muted'),
     grid: { stroke: () => colour('grid'), width: 1 },
     ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
@@ -84,7 +98,9 @@ function bands(curves) {
 
 // Only a plot with something to see counts as drawn.
 function marked(u, place) {
-  const visible = u.series.some((series, at) => at > 0 && series.show && u.data[at].some((v) => v !== null && Number.isFinite(v)));
+  const visible = u.series.some(
+    (series, at) => at > 0 && series.show && u.data[at].some((v) => v !== null && Number.isFinite(v)),
+  );
   if (visible && u.bbox.width > 0) drawn(place);
 }
 

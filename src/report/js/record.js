@@ -1,14 +1,55 @@
 // What all this was made from.
 
 function record({ record: own, fit, campaign, discover }) {
-  const element = section('record', 'Data and settings',
+  const element = section(
+    'record',
+    'Data and settings',
     h('p', {}, own.description),
-    own.notices.length ? h('ul', {}, own.notices.map((notice) => h('li', {}, notice))) : null,
-    table('Runs', [['file', 'text'], ['kind', 'text'], ['role', 'text'], ['drive', 'text']], own.runs.map((run) => [run.file, run.kind, roleName(run.role), run.drive])),
-    h('div', { class: 'columns two' },
-      table('Vehicle', [['fact', 'text'], ['value', 'number']], own.vehicle.map(([name, value]) => [name, given(value, vehicleUnit(name))])),
-      table('Sensors', [['name', 'text'], ['location', 'text'], ['axis', 'text'], ['quantity', 'text']], own.sensors.map((sensor) => [sensor.name, sensor.location, sensor.axis, sensor.quantity]))),
-    h('p', {}, `Fit of ${fit.model}: ${own.settings.starts} starts, ${fit.evaluations} evaluations; sensors may be off in gain by ${percent(own.settings.gain_error)} (one standard deviation). Study of ${campaign} by qcar ${own.version} in ${number(own.seconds, 2)} s, of which discovery took ${number(discover.seconds, 2)} s.`));
+    own.notices.length
+      ? h(
+          'ul',
+          {},
+          own.notices.map((notice) => h('li', {}, notice)),
+        )
+      : null,
+    table(
+      'Runs',
+      [
+        ['file', 'text'],
+        ['kind', 'text'],
+        ['role', 'text'],
+        ['drive', 'text'],
+      ],
+      own.runs.map((run) => [run.file, run.kind, roleName(run.role), run.drive]),
+    ),
+    h(
+      'div',
+      { class: 'columns two' },
+      table(
+        'Vehicle',
+        [
+          ['fact', 'text'],
+          ['value', 'number'],
+        ],
+        own.vehicle.map(([name, value]) => [name, given(value, vehicleUnit(name))]),
+      ),
+      table(
+        'Sensors',
+        [
+          ['name', 'text'],
+          ['location', 'text'],
+          ['axis', 'text'],
+          ['quantity', 'text'],
+        ],
+        own.sensors.map((sensor) => [sensor.name, sensor.location, sensor.axis, sensor.quantity]),
+      ),
+    ),
+    h(
+      'p',
+      {},
+      `Fit of ${fit.model}: ${own.settings.starts} starts, ${fit.evaluations} evaluations; sensors may be off in gain by ${percent(own.settings.gain_error)} (one standard deviation). Study of ${campaign} by qcar ${own.version} in ${number(own.seconds, 2)} s, of which discovery took ${number(discover.seconds, 2)} s.`,
+    ),
+  );
   return { element };
 }
 

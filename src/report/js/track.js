@@ -7,7 +7,10 @@ function track({ track: own, simulate }) {
   const charts = [];
   const traces = h('div', { class: 'columns two' });
   const variants = h('div', { class: 'columns two' });
-  const runs = own.runs.map((run) => [run.file, `${plain(3.6 * run.speed, 3)} km/h, ${words(run.cleat)} (${roleName(run.role)})`]);
+  const runs = own.runs.map((run) => [
+    run.file,
+    `${plain(3.6 * run.speed, 3)} km/h, ${words(run.cleat)} (${roleName(run.role)})`,
+  ]);
   const show = (file) => {
     charts.splice(0).forEach(forget);
     const run = own.runs.find((candidate) => candidate.file === file);
@@ -16,18 +19,52 @@ function track({ track: own, simulate }) {
   const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
   const first = own.runs[Math.floor(own.runs.length / 2)].file;
   const histograms = errorFigures(own.histograms);
-  const element = section('track', 'Over the cleat',
-    h('p', {}, 'Accelerations ', key('measured', 'measured'), ' and simulated: ', key('before', 'before'), ', with the parameters of the rig fit', changed ? [', and ', key('after', 'with what was missing'), ', with the parameters that were found together with it'] : null,
-      '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.'),
-    select('Run', runs, first, show), traces,
+  const element = section(
+    'track',
+    'Over the cleat',
+    h(
+      'p',
+      {},
+      'Accelerations ',
+      key('measured', 'measured'),
+      ' and simulated: ',
+      key('before', 'before'),
+      ', with the parameters of the rig fit',
+      changed
+        ? [', and ', key('after', 'with what was missing'), ', with the parameters that were found together with it']
+        : null,
+      '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.',
+    ),
+    select('Run', runs, first, show),
+    traces,
     h('h3', {}, 'Errors over all runs'),
-    h('p', {}, 'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.'),
+    h(
+      'p',
+      {},
+      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
+    ),
     h('div', { class: 'columns four' }, histograms),
-    summaryTable(simulate), details('Every run', errorTable(simulate)),
+    summaryTable(simulate),
+    details('Every run', errorTable(simulate)),
     h('h3', {}, 'Variants of the model'),
-    h('p', {}, 'The complete model, the same with its ', key('locked', 'longitudinal motion locked'), ', and ', key('vertical', 'purely vertical on a point contact'), '.'),
-    variants);
-  return { element, draw: () => { show(first); histograms.forEach((part) => drawn(part)); } };
+    h(
+      'p',
+      {},
+      'The complete model, the same with its ',
+      key('locked', 'longitudinal motion locked'),
+      ', and ',
+      key('vertical', 'purely vertical on a point contact'),
+      '.',
+    ),
+    variants,
+  );
+  return {
+    element,
+    draw: () => {
+      show(first);
+      histograms.forEach((part) => drawn(part));
+    },
+  };
 }
 
 const SECONDS = { label: 'time, s' };
@@ -36,14 +73,28 @@ const ACCELERATION = { label: 'acceleration, m/s²' };
 function drawTraces(run, place) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
   place.replaceChildren(...traces.map((trace) => traceColumn(trace, 'trace')));
-  return traces.map((trace, at) => plot(place.children[at].querySelector('.canvas'), {
-    x: SECONDS, y: ACCELERATION, at: run.time, sync: 'track',
-    curves: [{ role: 'measured', values: trace.measured }, { role: 'before', values: trace.before }, ...(trace.after ? [{ role: 'after', values: trace.after }] : [])],
-  }));
+  return traces.map((trace, at) =>
+    plot(place.children[at].querySelector('.canvas'), {
+      x: SECONDS,
+      y: ACCELERATION,
+      at: run.time,
+      sync: 'track',
+      curves: [
+        { role: 'measured', values: trace.measured },
+        { role: 'before', values: trace.before },
+        ...(trace.after ? [{ role: 'after', values: trace.after }] : []),
+      ],
+    }),
+  );
 }
 
 function traceColumn(trace, kind) {
-  return h('div', { class: 'column' }, h('h4', {}, `${words(trace.mass)}, ${trace.axis}`), figure(kind, null, h('div', { class: 'canvas' })));
+  return h(
+    'div',
+    { class: 'column' },
+    h('h4', {}, `${words(trace.mass)}, ${trace.axis}`),
+    figure(kind, null, h('div', { class: 'canvas' })),
+  );
 }
 
 function drawVariants(run, place) {
@@ -51,9 +102,16 @@ function drawVariants(run, place) {
   place.replaceChildren(...vertical.map((trace) => traceColumn(trace, 'variant')));
   return vertical.map((trace, at) => {
     const chart = plot(place.children[at].querySelector('.canvas'), {
-      x: SECONDS, y: ACCELERATION, at: run.time, sync: 'variants',
-      curves: [{ role: 'measured', values: trace.measured }, { role: trace.after ? 'after' : 'before', label: 'complete', values: trace.after || trace.before },
-        { role: 'locked', values: trace.locked }, { role: 'vertical', values: trace.vertical }],
+      x: SECONDS,
+      y: ACCELERATION,
+      at: run.time,
+      sync: 'variants',
+      curves: [
+        { role: 'measured', values: trace.measured },
+        { role: trace.after ? 'after' : 'before', label: 'complete', values: trace.after || trace.before },
+        { role: 'locked', values: trace.locked },
+        { role: 'vertical', values: trace.vertical },
+      ],
     });
     chart.setScale('x', { min: VARIANT_VIEW[0], max: VARIANT_VIEW[1] });
     return chart;
@@ -63,13 +121,22 @@ function drawVariants(run, place) {
 function errorFigures(histograms) {
   const names = ['body_z', 'body_x'].filter((name) => histograms[name]);
   const wanted = names.length ? names : Object.keys(histograms);
-  return [['peak', 'peak'], ['after_shake', 'after-shake']].flatMap(([metric, text]) => wanted.map((name) => (
-    figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, histogramDrawing(histograms[name][metric])))));
+  return [
+    ['peak', 'peak'],
+    ['after_shake', 'after-shake'],
+  ].flatMap(([metric, text]) =>
+    wanted.map((name) =>
+      figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, histogramDrawing(histograms[name][metric])),
+    ),
+  );
 }
 
 // Bars of both models side by side in each bin.
 function histogramDrawing({ before, after }) {
-  const sets = [['before', before], ['after', after]].filter(([, own]) => own && own.counts.length);
+  const sets = [
+    ['before', before],
+    ['after', after],
+  ].filter(([, own]) => own && own.counts.length);
   if (!sets.length) return h('p', { class: 'note' }, 'no run has this error');
   const width = sets[0][1].width;
   const bin = (own, at) => Math.round(own.start / width) + at;
@@ -80,37 +147,114 @@ function histogramDrawing({ before, after }) {
   const x = (edge) => left + ((edge - low) / (high - low)) * w;
   const y = (count) => top + tall * (1 - count / most);
   const thin = w / (high - low) / sets.length;
-  const bars = sets.flatMap(([role, own], index) => own.counts.map((count, at) => (count === 0 ? null : svg('rect', {
-    class: `bar ${role}`, x: x(bin(own, at)) + index * thin + 0.5, y: y(count), width: Math.max(1, thin - 1), height: top + tall - y(count),
-  }, svg('title', {}, `${role}: ${count} of ${number(100 * width * bin(own, at))} to ${number(100 * width * (bin(own, at) + 1))} %`)))));
+  const bars = sets.flatMap(([role, own], index) =>
+    own.counts.map((count, at) =>
+      count === 0
+        ? null
+        : svg(
+            'rect',
+            {
+              class: `bar ${role}`,
+              x: x(bin(own, at)) + index * thin + 0.5,
+              y: y(count),
+              width: Math.max(1, thin - 1),
+              height: top + tall - y(count),
+            },
+            svg(
+              'title',
+              {},
+              `${role}: ${count} of ${number(100 * width * bin(own, at))} to ${number(100 * width * (bin(own, at) + 1))} %`,
+            ),
+          ),
+    ),
+  );
   const every = [1, 2, 4, 10, 20, 40].find((step) => (high - low) / step <= 5) || 100;
   const ticks = [];
   for (let edge = Math.ceil(low / every) * every; edge <= high; edge += every) ticks.push(edge);
-  return svg('svg', { class: 'histogram', viewBox: '0 0 244 142', role: 'img', 'aria-label': sets.map(([role, own]) => `${role}: ${own.counts.join(', ')} runs in bins of 5 percent from ${number(100 * own.start)} percent`).join('; ') },
-    svg('path', { class: 'frame', d: `M${left} ${top}V${top + tall}H${left + w}` }), svg('path', { class: 'zero', d: `M${x(0)} ${top}V${top + tall}` }), bars,
-    ticks.map((edge) => svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, plain(100 * width * edge, 3))),
+  return svg(
+    'svg',
+    {
+      class: 'histogram',
+      viewBox: '0 0 244 142',
+      role: 'img',
+      'aria-label': sets
+        .map(
+          ([role, own]) =>
+            `${role}: ${own.counts.join(', ')} runs in bins of 5 percent from ${number(100 * own.start)} percent`,
+        )
+        .join('; '),
+    },
+    svg('path', { class: 'frame', d: `M${left} ${top}V${top + tall}H${left + w}` }),
+    svg('path', { class: 'zero', d: `M${x(0)} ${top}V${top + tall}` }),
+    bars,
+    ticks.map((edge) =>
+      svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, plain(100 * width * edge, 3)),
+    ),
     [0, most].map((count) => svg('text', { x: left - 5, y: y(count) + 4, 'text-anchor': 'end' }, String(count))),
-    svg('text', { x: left + w / 2, y: 136, 'text-anchor': 'middle' }, 'error, %'));
+    svg('text', { x: left + w / 2, y: 136, 'text-anchor': 'middle' }, 'error, %'),
+  );
 }
 
-const MODELS = [['before', 'before', ['z', 'x']], ['after', 'with what was missing', ['z', 'x']], ['longitudinally_locked', 'locked', ['z']], ['pure_vertical', 'vertical', ['z']]];
+const MODELS = [
+  ['before', 'before', ['z', 'x']],
+  ['after', 'with what was missing', ['z', 'x']],
+  ['longitudinally_locked', 'locked', ['z']],
+  ['pure_vertical', 'vertical', ['z']],
+];
 
 // A locked model does not move along x, so its errors there say nothing.
 function summaryTable(simulate) {
-  const rows = Object.keys(simulate.before.summary).flatMap((place) => MODELS
-    .filter(([name, , axes]) => simulate[name] && axes.some((axis) => place.endsWith(axis)))
-    .map(([name, text], at) => {
-      const own = simulate[name].summary[place] || {};
-      const sizes = ['peak', 'after_shake'].flatMap((metric) => (own[metric] ? [percent(own[metric].median), percent(own[metric].worst)] : ['–', '–']));
-      return [at === 0 ? words(place) : '', text, ...sizes];
-    }));
-  return table('Size of the errors', [['mass', 'text'], ['model', 'text'], ['peak, median', 'number'], ['worst', 'number'], ['after-shake, median', 'number'], ['worst', 'number']], rows);
+  const rows = Object.keys(simulate.before.summary).flatMap((place) =>
+    MODELS.filter(([name, , axes]) => simulate[name] && axes.some((axis) => place.endsWith(axis))).map(
+      ([name, text], at) => {
+        const own = simulate[name].summary[place] || {};
+        const sizes = ['peak', 'after_shake'].flatMap((metric) =>
+          own[metric] ? [percent(own[metric].median), percent(own[metric].worst)] : ['–', '–'],
+        );
+        return [at === 0 ? words(place) : '', text, ...sizes];
+      },
+    ),
+  );
+  return table(
+    'Size of the errors',
+    [
+      ['mass', 'text'],
+      ['model', 'text'],
+      ['peak, median', 'number'],
+      ['worst', 'number'],
+      ['after-shake, median', 'number'],
+      ['worst', 'number'],
+    ],
+    rows,
+  );
 }
 
 function errorTable(simulate) {
   const last = simulate.after || simulate.before;
-  const rows = last.runs.map((own) => [runName(own.run), roleName(own.role), `${words(own.mass)} ${own.axis}`, number(own.measured_peak), number(own.simulated_peak), percent(own.peak_error),
-    number(own.measured_after_shake), number(own.simulated_after_shake), percent(own.after_shake_error)]);
-  return table('Peaks and after-shakes, m/s²', [['run', 'text'], ['role', 'text'], ['mass', 'text'], ['peak measured', 'number'], ['simulated', 'number'], ['error', 'number'],
-    ['after-shake measured', 'number'], ['simulated', 'number'], ['error', 'number']], rows);
+  const rows = last.runs.map((own) => [
+    runName(own.run),
+    roleName(own.role),
+    `${words(own.mass)} ${own.axis}`,
+    number(own.measured_peak),
+    number(own.simulated_peak),
+    percent(own.peak_error),
+    number(own.measured_after_shake),
+    number(own.simulated_after_shake),
+    percent(own.after_shake_error),
+  ]);
+  return table(
+    'Peaks and after-shakes, m/s²',
+    [
+      ['run', 'text'],
+      ['role', 'text'],
+      ['mass', 'text'],
+      ['peak measured', 'number'],
+      ['simulated', 'number'],
+      ['error', 'number'],
+      ['after-shake measured', 'number'],
+      ['simulated', 'number'],
+      ['error', 'number'],
+    ],
+    rows,
+  );
 }

@@ -2,29 +2,45 @@
 
 function verdict(data) {
   const { summary, discover } = data;
-  const element = section('verdict', 'Verdict',
+  const element = section(
+    'verdict',
+    'Verdict',
     h('p', { class: 'lead' }, lead(data)),
     h('p', {}, consequence(discover, summary)),
-    h('div', { class: 'answers' }, [fitAnswer(data), cleatAnswer(data), gapAnswer(discover), ...discover.effects.map(effectAnswer)]));
+    h('div', { class: 'answers' }, [
+      fitAnswer(data),
+      cleatAnswer(data),
+      gapAnswer(discover),
+      ...discover.effects.map(effectAnswer),
+    ]),
+  );
   return { element };
 }
 
 function lead({ summary, discover }) {
-  if (summary.verdict === 'found') return `Missing: ${discover.effects.map((effect) => `${words(effect.name)} at ${words(effect.at)}`).join(', and ')}.`;
+  if (summary.verdict === 'found')
+    return `Missing: ${discover.effects.map((effect) => `${words(effect.name)} at ${words(effect.at)}`).join(', and ')}.`;
   return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
 }
 
 function consequence(discover, { verdict: kind }) {
-  const judged = discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
+  const judged =
+    discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
   const [which, gap] = judged;
   const before = `${number(gap.before)} times its uncertainty`;
   const rival = discover.effects[0] && discover.effects[0].rivals[0];
-  const next = rival ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${number(rival.behind, 2)} behind in the sum of squares, scaled to the scatter that is left.` : '';
+  const next = rival
+    ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${number(rival.behind, 2)} behind in the sum of squares, scaled to the scatter that is left.`
+    : '';
   switch (kind) {
-    case 'none': return `On ${which} runs the model leaves a gap of ${before}; 1 is noise. No effect of the catalogue is called for.`;
-    case 'found': return `On ${which} runs the model left a gap of ${before}; with what was missing, ${number(gap.after)} is left, and 1 is noise.${next}`;
-    case 'class': return `On ${which} runs the model leaves a gap of ${before}. Several effects close it alike, and these data cannot tell them apart.`;
-    default: return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.`;
+    case 'none':
+      return `On ${which} runs the model leaves a gap of ${before}; 1 is noise. No effect of the catalogue is called for.`;
+    case 'found':
+      return `On ${which} runs the model left a gap of ${before}; with what was missing, ${number(gap.after)} is left, and 1 is noise.${next}`;
+    case 'class':
+      return `On ${which} runs the model leaves a gap of ${before}. Several effects close it alike, and these data cannot tell them apart.`;
+    default:
+      return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.`;
   }
 }
 
@@ -34,8 +50,16 @@ function answer(title, ...lines) {
 
 // A value before and after in the colours of both.
 function step(what, before, after) {
-  return h('p', {}, h('span', { class: 'what' }, what), ' ', h('span', { class: after === null ? '' : 'before' }, before),
-    after === null ? null : [h('span', { class: 'arrow', 'aria-label': 'to' }, ' → '), h('span', { class: 'after' }, after)]);
+  return h(
+    'p',
+    {},
+    h('span', { class: 'what' }, what),
+    ' ',
+    h('span', { class: after === null ? '' : 'before' }, before),
+    after === null
+      ? null
+      : [h('span', { class: 'arrow', 'aria-label': 'to' }, ' → '), h('span', { class: 'after' }, after)],
+  );
 }
 
 function mean(values) {
@@ -44,18 +68,26 @@ function mean(values) {
 
 function fitAnswer({ rig: ratios }) {
   const roles = ['fit', 'held_out'].map((role) => [role, ratios.filter((ratio) => ratio.role === role)]);
-  const lines = roles.filter(([, own]) => own.length).map(([role, own]) => {
-    const after = own.every((ratio) => ratio.quality_after) ? mean(own.map((ratio) => ratio.quality_after.fit_magnitude)) : null;
-    return step(role === 'fit' ? 'fitted' : 'held out', `${number(mean(own.map((r) => r.quality_before.fit_magnitude)))} %`,
-      after === null ? null : `${number(after)} %`);
-  });
+  const lines = roles
+    .filter(([, own]) => own.length)
+    .map(([role, own]) => {
+      const after = own.every((ratio) => ratio.quality_after)
+        ? mean(own.map((ratio) => ratio.quality_after.fit_magnitude))
+        : null;
+      return step(
+        role === 'fit' ? 'fitted' : 'held out',
+        `${number(mean(own.map((r) => r.quality_before.fit_magnitude)))} %`,
+        after === null ? null : `${number(after)} %`,
+      );
+    });
   return answer('Rig fit, magnitude', lines);
 }
 
 function cleatAnswer({ simulate }) {
   if (!simulate) return null;
   const of = (metric) => {
-    const median = (set) => (set && set.summary.body_z && set.summary.body_z[metric] ? set.summary.body_z[metric].median : null);
+    const median = (set) =>
+      set && set.summary.body_z && set.summary.body_z[metric] ? set.summary.body_z[metric].median : null;
     return [median(simulate.before), median(simulate.after)];
   };
   const line = (what, [before, after]) => step(what, percent(before), after === null ? null : percent(after));
@@ -63,13 +95,17 @@ function cleatAnswer({ simulate }) {
 }
 
 function gapAnswer({ gap, effects }) {
-  const line = (what, { before, after }) => (before === null ? null : step(what, number(before), effects.length ? number(after) : null));
+  const line = (what, { before, after }) =>
+    before === null ? null : step(what, number(before), effects.length ? number(after) : null);
   return answer('Gap over its uncertainty', line('fitted', gap.fit), line('held out', gap.held_out));
 }
 
 function effectAnswer(effect) {
-  const lines = Object.entries(effect.parameters).filter(([name]) => effect.stderr[name] !== null).map(([name, value]) => (
-    h('p', {}, h('span', { class: 'what' }, name), ' ', measured(value, effect.stderr[name], unitOf(name)))));
+  const lines = Object.entries(effect.parameters)
+    .filter(([name]) => effect.stderr[name] !== null)
+    .map(([name, value]) =>
+      h('p', {}, h('span', { class: 'what' }, name), ' ', measured(value, effect.stderr[name], unitOf(name))),
+    );
   return answer(`${words(effect.name)} at ${words(effect.at)}`, lines);
 }
 
