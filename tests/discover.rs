@@ -27,6 +27,25 @@ fn what_is_left_of_a_clean_campaign_is_noise() {
     assert_eq!(answer["effects"], Value::Array(Vec::new()));
 }
 
+/// Published for the drive: Fc 20.39 N (Janot, Gautier and Brunot 2019). The damper's friction is not known, but its loops
+/// are some 400 N wide where it hardly moves.
+#[test]
+fn dry_friction_is_named_in_measurements_of_real_hardware() {
+    for (name, least, most) in [("emps", 20.0, 21.0), ("mr_damper", 150.0, 400.0)] {
+        let campaign = Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("models/campaigns")
+            .join(name);
+        let answer = discover(&campaign, None);
+        assert_eq!(answer["verdict"], "found", "{answer}");
+        assert_eq!(answer["effects"][0]["name"], "coulomb_friction");
+        assert_eq!(answer["effects"].as_array().map(Vec::len), Some(1));
+        let found = answer["effects"][0]["parameters"]["f_coulomb"]
+            .as_f64()
+            .expect("a number");
+        assert!((least..=most).contains(&found), "{name}: {found} N");
+    }
+}
+
 #[test]
 fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     let folder = tempfile::tempdir().expect("a folder");

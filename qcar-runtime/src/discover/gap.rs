@@ -90,6 +90,24 @@ impl Gap {
     }
 }
 
+impl Gap {
+    /// The share of the variance of these runs' records over time for which the model does not account; `None` without
+    /// such records.
+    pub fn missed(&self, evidence: &Evidence, role: Role) -> Option<f64> {
+        let of_role = evidence.of_role(role);
+        let shares: Vec<f64> = of_role
+            .filter(|(_, series)| series.kind == Kind::Time)
+            .map(|(place, series)| {
+                let residuals = self.residuals[place].iter().zip(&series.sigma);
+                let missed = rms(residuals.map(|(residual, sigma)| residual * sigma));
+                let mean = series.value.iter().map(|value| value.re).sum::<f64>() / series.value.len() as f64;
+                (missed / rms(series.value.iter().map(|value| value.re - mean))).powi(2)
+            })
+            .collect();
+        (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / shares.len() as f64)
+    }
+}
+
 /// Root of the mean square; NaN of nothing.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));

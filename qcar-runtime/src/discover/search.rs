@@ -107,7 +107,8 @@ pub fn discover(
     if !judge.is_gap(&before) {
         return Ok(verdict(Verdict::None, Vec::new(), &before));
     }
-    let first = base.contenders(evidence, progress)?;
+    let mut first = base.contenders(evidence, progress)?;
+    judge.simplest_first(&mut first);
     let mut best: Option<Path> = None;
     for pick in (0..first.len())
         .filter(|&pick| judge.is_significant(&base, &first[pick]))
@@ -173,7 +174,8 @@ impl Path {
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
         while self.findings.len() < MOST_EFFECTS && !judge.is_enough(&self) && self.class.len() < 2 {
-            let contenders = self.state.contenders(evidence, progress)?;
+            let mut contenders = self.state.contenders(evidence, progress)?;
+            judge.simplest_first(&mut contenders);
             match contenders.first() {
                 Some(best) if judge.is_significant(&self.state, best) => self = self.taking(&contenders, 0, judge),
                 _ => break,

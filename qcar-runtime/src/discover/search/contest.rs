@@ -51,7 +51,8 @@ const STAGES: [Stage; 4] = [
         evaluations: 3,
         starts: 2,
         kept: 14,
-        share: 0.2,
+        // So few steps tell who is far from any use, not yet who is better than no change.
+        share: f64::NEG_INFINITY,
     },
     Stage {
         first: false,

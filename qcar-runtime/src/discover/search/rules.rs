@@ -17,21 +17,30 @@ const CLOSED: f64 = 0.6;
 const LEFT: f64 = 1.5;
 /// See [`LEFT`].
 const ALL_CLOSED: f64 = 0.97;
+/// A model is good that accounts for so much of the variance of records over time: hardware does not repeat itself to
+/// the precision of its sensors.
+const ACCOUNTED: f64 = 0.95;
 /// A rival that is no farther behind cannot be told apart.
 const ALIKE: f64 = 20.0;
+/// An explanation that leaves something unexplained is no judge of differences below this share of it.
+const VAGUE: f64 = 0.05;
 
 /// Holds explanations against the base model's, on runs that no fit has seen where there are any.
 pub struct Judge<'a> {
+    evidence: &'a Evidence,
     before: &'a Explanation,
-    held_out: bool,
+    /// The runs that judge: held-out ones where there are any.
+    role: Role,
 }
 
 impl<'a> Judge<'a> {
     /// With the base model's explanation.
-    pub fn new(evidence: &Evidence, before: &'a Explanation) -> Self {
+    pub fn new(evidence: &'a Evidence, before: &'a Explanation) -> Self {
+        let held_out = evidence.of_role(Role::HeldOut).next().is_some();
         Judge {
+            evidence,
             before,
-            held_out: evidence.of_role(Role::HeldOut).next().is_some(),
+            role: if held_out { Role::HeldOut } else { Role::Fit },
         }
     }
 
@@ -53,7 +62,9 @@ impl<'a> Judge<'a> {
 
     fn leaves_enough(&self, after: &Explanation, effects: usize) -> bool {
         let closed = self.closed(self.before, after);
-        let little = self.gap(after) < LEFT || effects < 2 && closed > ALL_CLOSED;
+        let missed = after.gap.missed(self.evidence, self.role);
+        let is_good = missed.is_some_and(|missed| 1.0 - missed > ACCOUNTED);
+        let little = self.gap(after) < LEFT || effects < 2 && closed > ALL_CLOSED || is_good;
         effects > 0 && little && closed > CLOSED
     }
 
@@ -63,14 +74,26 @@ impl<'a> Judge<'a> {
         worse && self.gap(&without.explanation) > LEFT
     }
 
+    /// Brings the simplest of those to the front that explain as much as the best, as far as that can judge.
+    pub fn simplest_first(&self, contenders: &mut [Contender]) {
+        let Some(best) = contenders.first() else { return };
+        let limit = best.score + vague(best);
+        let as_good = contenders.iter().take_while(|contender| contender.score <= limit);
+        let simplest = as_good.enumerate().min_by_key(|(_, contender)| contender.unknowns());
+        let place = simplest.map_or(0, |(place, _)| place);
+        contenders[..=place].rotate_right(1);
+    }
+
     /// Those that cannot be told from the one that is picked, itself included. One with more unknowns that explains no
     /// more contains it, and is no other answer.
     pub fn alike<'c>(&self, contenders: &'c [Contender], pick: usize) -> impl Iterator<Item = &'c Contender> {
         let best = &contenders[pick];
+        let near = (ALIKE * scatter(&best.explanation)).max(vague(best));
         let alike = move |contender: &&Contender| {
-            let explains_more = contender.explanation.refit.chi2 < best.explanation.refit.chi2;
+            let explains_more = contender.explanation.refit.chi2 < best.explanation.refit.chi2 - vague(best);
             let is_it = std::ptr::eq(*contender, best);
-            is_it || behind(contender, best) < ALIKE && (contender.unknowns() <= best.unknowns() || explains_more)
+            let is_near = contender.score - best.score < near;
+            is_it || is_near && (contender.unknowns() <= best.unknowns() || explains_more)
         };
         contenders[pick..].iter().filter(alike)
     }
@@ -94,12 +117,11 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// The gap that judges: that of the held-out runs where there are any.
+    /// The gap that judges.
     fn gap(&self, explanation: &Explanation) -> f64 {
-        if self.held_out {
-            explanation.gap.held_out
-        } else {
-            explanation.gap.fit
+        match self.role {
+            Role::HeldOut => explanation.gap.held_out,
+            Role::Fit => explanation.gap.fit,
         }
     }
 
@@ -108,6 +130,12 @@ impl<'a> Judge<'a> {
         let excess = |explanation| (self.gap(explanation).powi(2) - 1.0).max(0.0);
         1.0 - excess(after) / excess(before).max(f64::MIN_POSITIVE)
     }
+}
+
+/// The difference of sums of squares that an explanation cannot judge, since it leaves more than noise itself.
+fn vague(contender: &Contender) -> f64 {
+    let refit = &contender.explanation.refit;
+    VAGUE * (refit.chi2 - refit.residuals as f64).max(0.0)
 }
 
 fn behind(contender: &Contender, best: &Contender) -> f64 {
