@@ -4,6 +4,7 @@ mod cleat;
 
 use cleat::{car, cleat, drive, parameters};
 use divan::Bencher;
+use qcar_runtime::progress::UNTOLD;
 use qcar_runtime::simulate::{Settings, ride, rides};
 
 fn main() {
@@ -27,5 +28,5 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
         .into_iter()
         .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh)))
         .collect();
-    bencher.bench_local(|| rides(&car, &drives, &Settings::default()));
+    bencher.bench_local(|| rides(&car, &drives, &Settings::default(), UNTOLD));
 }

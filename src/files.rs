@@ -1,7 +1,8 @@
 //! Text files to read and to write.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use qcar_runtime::error::{InputError, Place, Problem};
 
@@ -16,15 +17,34 @@ pub fn read_text(file: &Path) -> Result<String, InputError> {
     })
 }
 
+/// The files that stand complete, in the order in which they were written; held while one is being written.
+static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
 /// Writes a file whole under another name, then renames it, so that nothing half-written looks complete.
 ///
 /// # Errors
 /// A folder that cannot be made or written to.
 pub fn put(folder: &Path, name: &str, content: &str) -> Result<(), InputError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
-    let written = fs::create_dir_all(folder).and_then(|()| fs::write(&unfinished, content));
-    written.and_then(|()| fs::rename(&unfinished, &path)).map_err(|error| {
-        let remedy = "choose another folder, or make room there";
-        Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into()
-    })
+    let mut written = close();
+    let put = fs::create_dir_all(folder)
+        .and_then(|()| fs::write(&unfinished, content))
+        .and_then(|()| fs::rename(&unfinished, &path));
+    match put {
+        Ok(()) => {
+            written.push(path);
+            Ok(())
+        }
+        Err(error) => {
+            // Of no use to anybody; where even that fails, its name says what it is.
+            let _ = fs::remove_file(&unfinished);
+            let remedy = "choose another folder, or make room there";
+            Err(Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into())
+        }
+    }
+}
+
+/// Waits for the file that is being written. As long as the list of complete files is held, no other is begun.
+pub fn close() -> MutexGuard<'static, Vec<PathBuf>> {
+    WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)
 }

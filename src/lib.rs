@@ -15,6 +15,8 @@ pub mod figure;
 pub mod report;
 // Signs of life meanwhile.
 pub mod progress;
+// What becomes of both when the user stops the work.
+pub mod interruption;
 // Parameter values from files and flags.
 pub mod parameters;
 // A model, compiled in or read at run time.

@@ -6,8 +6,10 @@ use std::process::ExitCode;
 use clap::Parser;
 use qcar::cli::Cli;
 use qcar::failure::Failure;
+use qcar::interruption;
 
 fn main() -> ExitCode {
+    interruption::listen();
     match Cli::parse().run() {
         Ok(text) => print(&text, 0),
         Err(failure) => {

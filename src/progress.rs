@@ -1,8 +1,14 @@
-//! Signs of life on standard error, for work that may take longer than a second.
+//! Signs of life on standard error, for work that may take longer than a second: what is being done, and how far it is.
+//! They are seen on a terminal alone, never in a pipe or a file.
 
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 use indicatif::{ProgressBar, ProgressStyle};
+use qcar_runtime::progress::Told;
+
+/// What is shown now, so that an interruption can say what it ended.
+static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
 /// A sign of life whose words change, gone when it is dropped.
 pub struct Showing(ProgressBar);
@@ -10,15 +16,25 @@ pub struct Showing(ProgressBar);
 impl Showing {
     /// Says nothing yet.
     pub fn new() -> Self {
-        let style = ProgressStyle::with_template("{spinner} {msg} {elapsed}").expect("the template is well formed");
-        let bar = ProgressBar::new_spinner().with_style(style);
+        let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg} {elapsed}"));
         bar.enable_steady_tick(Duration::from_millis(100));
+        show(Some(bar.clone()));
         Showing(bar)
     }
 
     /// Says what is being done.
     pub fn tell(&self, what: String) {
         self.0.set_message(what);
+    }
+
+    /// Says how much of it is done, and of how much.
+    pub fn far(&self, done: usize, of: usize) {
+        if self.0.length() != Some(of as u64) {
+            self.0
+                .set_style(style("{spinner} {msg} {pos} of {len} {bar:24} {elapsed}"));
+            self.0.set_length(of as u64);
+        }
+        self.0.set_position(done as u64);
     }
 }
 
@@ -31,12 +47,32 @@ impl Default for Showing {
 impl Drop for Showing {
     fn drop(&mut self) {
         self.0.finish_and_clear();
+        show(None);
     }
 }
 
-/// Runs `work` while a terminal shows what is being done and for how long. Elsewhere nothing is shown.
-pub fn while_showing<T>(what: String, work: impl FnOnce() -> T) -> T {
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the template is well formed")
+}
+
+fn show(bar: Option<ProgressBar>) -> Option<ProgressBar> {
+    let mut shown = SHOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    std::mem::replace(&mut shown, bar)
+}
+
+/// Takes away what is shown, and gives its words.
+pub fn clear() -> Option<String> {
+    let bar = show(None)?;
+    let far = bar
+        .length()
+        .map_or(String::new(), |of| format!(" {} of {of}", bar.position()));
+    bar.finish_and_clear();
+    Some(bar.message() + &far)
+}
+
+/// Runs `work`, which tells how far it is, while a terminal shows it.
+pub fn while_counting<T>(what: String, work: impl FnOnce(Told<'_>) -> T) -> T {
     let showing = Showing::new();
     showing.tell(what);
-    work()
+    work(&|done, of| showing.far(done, of))
 }

@@ -9,6 +9,8 @@ pub mod model;
 pub mod generated;
 // What every part reports through.
 pub mod error;
+// How far long work is.
+pub mod progress;
 // The measurement as it lies on disk.
 pub mod campaign;
 // From time histories to transmissibilities.

@@ -2,6 +2,7 @@
 
 mod roller;
 
+use qcar_runtime::progress::UNTOLD;
 use qcar_runtime::road::{Road, RoadError, Shape};
 use qcar_runtime::simulate::{Drive, Method, Ride, Settings, SimulateError, Variant, ride, rides};
 use roller::{GAP, K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
@@ -217,7 +218,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
             .num_threads(threads)
             .build()
             .expect("threads");
-        pool.install(|| rides(&car, &drives, &Settings::default()))
+        pool.install(|| rides(&car, &drives, &Settings::default(), UNTOLD))
     };
     let (one, four) = (with(1), with(4));
     assert_eq!(one.len(), 12);

@@ -10,12 +10,13 @@ use qcar_runtime::error::InputError;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
+use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
-use crate::progress::while_showing;
+use crate::progress::while_counting;
 
 // The result as text and JSON.
 pub(crate) mod render;
@@ -142,13 +143,12 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, choices)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
-    let measure = || levels(&campaign, model.about(), wanted, &Options::default());
-    let levels = while_showing(format!("{}: estimating transmissibilities", campaign.name), measure)?;
+    let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
+    let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
-    let fit = while_showing(format!("{}: fitting {}", campaign.name, model.about().name), || {
-        setup.fit()
-    });
+    let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
+    let fit = while_counting(searches, |told| setup.fit_telling(told));
     Ok(Fitted {
         seconds: begun.elapsed().as_secs_f64(),
         campaign,

@@ -5,13 +5,14 @@ use std::path::PathBuf;
 use clap::{Args, ValueEnum};
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::parameters::{self, Setting};
-use crate::progress::while_showing;
+use crate::progress::while_counting;
 
 // Simulated beside measured.
 pub(crate) mod compared;
@@ -116,8 +117,8 @@ pub(crate) fn drive(
         variant,
     };
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
-    let simulate = || rides(&car, &drives, &Settings::default());
-    let rides = while_showing(format!("{}: {} rides", campaign.name, drives.len()), simulate);
+    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
     let compared = compared::compare(model.about(), cleats, &rides)?;
     Ok(Driven { rides, compared })

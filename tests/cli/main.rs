@@ -6,6 +6,7 @@ mod common;
 mod effects;
 mod fits;
 mod help;
+mod interruption;
 mod newcomer;
 mod readme;
 mod rides;

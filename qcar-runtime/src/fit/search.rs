@@ -7,7 +7,7 @@
 use super::setup::Setup;
 use crate::least_squares::{Bounds, Options, Outcome};
 use crate::model::Model;
-use rayon::prelude::*;
+use crate::progress::{self, Told};
 
 /// What ends a local search: tight enough that searches to one minimum agree on it.
 pub(super) const OPTIONS: Options = Options {
@@ -40,9 +40,9 @@ pub(super) struct Minimum {
 }
 
 impl Search {
-    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Self {
+    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, told: Told<'_>) -> Self {
         let points = starts(&setup.start(), &setup.bounds, setup.plan.starts.max(1), setup.plan.seed);
-        let outcomes: Vec<Outcome> = points.par_iter().map(|start| setup.local(start)).collect();
+        let outcomes: Vec<Outcome> = progress::map(&points, told, |start| setup.local(start));
         let evaluations = outcomes.iter().map(|outcome| outcome.evaluations).sum();
         let minima = distinct(&outcomes);
         // Without any converged search the first one is reported, with why it stopped.

@@ -10,6 +10,7 @@ use crate::campaign::{self, Role};
 use crate::error::{InputError, Place, Problem};
 use crate::least_squares::{self, Bounds, Outcome};
 use crate::model::Model;
+use crate::progress::{Told, UNTOLD};
 use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::signal::{SignalError, Term, locate};
@@ -91,7 +92,12 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
 
     /// Searches from all starts and reports the best minimum with its error bars.
     pub fn fit(&self) -> Fit {
-        let search = Search::run(self);
+        self.fit_telling(UNTOLD)
+    }
+
+    /// The same; `told` hears search by search how far it is.
+    pub fn fit_telling(&self, told: Told<'_>) -> Fit {
+        let search = Search::run(self, told);
         let uncertainty = uncertainty::estimate(self, &search.best);
         report::report(self, &search, &uncertainty)
     }

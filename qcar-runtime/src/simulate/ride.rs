@@ -1,7 +1,5 @@
 //! Rides over a road at constant speed.
 
-use rayon::prelude::*;
-
 use super::car::Car;
 use super::failure::{SimulateError, positive};
 use super::recorder::Recorder;
@@ -9,6 +7,7 @@ use super::rolling::Rolling;
 use super::sampling::{AntiAlias, Grid};
 use super::settings::Settings;
 use crate::model::Model;
+use crate::progress::{self, Told};
 use crate::road::Road;
 use crate::solver::Effort;
 use crate::tyre::{Geometry, Tyre};
@@ -50,7 +49,8 @@ pub struct Ride {
     pub effort: Effort,
 }
 
-/// Simulates each ride, in parallel; the results do not depend on the number of threads.
+/// Simulates each ride, in parallel; the results do not depend on the number of threads. Ride by ride `told` hears how
+/// far it is.
 ///
 /// # Errors
 /// For each ride as [`ride`].
@@ -58,8 +58,9 @@ pub fn rides<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drives: &[Drive<'_>],
     settings: &Settings,
+    told: Told<'_>,
 ) -> Vec<Result<Ride, SimulateError>> {
-    drives.par_iter().map(|drive| ride(car, drive, settings)).collect()
+    progress::map(drives, told, |drive| ride(car, drive, settings))
 }
 
 /// Simulates a ride that begins at rest on the flat ground before the road.

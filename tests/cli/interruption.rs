@@ -1,0 +1,91 @@
+//! Ctrl-C at any time: exit status 130, a word on what was written, and no file that is not whole.
+
+use std::fs;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::thread::sleep;
+use std::time::Duration;
+
+use crate::common::repository;
+
+/// Starts `qcar` and returns once it listens to Ctrl-C.
+fn started(folder: &Path, line: &str) -> Child {
+    let child = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    while !listens(child.id()) {
+        sleep(Duration::from_millis(1));
+    }
+    child
+}
+
+/// Whether a process catches SIGINT, by the mask of its signals.
+fn listens(process: u32) -> bool {
+    let status = fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(mask.trim(), 16).unwrap() & 2 != 0
+}
+
+/// Presses Ctrl-C and gives exit status, standard output and standard error.
+fn interrupted(child: Child) -> (Option<i32>, String, String) {
+    let pressed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(pressed.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let text = |bytes| String::from_utf8(bytes).unwrap();
+    (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn a_search_that_is_stopped_says_that_nothing_was_written() {
+    let folder = repository();
+    for line in [
+        "discover models/campaigns/axle_a_rig --out results",
+        "fit models/campaigns/axle_a_rig --starts 10000 --out results",
+    ] {
+        let child = started(folder.path(), line);
+        sleep(Duration::from_millis(300));
+        let (status, said, told) = interrupted(child);
+        assert_eq!((status, said.as_str()), (Some(130), ""), "{told}");
+        assert!(told.starts_with("interrupted"), "{told}");
+        assert!(told.contains("no file was written"), "{told}");
+        assert!(!folder.path().join("results").exists());
+    }
+}
+
+#[test]
+fn files_are_whole_whenever_writing_is_stopped() {
+    let folder = repository();
+    // Three files of some hundred kilobytes each; the interruption comes as soon as their folder shows.
+    let rides = folder.path().join("rides");
+    let child = started(folder.path(), "simulate models/campaigns/axle_a_rig --out rides");
+    while !rides.is_dir() {
+        sleep(Duration::from_micros(200));
+    }
+    let (status, _, told) = interrupted(child);
+    let files: Vec<_> = fs::read_dir(&rides)
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .collect();
+    for file in &files {
+        assert_eq!(file.extension().unwrap(), "csv", "{told}");
+        let text = fs::read_to_string(file).unwrap();
+        let columns = text.lines().next().unwrap().split(',').count();
+        assert!(text.ends_with('\n') && text.lines().all(|line| line.split(',').count() == columns));
+        let name = file.file_name().unwrap().to_str().unwrap();
+        assert!(status == Some(0) || told.contains(name), "{name} is not in: {told}");
+    }
+    assert!(matches!(status, Some(0 | 130)), "{status:?} {told}");
+    assert!(!files.is_empty(), "{told}");
+}
+
+#[test]
+fn progress_is_for_terminals_alone() {
+    let folder = repository();
+    let child = started(folder.path(), "fit models/campaigns/axle_a_rig --starts 2");
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
