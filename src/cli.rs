@@ -11,7 +11,7 @@ use crate::verbs::{
 ///
 /// A MODEL is the name of a shipped model (`qcar show` lists them) or the path of a model file.
 /// Results go to standard output, progress and errors to standard error.
-/// The exit status is 0 when all is well, 1 for a finding, 2 for an input that cannot be used.
+/// The exit status is 0 when all is well, 1 for a finding, 2 for an input that cannot be used, 130 after Ctrl-C.
 #[derive(Parser)]
 // The same width everywhere, so that help reads in a terminal as it does in the tests.
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
