@@ -40,7 +40,10 @@ pub struct Plan {
 
 const SPEEDS: [f64; 3] = [20.0, 30.0, 40.0];
 const HEIGHTS: [u32; 4] = [10, 20, 30, 40];
-const LEVELS: [(u32, &str); 5] = [
+/// Noise of the accelerometers on the track, m/s².
+pub const TRACK_NOISE: f64 = 0.06;
+/// Levels of the sweeps, mm/s, and their roles.
+pub const LEVELS: [(u32, &str); 5] = [
     (5, "held_out"),
     (25, "fit"),
     (50, "held_out"),
@@ -156,12 +159,7 @@ fn channels(plan: &Plan) -> Vec<(&'static str, &'static str, &'static str, &'sta
 
 fn write_sweeps(plan: &Plan, left: &Corner, right: &Corner, folder: &Path, toml: &mut String) -> std::io::Result<()> {
     for (level, role) in LEVELS {
-        let sweep = Sweep {
-            peak_velocity: f64::from(level) / 1000.0,
-            from: 0.5,
-            to: 30.0,
-            seconds: 42.25,
-        };
+        let sweep = Sweep::of_level(level);
         let (here, there) = (rig::run(left, &sweep), rig::run(right, &sweep));
         let file = format!("rig/sweep_{level:03}.csv.gz");
         let columns: Vec<(&str, Vec<f64>)> = channels(plan)
@@ -243,36 +241,41 @@ fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) 
             toml,
             "\n[[road]]\nname = \"cleat_{height}\"\nfile = \"road/cleat_{height}.csv\"\n"
         );
-        for (i, speed) in SPEEDS.into_iter().enumerate() {
-            let track = cleat::run(corner, &road, speed / 3.6, 1.5);
-            let file = format!("cleat/v{speed:.0}_h{height}.csv");
-            let columns: Vec<(&str, Vec<f64>)> = channels(plan)
-                .into_iter()
-                .filter(|&(_, location, side, _)| location != "pad" && side != "right")
-                .map(|(name, location, _, axis)| {
-                    let run = 1000 * height + i as u32;
-                    (
-                        name,
-                        record(plan, name, location, 0.06, run, track_motion(&track, location, axis)),
-                    )
-                })
-                .collect();
-            write_history(&folder.join(&file), &columns)?;
-            // One height in four of each speed is fitted, so that both are spread over the set.
-            let role = if (height / 10 + i as u32).is_multiple_of(4) {
-                "fit"
-            } else {
-                "held_out"
-            };
-            let _ = write!(
-                toml,
-                "\n[[run]]\nkind = \"cleat\"\nfile = \"{file}\"\nrole = \"{role}\"\nspeed = {:.7}\n\
-                 sample_rate = {RATE:?}\ncleat = \"cleat_{height}\"\n",
-                speed / 3.6
-            );
-        }
+    }
+    for (height, i, speed, role) in cleat_runs() {
+        let track = cleat::run(corner, &Road::cleat(f64::from(height) / 1000.0), speed / 3.6, 1.5);
+        let file = format!("cleat/v{speed:.0}_h{height}.csv");
+        let columns: Vec<(&str, Vec<f64>)> = channels(plan)
+            .into_iter()
+            .filter(|&(_, location, side, _)| location != "pad" && side != "right")
+            .map(|(name, location, _, axis)| {
+                let motion = track_motion(&track, location, axis);
+                (
+                    name,
+                    record(plan, name, location, TRACK_NOISE, 1000 * height + i, motion),
+                )
+            })
+            .collect();
+        write_history(&folder.join(&file), &columns)?;
+        let _ = write!(
+            toml,
+            "\n[[run]]\nkind = \"cleat\"\nfile = \"{file}\"\nrole = \"{role}\"\nspeed = {:.7}\n\
+             sample_rate = {RATE:?}\ncleat = \"cleat_{height}\"\n",
+            speed / 3.6
+        );
     }
     Ok(())
+}
+
+/// Height in mm, number of the speed, speed in km/h and role of every run over a cleat. One height in four of each
+/// speed is fitted, so that both are spread over the set.
+pub fn cleat_runs() -> impl Iterator<Item = (u32, u32, f64, &'static str)> {
+    HEIGHTS.into_iter().flat_map(|height| {
+        SPEEDS.into_iter().zip(0..).map(move |(speed, i)| {
+            let fitted = (height / 10 + i).is_multiple_of(4);
+            (height, i, speed, if fitted { "fit" } else { "held_out" })
+        })
+    })
 }
 
 fn track_motion<'a>(track: &'a Track, location: &str, axis: &str) -> &'a [f64] {
@@ -391,4 +394,37 @@ pub fn parameters(a: &Axle, model: Layout) -> Vec<(String, f64, f64)> {
     all.into_iter()
         .map(|(name, value, off)| (name.to_owned(), value, off))
         .collect()
+}
+
+/// The parameters that a fit may move.
+pub fn moving(plan: &Plan) -> impl Iterator<Item = &str> {
+    plan.parameters
+        .iter()
+        .filter(|(_, _, off)| *off > 0.0)
+        .map(|(name, ..)| name.as_str())
+}
+
+/// A parameter of an axle by its name.
+pub fn value<'a>(a: &'a mut Axle, name: &str) -> &'a mut f64 {
+    match name {
+        "m_wheel" => &mut a.m_wheel,
+        "m_pwt" => &mut a.m_pwt,
+        "k_wheel_z" => &mut a.k_wheel_z,
+        "c_wheel_z" => &mut a.c_wheel_z,
+        "k_tm" => &mut a.k_tm,
+        "c_tm" => &mut a.c_tm,
+        "k_sf_z" => &mut a.k_sf_z,
+        "c_sf_z" => &mut a.c_sf_z,
+        "k_pwt_z" => &mut a.k_pwt_z,
+        "c_pwt_z" => &mut a.c_pwt_z,
+        "k_wheel_x" => &mut a.k_wheel_x,
+        "c_wheel_x" => &mut a.c_wheel_x,
+        "k_sf_x" => &mut a.k_sf_x,
+        "c_sf_x" => &mut a.c_sf_x,
+        "k_pwt_x" => &mut a.k_pwt_x,
+        "c_pwt_x" => &mut a.c_pwt_x,
+        "k_tire" => &mut a.k_tire,
+        "c_tire" => &mut a.c_tire,
+        _ => panic!("{name} is no parameter that moves"),
+    }
 }

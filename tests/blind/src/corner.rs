@@ -40,8 +40,11 @@ const TM_BRANCH: usize = FRICTION + 1;
 const PWT_BRANCH: usize = FRICTION + 2;
 /// Force of the relaxing branch of the tyre, N, positive in compression.
 pub const TIRE_BRANCH: usize = FRICTION + 3;
+const LOOP: usize = FRICTION + 4;
+/// Force of a damper that ends in a spring.
+const SERIES: usize = FRICTION + 5;
 /// Length of the state: positions, velocities, inner forces.
-pub const STATES: usize = FRICTION + 4;
+pub const STATES: usize = FRICTION + 6;
 
 /// Positions, velocities, inner forces.
 pub type State = [f64; STATES];
@@ -95,6 +98,8 @@ impl Corner<'_> {
         self.tire_inside(y, push, &mut f, &mut dy);
         self.strut(share, y, &mut f, &mut dy);
         self.mounts(y, &mut f, &mut dy);
+        f[BODY] -= self.laws.body_drag.unwrap_or(0.0) * y[COORDINATES + BODY];
+        f[WHEEL] -= self.laws.wheel_drag.unwrap_or(0.0) * y[COORDINATES + WHEEL];
         self.longitudinal(y, &mut f);
         self.accelerate(&f, gravity, &mut dy);
         dy
@@ -120,11 +125,15 @@ impl Corner<'_> {
         }
     }
 
-    /// Static and dynamic force of the tyre for a compression from rest, N, positive on the ring.
+    /// Force of the standing tyre for a compression from rest, N, positive on the ring.
     pub fn tire_force(&self, y: &State, compression: f64, rate: f64) -> f64 {
         let a = self.axle;
+        let linear = a.k_tire * compression + a.c_tire * rate;
+        if self.laws.rolling_only {
+            return linear;
+        }
         let growth = self.laws.tire_increase.unwrap_or(0.0) / (2.0 * a.static_tire_def);
-        a.k_tire * compression * (1.0 + growth * compression) + a.c_tire * rate + y[TIRE_BRANCH]
+        linear + a.k_tire * growth * compression * compression + y[TIRE_BRANCH]
     }
 
     fn pivot(&self, y: &State) -> (f64, f64) {
@@ -168,6 +177,14 @@ impl Corner<'_> {
         f[WHEEL] += mr_damper * force;
         self.push_pivot(f, (1.0 - mr_damper) * force);
 
+        let past = (v[BODY] - pivot_v - mr_damper * (v[WHEEL] - pivot_v)) / mr_damper;
+        let rate = if self.laws.friction_past_mount { past } else { rate };
+        let end = if self.laws.friction_past_mount { BODY } else { top };
+        let force = self.dry(rate, y, dy) / mr_damper;
+        f[end] -= force;
+        f[WHEEL] += mr_damper * force;
+        self.push_pivot(f, (1.0 - mr_damper) * force);
+
         if a.layout.top_mount {
             let (s, rate) = (y[BODY] - y[TM], v[BODY] - v[TM]);
             let mut force = a.k_tm * s + a.c_tm * rate + self.laws.cubic_top_mount.unwrap_or(0.0) * s.powi(3);
@@ -195,6 +212,14 @@ impl Corner<'_> {
         if let Some(ratio) = l.rebound_over_compression {
             c *= 2.0 / (1.0 + ratio) * if v > 0.0 { ratio } else { 1.0 };
         }
+        if let Some(p) = l.segmented {
+            let (c1, c2) = if v > 0.0 {
+                (p.c_rebound, p.q_rebound)
+            } else {
+                (p.c_compression, p.q_compression)
+            };
+            c = c1 + c2 * v.abs();
+        }
         if let Some(d) = l.digressive {
             c = d.c0 / (1.0 + v.abs() / d.v0);
         }
@@ -204,10 +229,25 @@ impl Corner<'_> {
     }
 
     fn damper(&self, share: f64, s: f64, v: f64, y: &State, dy: &mut State) -> f64 {
-        let mut force = self.damper_law(share, s, v);
+        let Some(k) = self.laws.k_series else {
+            return self.damper_law(share, s, v);
+        };
+        dy[SERIES] = k * (v - y[SERIES] / self.axle.c_wheel_z);
+        y[SERIES]
+    }
+
+    /// Dry friction and the loop of a hysteresis, N.
+    fn dry(&self, v: f64, y: &State, dy: &mut State) -> f64 {
+        let mut force = 0.0;
         if let Some(friction) = self.laws.friction {
             force += y[FRICTION];
             dy[FRICTION] = friction.k_presliding * (v - v.abs() * y[FRICTION] / friction.f_coulomb);
+        }
+        if let Some(b) = self.laws.bouc_wen {
+            force += y[LOOP];
+            let part = y[LOOP] / b.f_hysteresis;
+            let lost = b.loop_shape * v.abs() * part * part.abs() + (1.0 - b.loop_shape) * v * part * part;
+            dy[LOOP] = b.k_hysteresis * (v - lost);
         }
         force
     }

@@ -7,6 +7,9 @@ pub struct Hidden {
     pub name: String,
     /// Link, mass or sensor location.
     pub at: String,
+    /// Where several forms have one name: `strut` for a friction that acts between body and wheel, `rolling` for a tyre
+    /// effect that is absent on the rig. Empty for the usual one.
+    pub form: String,
     /// SI.
     pub parameters: Vec<(String, f64)>,
 }
@@ -21,8 +24,15 @@ impl Hidden {
         Self {
             name: name.to_owned(),
             at: at.to_owned(),
+            form: String::new(),
             parameters,
         }
+    }
+
+    /// The same in another form.
+    pub fn form(mut self, form: &str) -> Self {
+        self.form = form.to_owned();
+        self
     }
 
     /// A parameter; the caller names one that the effect has.
@@ -38,6 +48,15 @@ impl Hidden {
 #[derive(Clone, Debug, Default)]
 pub struct Laws {
     pub friction: Option<Friction>,
+    /// The friction acts between body and wheel, past the top mount.
+    pub friction_past_mount: bool,
+    /// Tyre effects are absent on the rig.
+    pub rolling_only: bool,
+    pub bouc_wen: Option<BoucWen>,
+    pub segmented: Option<Segmented>,
+    pub k_series: Option<f64>,
+    pub body_drag: Option<f64>,
+    pub wheel_drag: Option<f64>,
     pub rebound_over_compression: Option<f64>,
     pub digressive: Option<Digressive>,
     pub rate_increase_at_40mm: Option<f64>,
@@ -78,6 +97,10 @@ macro_rules! law {
 
 law!(/// Dahl's dry friction.
     Friction { f_coulomb, k_presliding });
+law!(/// A loop without a corner.
+    BoucWen { f_hysteresis, k_hysteresis, loop_shape });
+law!(/// A parabola for each direction.
+    Segmented { c_rebound, q_rebound, c_compression, q_compression });
 law!(/// `c0 v / (1 + |v|/v0)`
     Digressive { c0, v0 });
 law!(/// A stop that acts below `-gap` of wheel travel.
@@ -110,6 +133,8 @@ impl Laws {
     }
 
     fn add(&mut self, effect: &Hidden) {
+        self.friction_past_mount |= effect.form == "strut";
+        self.rolling_only |= effect.form == "rolling";
         match (effect.name.as_str(), effect.at.as_str()) {
             ("coulomb_friction", _) => self.friction = Some(Friction::from(effect)),
             ("asymmetric_damper", _) => self.rebound_over_compression = Some(effect.get("rebound_over_compression")),
@@ -130,6 +155,11 @@ impl Laws {
             ("free_play", _) => self.free_play = Some(effect.get("gap")),
             ("inerter", _) => self.inertance = Some(effect.get("inertance")),
             ("secondary_resonator", _) => self.resonator = Some(Resonator::from(effect)),
+            ("bouc_wen_hysteresis", _) => self.bouc_wen = Some(BoucWen::from(effect)),
+            ("segmented_polynomial_damper", _) => self.segmented = Some(Segmented::from(effect)),
+            ("series_compliance", _) => self.k_series = Some(effect.get("k_series")),
+            ("drag_to_ground", "body") => self.body_drag = Some(effect.get("c_drag")),
+            ("drag_to_ground", _) => self.wheel_drag = Some(effect.get("c_drag")),
             ("damper_fade", _) => self.fade = Some(effect.get("share")),
             ("quadratic_damping", _) => self.quadratic_damping = Some(effect.get("c2")),
             ("cubic_top_mount", _) => self.cubic_top_mount = Some(effect.get("k3")),

@@ -15,6 +15,10 @@ mod kc;
 mod random;
 mod rig;
 mod sensor;
+mod separable;
+
+pub mod matrix;
+pub mod outcome;
 
 use std::path::Path;
 
@@ -60,22 +64,42 @@ impl Order {
 /// # Errors
 /// An axle that does not exist, or a folder that cannot be written to.
 pub fn make(order: Order, folder: &Path) -> Result<(), String> {
+    let (plan, axle, _) = planned(order, folder)?;
+    campaign::write(&plan, &axle, folder).map_err(|e| format!("{}: {e}", folder.display()))
+}
+
+/// How much of what is hidden no parameter of the engineer's model can imitate: RMS over the fitted runs in units of
+/// the sensors' noise, by the equations of this simulator.
+///
+/// # Errors
+/// An axle that does not exist.
+pub fn strength(order: Order) -> Result<f64, String> {
+    let (plan, axle, known) = planned(order, Path::new("campaign"))?;
+    Ok(separable::strength(&plan, &axle, &known))
+}
+
+/// The plan, the real axle, and the axle as the engineer knows it.
+fn planned(order: Order, folder: &Path) -> Result<(campaign::Plan, Axle, Axle), String> {
     let known = known(&order.axle)?;
     let real = real(known, &order.effects);
     let axle = with_parts(Axle::draw(real, order.seed), &order.effects);
+    let seen = Axle {
+        layout: without(known, &order.effects),
+        ..axle
+    };
     let plan = campaign::Plan {
         name: folder
             .file_name()
             .map_or("campaign".into(), |name| name.to_string_lossy().into_owned()),
         model: order.model.unwrap_or_else(|| model_name(&order.axle, &order.effects)),
-        parameters: campaign::parameters(&axle, without(known, &order.effects)),
+        parameters: campaign::parameters(&axle, seen.layout),
         effects: order.effects,
         seed: order.seed,
         systematic: order.systematic,
         noise: order.noise,
         cleats: order.cleats,
     };
-    campaign::write(&plan, &axle, folder).map_err(|e| format!("{}: {e}", folder.display()))
+    Ok((plan, axle, seen))
 }
 
 /// The axle of a letter, as its table has it.

@@ -1,6 +1,6 @@
 //! Makes the campaigns of the blind tests.
 //!
-//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE:parameter=value,…]… [--model MODEL]`
+//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE[/FORM]:parameter=value,…]… [--model MODEL]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -9,7 +9,7 @@ use qcar_blind::hidden::Hidden;
 use qcar_blind::{Order, make};
 
 const USAGE: &str = "qcar-blind FOLDER [--seed N] [--axle a|c|d] [--model NAME] [--systematic SHARE] [--noise M_S2] \
-                     [--no-cleats] [--hide NAME@PLACE:parameter=value,...]...";
+                     [--no-cleats] [--hide NAME@PLACE[/FORM]:parameter=value,...]...";
 
 fn main() -> ExitCode {
     match run() {
@@ -47,10 +47,11 @@ fn parse(text: &str) -> Result<Hidden, String> {
     let wrong = || format!("{text} is not NAME@PLACE:parameter=value,…");
     let (name, rest) = text.split_once('@').ok_or_else(wrong)?;
     let (at, list) = rest.split_once(':').ok_or_else(wrong)?;
+    let (at, form) = at.split_once('/').unwrap_or((at, ""));
     let mut parameters = Vec::new();
     for pair in list.split(',') {
         let (name, value) = pair.split_once('=').ok_or_else(wrong)?;
         parameters.push((name, value.parse::<f64>().map_err(|_| wrong())?));
     }
-    Ok(Hidden::new(name, at, &parameters))
+    Ok(Hidden::new(name, at, &parameters).form(form))
 }

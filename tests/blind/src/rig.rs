@@ -39,6 +39,16 @@ pub struct Motion {
 }
 
 impl Sweep {
+    /// The sweep at a level, mm/s.
+    pub fn of_level(level: u32) -> Self {
+        Self {
+            peak_velocity: f64::from(level) / 1000.0,
+            from: 0.5,
+            to: 30.0,
+            seconds: 42.25,
+        }
+    }
+
     /// Height of the pad, m. A cosine taper at both ends keeps its acceleration finite.
     fn height(&self, t: f64) -> f64 {
         let t = t - RUN_IN;

@@ -9,6 +9,8 @@ pub struct Sensor {
     delay: f64,
     noise: f64,
     step: f64,
+    /// Outside the catalogue: where an amplifier begins to saturate, m/s².
+    soft_limit: f64,
 }
 
 impl Sensor {
@@ -24,6 +26,7 @@ impl Sensor {
             delay: of("sensor_delay", "delay").unwrap_or(0.0),
             noise,
             step: noise / 6.0,
+            soft_limit: of("sensor_saturation", "soft_limit").unwrap_or(f64::INFINITY),
         }
     }
 
@@ -38,7 +41,10 @@ impl Sensor {
         };
         let quantise = |value: f64| (value / self.step).round() * self.step;
         (0..motion.len())
-            .map(|i| quantise(self.gain * at(i) + self.noise * random.normal()))
+            .map(|i| {
+                let a = at(i) / (1.0 + (at(i) / self.soft_limit).powi(2)).sqrt();
+                quantise(self.gain * a + self.noise * random.normal())
+            })
             .collect()
     }
 }

@@ -1,0 +1,91 @@
+//! How much of what is hidden no parameter of the engineer's model can imitate, by the generator's own equations: a
+//! measure of what can be found at all, which knows nothing of any verdict.
+
+use crate::axle::Axle;
+use crate::campaign::{self, Plan};
+use crate::cleat::{self, Road};
+use crate::corner::Corner;
+use crate::hidden::Laws;
+use crate::rig::{self, Sweep};
+
+/// Every so many-th sample is looked at.
+const STEP: usize = 9;
+/// Share of a parameter by which it is changed for its derivative.
+const CHANGE: f64 = 0.01;
+
+/// RMS over the fitted runs of what is hidden, in units of the sensors' noise, less the best combination of what
+/// changes of the parameters and of the sensors' gains would do.
+pub fn strength(plan: &Plan, real: &Axle, known: &Axle) -> f64 {
+    let nothing = Laws::default();
+    let truth = signals(plan, real, &Laws::of(&plan.effects));
+    let base = signals(plan, known, &nothing);
+    let mut imitations = Vec::new();
+    for name in campaign::moving(plan) {
+        let mut changed = *known;
+        *campaign::value(&mut changed, name) *= 1.0 + CHANGE;
+        imitations.push(difference(&signals(plan, &changed, &nothing), &base).concat());
+    }
+    for channel in 0..base.len() {
+        let alone = |(k, signal): (usize, &Vec<f64>)| {
+            if k == channel {
+                signal.clone()
+            } else {
+                vec![0.0; signal.len()]
+            }
+        };
+        imitations.push(base.iter().enumerate().map(alone).collect::<Vec<_>>().concat());
+    }
+    let mut left = difference(&truth, &base).concat();
+    remove(&mut left, imitations);
+    (left.iter().map(|x| x * x).sum::<f64>() / left.len() as f64).sqrt()
+}
+
+/// What the sensors of the fitted runs would show, in units of their noise.
+fn signals(plan: &Plan, axle: &Axle, laws: &Laws) -> Vec<Vec<f64>> {
+    let corner = Corner { axle, laws };
+    let mut all: [Vec<f64>; 4] = Default::default();
+    for (level, role) in campaign::LEVELS {
+        if role == "fit" {
+            let motion = rig::run(&corner, &Sweep::of_level(level));
+            all[0].extend(seen(&motion.wheel, plan.noise));
+            all[1].extend(seen(&motion.body, plan.noise));
+        }
+    }
+    if plan.cleats {
+        for (height, _, speed, _) in campaign::cleat_runs().filter(|run| run.3 == "fit") {
+            let track = cleat::run(&corner, &Road::cleat(f64::from(height) / 1000.0), speed / 3.6, 1.5);
+            let noise = campaign::TRACK_NOISE;
+            all[0].extend(seen(&track.wheel_z, noise));
+            all[1].extend(seen(&track.body_z, noise));
+            all[2].extend(seen(&track.wheel_x, noise));
+            all[3].extend(seen(&track.body_x, noise));
+        }
+    }
+    all.to_vec()
+}
+
+fn seen(signal: &[f64], noise: f64) -> impl Iterator<Item = f64> {
+    signal.iter().step_by(STEP).map(move |a| a / noise)
+}
+
+fn difference(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let of_signal = |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a - b).collect();
+    a.iter().zip(b).map(of_signal).collect()
+}
+
+/// Takes out of `from` whatever the columns span (modified Gram-Schmidt).
+fn remove(from: &mut [f64], mut columns: Vec<Vec<f64>>) {
+    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    for k in 0..columns.len() {
+        let column = columns[k].clone();
+        let power = dot(&column, &column);
+        if power > 0.0 {
+            let take = |other: &mut [f64]| {
+                let share = dot(other, &column) / power;
+                other.iter_mut().zip(&column).for_each(|(other, c)| *other -= share * c);
+            };
+            columns[k + 1..].iter_mut().for_each(|other| take(other));
+            take(from);
+        }
+    }
+}
