@@ -115,6 +115,19 @@ pub struct Recordings {
 }
 
 impl Stimulus {
+    /// Leaves so many times less of a history, and says when it ends now; `None` of anything else.
+    fn shorten(&mut self, times: usize) -> Option<f64> {
+        let Stimulus::History { inputs, rate, .. } = self else {
+            return None;
+        };
+        let length = inputs.signals[0].1.len() / times;
+        inputs
+            .signals
+            .iter_mut()
+            .for_each(|(_, samples)| samples.truncate(length));
+        Some(inputs.start + (length as f64 - 0.5) / *rate)
+    }
+
     /// The sensor of what drove the run; none measures a road.
     pub fn reference(&self) -> Option<&Point> {
         match self {
@@ -233,13 +246,19 @@ impl Evidence {
         tolerant
     }
 
-    /// The same with every so many-th value of each series, for a first look.
+    /// The same with every so many-th value of each series, for a first look; of a history its beginning, as long as
+    /// such a part of it, since a model has to be driven through whatever it is held against.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
+        let ends: Vec<Option<f64>> = thinned.runs.iter_mut().map(|run| run.stimulus.shorten(step)).collect();
         for series in &mut thinned.series {
-            series.at = series.at.iter().copied().step_by(step).collect();
-            series.value = series.value.iter().copied().step_by(step).collect();
-            series.sigma = series.sigma.iter().copied().step_by(step).collect();
+            let keep: Vec<usize> = match ends[series.run] {
+                Some(end) => (0..series.at.len()).filter(|&k| series.at[k] < end).collect(),
+                None => (0..series.at.len()).step_by(step).collect(),
+            };
+            series.at = keep.iter().map(|&k| series.at[k]).collect();
+            series.value = keep.iter().map(|&k| series.value[k]).collect();
+            series.sigma = keep.iter().map(|&k| series.sigma[k]).collect();
         }
         thinned
     }

@@ -54,6 +54,11 @@ pub struct Explanation {
 }
 
 impl Explanation {
+    /// What the fitted residuals scatter by, squared; 1 where only noise is left.
+    pub fn scatter(&self) -> f64 {
+        (self.refit.chi2 / self.refit.residuals as f64).max(1.0)
+    }
+
     /// By what share of them the model misses most of the fitted values that stand clear of the noise: the median.
     pub fn misfit(&self, evidence: &Evidence) -> f64 {
         const CLEAR: f64 = 10.0;
@@ -76,6 +81,10 @@ impl Explanation {
     }
 }
 
+/// In place of a shift: next to zero.
+const WEAK: f64 = f64::NAN;
+/// The share of its start at which a parameter is next to zero.
+const NEXT_TO_ZERO: f64 = 0.01;
 /// How far towards the ends of their ranges searches begin beside the starts.
 const HALF_WAY: f64 = 0.5;
 
@@ -151,6 +160,11 @@ impl Explanandum<'_> {
         if count > 0 {
             shifts.extend([all(-HALF_WAY), all(HALF_WAY)]);
         }
+        // Where an effect may vanish, from next to there the way to either side is open.
+        if self.added.iter().any(|p| p.range.0 <= 0.0) {
+            let weak = |p: &Added| if p.range.0 <= 0.0 { WEAK } else { 0.0 };
+            shifts.push(self.added.iter().map(weak).collect());
+        }
         if count > 1 && self.model.about().linear {
             let alone = |k: usize, shift: f64| (0..count).map(|i| if i == k { shift } else { 0.0 }).collect();
             shifts.extend((0..count).flat_map(|k| [alone(k, -HALF_WAY), alone(k, HALF_WAY)]));
@@ -180,6 +194,9 @@ impl Explanandum<'_> {
 /// A value on the way from the start (0) to the lower (-1) or the upper end (1) of the range, by ratio where it can be.
 fn towards(parameter: &Added, shift: f64) -> f64 {
     let (low, high) = parameter.range;
+    if shift.is_nan() {
+        return NEXT_TO_ZERO * parameter.start;
+    }
     let end = if shift < 0.0 { low } else { high };
     if low > 0.0 {
         parameter.start * (end / parameter.start).powf(shift.abs())

@@ -52,7 +52,7 @@ impl<'a> Judge<'a> {
     /// True where an effect lowers the sum of squares by more than chance, and is physically plausible.
     pub fn is_significant(&self, state: &State, contender: &Contender) -> bool {
         let lowered = state.explanation.refit.chi2 - contender.score;
-        lowered > SIGNIFICANT * scatter(&contender.explanation)
+        lowered > SIGNIFICANT * contender.explanation.scatter()
     }
 
     /// True where what is left does not matter any more.
@@ -70,7 +70,7 @@ impl<'a> Judge<'a> {
 
     /// True where the effects that are left do much worse.
     pub fn is_missed(&self, with: &State, without: &State) -> bool {
-        let worse = without.score() - with.score() > SIGNIFICANT * scatter(&with.explanation);
+        let worse = without.score() - with.score() > SIGNIFICANT * with.explanation.scatter();
         worse && self.gap(&without.explanation) > LEFT
     }
 
@@ -88,7 +88,7 @@ impl<'a> Judge<'a> {
     /// more contains it, and is no other answer.
     pub fn alike<'c>(&self, contenders: &'c [Contender], pick: usize) -> impl Iterator<Item = &'c Contender> {
         let best = &contenders[pick];
-        let near = (ALIKE * scatter(&best.explanation)).max(vague(best));
+        let near = (ALIKE * best.explanation.scatter()).max(vague(best));
         let alike = move |contender: &&Contender| {
             let explains_more = contender.explanation.refit.chi2 < best.explanation.refit.chi2 - vague(best);
             let is_it = std::ptr::eq(*contender, best);
@@ -139,10 +139,5 @@ fn vague(contender: &Contender) -> f64 {
 }
 
 fn behind(contender: &Contender, best: &Contender) -> f64 {
-    (contender.score - best.score) / scatter(&best.explanation)
-}
-
-/// What the residuals scatter by, squared: 1 where only noise is left.
-fn scatter(explanation: &Explanation) -> f64 {
-    (explanation.refit.chi2 / explanation.refit.residuals as f64).max(1.0)
+    (contender.score - best.score) / best.explanation.scatter()
 }

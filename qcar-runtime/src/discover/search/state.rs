@@ -327,17 +327,20 @@ impl Taken {
         }
     }
 
-    /// What an explanation says of the effect: name, value, standard error.
+    /// What an explanation says of the effect: name, value, standard error. Where more than noise is left, the errors
+    /// grow with it.
     fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
         let refit = &explanation.refit;
         let errors = refit.stderr();
+        let scatter = explanation.scatter().sqrt();
         let of = |unknown: &Unknown| match unknown {
             Unknown::Parameter(effect_name, name) => {
                 let free = free_of(explanation, name)?;
-                Some((effect_name.clone(), refit.estimate[free], errors[free]))
+                Some((effect_name.clone(), refit.estimate[free], scatter * errors[free]))
             }
             Unknown::Coefficient(effect_name, place, form) => {
-                let (coefficient, error) = (refit.coefficients[*place], refit.coefficient_stderr[*place]);
+                let coefficient = refit.coefficients[*place];
+                let error = scatter * refit.coefficient_stderr[*place];
                 let (value, error) = match form {
                     Form::Delay => (coefficient, error),
                     _ => (coefficient.exp(), coefficient.exp() * error),
