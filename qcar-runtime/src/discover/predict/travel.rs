@@ -155,6 +155,9 @@ impl Bench {
     /// Moves what is between to where nothing pulls at it (Newton's method).
     fn rest(&self, x: &mut [f64], rates: &dyn Fn(&[f64]) -> Vec<f64>) {
         let n = self.between.len();
+        if n == 0 {
+            return;
+        }
         for _ in 0..STEPS {
             let here = rates(x);
             let columns: Vec<Vec<f64>> = self
@@ -169,6 +172,9 @@ impl Bench {
             let row = |i: usize| self.between[i].1;
             let slope = DMatrix::from_fn(n, n, |i, j| (columns[j][row(i)] - here[row(i)]) / NUDGE);
             let pull = DVector::from_fn(n, |i, _| -here[row(i)]);
+            if !slope.iter().chain(&pull).all(|entry| entry.is_finite()) {
+                return;
+            }
             // What nothing holds stays where it is: the smallest step of all.
             let Ok(step) = slope.svd(true, true).solve(&pull, f64::EPSILON) else {
                 return;
