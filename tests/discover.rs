@@ -46,6 +46,28 @@ fn dry_friction_is_named_in_measurements_of_real_hardware() {
     }
 }
 
+/// With the damper bolted to the body nothing is left to move on the K&C rig.
+#[test]
+fn a_top_mount_that_the_model_lacks_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let truth = [("m_tm", 5.0), ("k_tm", 450e3), ("c_tm", 700.0)];
+    let order = Order {
+        cleats: false,
+        effects: vec![Hidden::new("top_mount", "damper", &truth)],
+        ..Order::clean("c", 23)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "top_mount");
+    assert_eq!(answer["effects"][0]["at"], "damper");
+    for (name, value) in truth {
+        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
+        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
+    }
+}
+
 #[test]
 fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     let folder = tempfile::tempdir().expect("a folder");
