@@ -3,6 +3,7 @@
 mod bad_input;
 mod command_line;
 mod common;
+mod document;
 mod effects;
 mod fits;
 mod help;
@@ -10,3 +11,4 @@ mod interruption;
 mod newcomer;
 mod readme;
 mod rides;
+mod tutorial;
