@@ -13,6 +13,7 @@ use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::search::{Discovery, Verdict, discover};
+use qcar_runtime::model::{About, Default};
 
 use crate::catalogue;
 use crate::failure::Failure;
@@ -99,7 +100,12 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
     let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));
-    let found = discover(Box::new(bench.clone()), &setting(campaign), &evidence, &told);
+    let found = discover(
+        Box::new(bench.clone()),
+        &setting(campaign, bench.model().about()),
+        &evidence,
+        &told,
+    );
     drop(showing);
     let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     Ok(Answer {
@@ -129,14 +135,25 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
     Ok(Bench::new(compiled.model, Arc::new(effects), Arc::new(values)))
 }
 
-fn setting(campaign: &Campaign) -> Setting {
+/// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
+fn setting(campaign: &Campaign, about: &About) -> Setting {
     let given = campaign.parameters.iter().map(|p| Given {
         name: p.name.clone(),
         value: p.value,
         range: p.range.filter(|_| p.fit),
     });
+    let is_given = |name: &str| campaign.parameters.iter().any(|p| p.name == name);
+    let own = about.parameters.iter().filter(|p| !p.known && !is_given(&p.name));
+    let own = own.filter_map(|p| match p.default {
+        Default::Value(value) => Some(Given {
+            name: p.name.to_string(),
+            value,
+            range: Some(p.range?),
+        }),
+        Default::None | Default::Same(_) => None,
+    });
     Setting {
-        given: given.collect(),
+        given: given.chain(own).collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
     }
 }

@@ -69,6 +69,9 @@ pub enum PredictError {
     /// A sensor measures what the model cannot give.
     #[error(transparent)]
     Signal(#[from] SignalError),
+    /// No run may be fitted.
+    #[error("no run may be fitted; give at least one with sensors at places of the model `role = \"fit\"`")]
+    NothingToFit,
     /// The model gives no number anywhere near its start values.
     #[error("the model gives no finite response near its start values; give it other start values")]
     NoNumber,

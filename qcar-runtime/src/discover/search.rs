@@ -16,6 +16,7 @@ use super::candidate::Workshop;
 use super::evidence::Evidence;
 use super::explain::{Explanation, Setting};
 use super::predict::PredictError;
+use crate::campaign::Role;
 use rules::Judge;
 use state::{Contender, State};
 
@@ -94,6 +95,9 @@ pub fn discover(
     evidence: &Evidence,
     progress: Progress<'_>,
 ) -> Result<Discovery, PredictError> {
+    if evidence.of_role(Role::Fit).next().is_none() {
+        return Err(PredictError::NothingToFit);
+    }
     progress("fitting the base model");
     let base = State::base(workshop, setting, evidence, progress)?;
     let before = base.explanation.clone();

@@ -70,6 +70,13 @@ impl Contender {
     pub fn unknowns(&self) -> usize {
         self.candidate.unknowns().len()
     }
+
+    /// True where all it says of its unknowns lies in their ranges: a fit may be free to leave that of a sensor.
+    fn is_plausible(&self) -> bool {
+        let ranges = self.candidate.unknowns().iter();
+        let mut values = ranges.zip(&self.parameters);
+        values.all(|(unknown, (_, value, _))| (unknown.range.0..=unknown.range.1).contains(value))
+    }
 }
 
 impl State {
@@ -142,8 +149,10 @@ impl State {
             let Some(candidate) = candidates.get_mut(place).and_then(Option::take) else {
                 continue;
             };
-            if met.insert((candidate.effect.clone(), candidate.at.clone())) {
-                contenders.push(Contender::new(candidate, nuisance, finalist));
+            let contender = Contender::new(candidate, nuisance, finalist);
+            let effect = (contender.candidate.effect.clone(), contender.candidate.at.clone());
+            if contender.is_plausible() && met.insert(effect) {
+                contenders.push(contender);
             }
         }
         Ok(contenders)
