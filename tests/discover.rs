@@ -68,6 +68,55 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     }
 }
 
+/// Its law has a kink where the damper turns, at which no step of a search is sure to help.
+#[test]
+fn a_damper_that_is_harder_in_rebound_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        effects: vec![Hidden::new(
+            "asymmetric_damper",
+            "damper",
+            &[("rebound_over_compression", 1.6)],
+        )],
+        ..Order::clean("c", 24)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "asymmetric_damper");
+    assert_eq!(answer["effects"][0]["at"], "damper");
+    let found = answer["effects"][0]["parameters"]["rebound_over_compression"]
+        .as_f64()
+        .expect("a number");
+    assert!((found / 1.6 - 1.0).abs() < 0.05, "{found}");
+}
+
+/// A fit of a model that brings its effect along, which the campaign knows nothing of.
+#[test]
+fn a_model_that_has_the_effect_already_lacks_nothing() {
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_c_study");
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = folder.path().join("patched.axle");
+    let patch = ["patch", "axle_c", "suspended_mass", "--at", "body", "--out"];
+    let patched = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .args(patch)
+        .arg(&model)
+        .output();
+    assert!(patched.expect("qcar runs").status.success());
+    let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
+        .arg("discover")
+        .arg(&campaign)
+        .arg("--model")
+        .arg(&model)
+        .args(["--format", "json"])
+        .output()
+        .expect("qcar runs");
+    let answer: Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(answer["verdict"], "none", "{answer}");
+}
+
 #[test]
 fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     let folder = tempfile::tempdir().expect("a folder");

@@ -78,25 +78,29 @@ impl<'a> Balance<'a> {
             let Some(step) = factors.solve(&residual) else {
                 return (x.as_slice().to_vec(), false);
             };
-            let (mut share, length) = (1.0, self.length(&step, &(&x - &step)));
-            let accepted = loop {
+            let (mut share, length) = (1.0_f64, self.length(&step, &(&x - &step)));
+            // At a kink of a law no step may be monotonic: the best of those tried is better than none.
+            let mut best: Option<(f64, f64, _)> = None;
+            let mut is_monotonic = false;
+            while !is_monotonic && share >= SHORTEST {
                 let trial = &x - &step * share;
                 let trial_residual = self.residual(&trial);
                 let next = factors.solve(&trial_residual).map(|next| self.length(&next, &trial));
-                // At a kink of a law no step is monotonic: a short one that is finite is better than none.
-                if next.is_some_and(|next| next <= (1.0 - 0.25 * share) * length) {
-                    break Some((trial, trial_residual));
+                if let Some(next) = next.filter(|next| next.is_finite()) {
+                    is_monotonic = next <= (1.0 - 0.25 * share) * length;
+                    if is_monotonic || best.as_ref().is_none_or(|(least, ..)| next < *least) {
+                        best = Some((next, share, (trial, trial_residual)));
+                    }
                 }
                 share *= 0.5;
-                if share < SHORTEST {
-                    break None;
-                }
-            };
-            let Some((trial, trial_residual)) = accepted else {
+            }
+            let Some((next, share, point)) = best else {
                 return (x.as_slice().to_vec(), length < SETTLED.sqrt());
             };
-            (x, residual) = (trial, trial_residual);
-            if length * share < SETTLED {
+            (x, residual) = point;
+            let is_settled = if is_monotonic { length * share } else { next } < SETTLED;
+            if is_settled {
+                self.residual(&x);
                 return (x.as_slice().to_vec(), true);
             }
         }
