@@ -177,13 +177,18 @@ impl Path {
 
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
-        while self.findings.len() < MOST_EFFECTS && !judge.is_enough(&self) && self.class.len() < 2 {
+        while self.findings.len() < MOST_EFFECTS && judge.is_gap(&self.state.explanation) && self.class.len() < 2 {
             let mut contenders = self.state.contenders(evidence, progress)?;
             judge.simplest_first(&mut contenders);
-            match contenders.first() {
-                Some(best) if judge.is_significant(&self.state, best) => self = self.taking(&contenders, 0, judge),
-                _ => break,
+            let enough = judge.is_enough(&self);
+            let helps = |best: &&Contender| match enough {
+                true => judge.adds_much(&self.state, best),
+                false => judge.is_significant(&self.state, best),
+            };
+            if contenders.first().filter(helps).is_none() {
+                break;
             }
+            self = self.taking(&contenders, 0, judge);
         }
         Ok(self)
     }

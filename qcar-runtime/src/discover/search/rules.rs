@@ -57,6 +57,14 @@ impl<'a> Judge<'a> {
         lowered > SIGNIFICANT * contender.explanation.scatter()
     }
 
+    /// True where an effect earns a place beside others that explain enough: it closes as much of what they leave as a
+    /// first one must, and the data determine all of its parameters.
+    pub fn adds_much(&self, state: &State, contender: &Contender) -> bool {
+        let determined = contender.parameters.iter().all(|(_, _, error)| error.is_finite());
+        let closes = self.closed(&state.explanation, &contender.explanation) > CLOSED;
+        determined && closes && self.is_significant(state, contender)
+    }
+
     /// True where what is left does not matter any more.
     pub fn is_enough(&self, path: &Path) -> bool {
         self.leaves_enough(&path.state.explanation, path.findings.len())
