@@ -134,6 +134,9 @@ pub fn discover(
         return Ok(verdict(Verdict::Unknown, Vec::new(), &path.state.explanation));
     }
     let path = path.without_what_is_not_missed(&base, &judge, evidence, progress)?;
+    if !judge.is_enough(&path) {
+        return Ok(verdict(Verdict::Unknown, Vec::new(), &path.state.explanation));
+    }
     let named = match path.class.len() {
         0 | 1 => Verdict::Found,
         _ => Verdict::Class,
