@@ -51,7 +51,7 @@ impl<'a> Judge<'a> {
         explanation.gap.fit.max(explanation.gap.held_out) > NOISE
     }
 
-    /// True where an effect lowers the sum of squares by more than chance, and is physically plausible.
+    /// True where an effect lowers the sum of squares by more than chance.
     pub fn is_significant(&self, state: &State, contender: &Contender) -> bool {
         let lowered = state.explanation.refit.chi2 - contender.score;
         lowered > SIGNIFICANT * contender.explanation.scatter()
