@@ -46,21 +46,20 @@ function lowered(sentence) {
 function themeButton() {
   const root = document.documentElement;
   const system = matchMedia('(prefers-color-scheme: dark)');
-  const isDark = () => (root.dataset.theme ? root.dataset.theme === 'dark' : system.matches);
   const button = h('button', { type: 'button', class: 'theme' });
-  const label = () => {
-    button.textContent = isDark() ? 'Light page' : 'Dark page';
+  let isChosen = 'theme' in root.dataset;
+  const show = (theme) => {
+    root.dataset.theme = theme;
+    button.textContent = theme === 'dark' ? 'Light page' : 'Dark page';
+    recolour();
   };
+  const ofSystem = () => (system.matches ? 'dark' : 'light');
   button.addEventListener('click', () => {
-    root.dataset.theme = isDark() ? 'light' : 'dark';
-    label();
-    recolour();
+    isChosen = true;
+    show(root.dataset.theme === 'dark' ? 'light' : 'dark');
   });
-  system.addEventListener('change', () => {
-    label();
-    recolour();
-  });
-  label();
+  system.addEventListener('change', () => isChosen || show(ofSystem()));
+  show(isChosen ? root.dataset.theme : ofSystem());
   return button;
 }
 
