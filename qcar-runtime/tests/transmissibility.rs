@@ -467,6 +467,11 @@ fn what_a_record_cannot_tell_is_refused() {
         frequencies: Some(frequencies.to_vec()),
         ..Options::default()
     };
+    let said = refusal(&cut(0.2), &all);
+    assert!(
+        said.contains("found a record of 0.200 s, which is too short, expected at least 10.0 s for 0.5 Hz"),
+        "{said}"
+    );
     assert!(refusal(&cut(43.0), &asking(&[1.0, 600.0])).contains("half the sample rate"));
     assert!(refusal(&cut(43.0), &asking(&[2.0, 1.0])).contains("increasing"));
     assert!(refusal(&cut(43.0), &asking(&[0.01, 1.0])).contains("a record of 43.0 s"));

@@ -33,6 +33,9 @@ pub(super) fn frequencies(
     signal: &[f64],
     options: &Options,
 ) -> Result<Vec<f64>, InputError> {
+    if let Test::Sweep(sweep) = &history.test {
+        lasts(history, CYCLES / sweep.start_frequency, sweep.start_frequency)?;
+    }
     let bands = bands(signal, history, reference.quantity);
     if bands.iter().all(|band| band.1 <= 0.0) {
         let remedy = "choose another reference, or export the record again";
@@ -172,19 +175,12 @@ fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) ->
             "name the frequencies to estimate at",
         );
     };
-    let (samples, rate) = (history.len() as f64, history.sample_rate);
+    let rate = history.sample_rate;
     let seconds = match estimator {
         Estimator::Local { .. } => CYCLES / first,
         Estimator::Welch(segments) => segments.length as f64 / rate,
     };
-    if samples / rate < seconds {
-        let expected = format!("at least {seconds:.1} s for {first} Hz");
-        return wrong(
-            format!("a record of {:.1} s", samples / rate),
-            expected,
-            "record longer, or ask from a higher frequency",
-        );
-    }
+    lasts(history, seconds, first)?;
     if first <= 0.0 || last >= rate / 2.0 || frequencies.windows(2).any(|pair| pair[1] <= pair[0]) {
         let expected = format!(
             "increasing ones above 0 and below {} Hz, half the sample rate",
@@ -197,4 +193,18 @@ fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) ->
         );
     }
     Ok(())
+}
+
+/// A record that ends too soon looks like one without power at `frequency`; so this is asked before any spectrum.
+fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputError> {
+    let recorded = history.len() as f64 / history.sample_rate;
+    if recorded >= seconds {
+        return Ok(());
+    }
+    let (found, expected) = (
+        format!("a record of {recorded:.3} s, which is too short"),
+        format!("at least {seconds:.1} s for {frequency} Hz"),
+    );
+    let remedy = "export the whole record, record longer, or ask from a higher frequency";
+    Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }
