@@ -368,6 +368,29 @@ fn a_folder_without_a_campaign_is_named() {
 }
 
 #[test]
+fn blank_lines_and_line_ends_leave_line_numbers_right() {
+    let gap = "time,body_centre_z\n0.0,1\n\n  \n0.0016,2\n\n0.5,3\n\n\n0.5016,4\n0.5033,5\n";
+    let text = "time,body_centre_z\n0.0,1\n\n0.0016,2\n\n\n0.0033,x";
+    for content in [gap, &gap.replace('\n', "\r\n"), text, &text.replace('\n', "\r\n")] {
+        let folder = campaign(&[("random.csv", RANDOM, content)]);
+        let error = read_all(folder.path()).unwrap_err().to_string();
+        assert!(error.contains("random.csv, line 7, "), "{content:?}: {error}");
+    }
+}
+
+#[test]
+fn a_run_of_no_kind_is_refused_for_that_alone() {
+    let folder = campaign(&[("campaign.toml", "kind = \"sweep\"", "kind = \"sweeep\"")]);
+    let problems = Campaign::open(folder.path()).unwrap_err().problems;
+    assert_eq!(problems.len(), 1, "{problems:?}");
+    assert!(
+        problems[0].to_string().contains("`run[1].kind`: found \"sweeep\""),
+        "{}",
+        problems[0]
+    );
+}
+
+#[test]
 fn problems_of_one_file_come_together() {
     let folder = campaign(&[
         ("campaign.toml", "role = \"fit\"", "role = \"train\""),

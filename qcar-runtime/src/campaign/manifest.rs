@@ -94,7 +94,6 @@ fn each<'a, T>(
     let mut members: Vec<Option<T>> = Vec::new();
     for section in sections {
         let member = read(&section);
-        section.finish();
         if let Some(new) = &member
             && members.iter().flatten().any(|old| name(old) == name(new))
         {
@@ -111,15 +110,10 @@ fn each<'a, T>(
 }
 
 fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {
-    let read = |(name, section): (String, Section<'_>)| {
-        let parameter = parameter(name, &section);
-        section.finish();
-        parameter
-    };
     section
         .named_sections()
         .into_iter()
-        .map(read)
+        .map(|(name, section)| parameter(name, &section))
         .collect::<Vec<_>>()
         .into_iter()
         .collect()
@@ -128,6 +122,7 @@ fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {
 fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
     let (value, unit, fit) = (section.number("value"), section.text("unit"), section.boolean("fit"));
     let (range, comment) = (section.range("range"), section.remark("comment"));
+    section.finish();
     if let Some(unit) = unit.as_ref().filter(|unit| unit::dimension(unit).is_none()) {
         let remedy = "convert value and range, and write the coherent unit (N/m, N s/m, kg, m, 1)";
         section.wrong("unit", format!("\"{unit}\""), "a coherent SI unit", remedy);
@@ -175,6 +170,7 @@ fn channel(section: &Section<'_>) -> Option<Channel> {
         );
         section.wrong("unit", format!("\"{unit}\""), expected, remedy);
     }
+    section.finish();
     unit?;
     Some(Channel {
         name: name?,
@@ -185,9 +181,12 @@ fn channel(section: &Section<'_>) -> Option<Channel> {
     })
 }
 
+/// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
 fn run(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Run> {
     let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
-    let test = section.choice("kind", KINDS).and_then(|read| read(section, roads));
+    let read = section.choice("kind", KINDS)?;
+    let test = read(section, roads);
+    section.finish();
     Some(Run {
         file: file?,
         role: role?,
@@ -285,6 +284,7 @@ fn time_history(section: &Section<'_>) -> Option<Test> {
 
 fn road(section: &Section<'_>) -> Option<Road> {
     let (name, file) = (section.text("name"), section.text("file"));
+    section.finish();
     Some(Road {
         name: name?,
         file: file?,

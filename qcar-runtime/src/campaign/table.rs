@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
-use csv::{ByteRecord, ReaderBuilder, Trim};
+use csv::{ByteRecord, ReaderBuilder, Terminator, Trim};
 use flate2::read::MultiGzDecoder;
 
 use crate::error::{InputError, Place, Problem};
@@ -15,7 +15,7 @@ pub(super) struct Table {
     pub names: Vec<String>,
     /// As many as names, all of one length, which is at least 1; every number is finite.
     pub columns: Vec<Vec<f64>>,
-    /// The line of each row in the file, since empty lines are skipped.
+    /// The line of each row in the file, since blank lines are skipped.
     pub lines: Vec<u64>,
 }
 
@@ -56,7 +56,9 @@ pub(super) fn read(file: &Path) -> Result<Table, InputError> {
         .read_byte_record(&mut record)
         .map_err(|e| unreadable(file, table.lines.last(), &e))?
     {
-        push(&mut table, &record)?;
+        if !is_blank(&record) {
+            push(&mut table, &record, line(&reader))?;
+        }
     }
     if table.lines.is_empty() {
         return Err(Problem::new(
@@ -134,8 +136,19 @@ fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
     Ok(ReaderBuilder::new()
         .flexible(true)
         .trim(Trim::All)
+        .terminator(Terminator::Any(b'\n'))
         .has_headers(false)
-        .from_reader(bytes))
+        .from_reader(Box::new(bytes.chain(&b"\n"[..]))))
+}
+
+/// The line of the record that was just read. That the reader stands on the next one holds for every record, since
+/// line feeds alone end them, and the last line gets one where the file has none; a carriage return is trimmed off.
+fn line(reader: &csv::Reader<Box<dyn Read>>) -> u64 {
+    reader.position().line() - 1
+}
+
+fn is_blank(record: &ByteRecord) -> bool {
+    record.iter().all(<[u8]>::is_empty) && record.len() < 2
 }
 
 fn missing(file: &Path, found: &str) -> InputError {
@@ -190,8 +203,7 @@ fn text<'a>(file: &Path, place: Place, bytes: &'a [u8]) -> Result<&'a str, Input
         .map_err(|_| Problem::new(file, place, "bytes that are not text", "UTF-8 text", remedy).into())
 }
 
-fn push(table: &mut Table, record: &ByteRecord) -> Result<(), InputError> {
-    let line = record.position().map_or(0, csv::Position::line);
+fn push(table: &mut Table, record: &ByteRecord, line: u64) -> Result<(), InputError> {
     if record.len() != table.names.len() {
         let (found, expected) = (
             format!("{} cells", record.len()),
