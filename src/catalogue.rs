@@ -18,6 +18,7 @@ use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 use crate::inertias::Inertias;
+use crate::parameters::check_vehicle;
 
 /// A model that can run.
 pub struct Loaded {
@@ -86,9 +87,12 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// The model that the user wants, else the campaign's: a shipped one, or a file relative to the campaign's folder.
 ///
 /// # Errors
-/// As [`load`]; a name that is not known is a mistake of the campaign where the user names none.
+/// As [`load`]; a name that is not known is a mistake of the campaign where the user names none. Facts of the vehicle
+/// that nobody knows.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
-    load(&wanted_or_campaigns(campaign, wanted)?)
+    let model = load(&wanted_or_campaigns(campaign, wanted)?)?;
+    check_vehicle(model.about(), campaign)?;
+    Ok(model)
 }
 
 /// All that the compiler derives of the model that the user wants, else of the campaign's.

@@ -7,10 +7,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use qcar_runtime::campaign::dimension;
+use qcar_runtime::campaign::{Campaign, FACTS, dimension};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::{ParameterError, Values};
+use qcar_runtime::spelling;
 
 use file::{ParameterFile, numbers};
 
@@ -53,9 +54,19 @@ pub fn resolve<'a>(
     let mut given = numbers(&file.parameters);
     given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
     let mut problems = wrong_units(about, &file);
+    problems.extend(unknown_facts(about, &file));
     let resolved = Values::resolve(about, &given, &numbers(&file.vehicle));
     let values = resolved.map_err(|errors| problems.extend(errors.iter().map(|error| problem(error, &file))));
     InputError::unless_empty(problems, values.ok())
+}
+
+/// What a campaign knows of the vehicle is of use to somebody.
+///
+/// # Errors
+/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model.
+pub fn check_vehicle(about: &About, campaign: &Campaign) -> Result<(), InputError> {
+    let file = ParameterFile::read(&campaign.manifest())?;
+    InputError::unless_empty(unknown_facts(about, &file), Some(()))
 }
 
 /// What is computed from parameter values is a number.
@@ -124,6 +135,19 @@ fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
             let (found, expected) = (format!("the unit \"{unit}\""), format!("\"{}\"", parameter.unit));
             let remedy = "convert the value to that unit and declare it";
             Problem::new(&stated.file, stated.place.clone(), found, expected, remedy)
+        })
+        .collect()
+}
+
+fn unknown_facts(about: &About, file: &ParameterFile) -> Vec<Problem> {
+    let parameters = about.parameters.iter().map(|parameter| &*parameter.name);
+    let known: Vec<&str> = FACTS.into_iter().chain(parameters).collect();
+    let unknown = file.vehicle.iter().filter(|(name, _)| !known.contains(&name.as_str()));
+    unknown
+        .map(|(name, stated)| {
+            let expected = format!("one of {}, or a parameter of model `{}`", FACTS.join(", "), about.name);
+            let remedy = spelling::remedy(name, known.iter().copied());
+            Problem::new(&stated.file, stated.place.clone(), "an unknown key", expected, remedy)
         })
         .collect()
 }

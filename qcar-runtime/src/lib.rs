@@ -9,6 +9,8 @@ pub mod model;
 pub mod generated;
 // What every part reports through.
 pub mod error;
+// What a misspelt name was meant to be.
+pub mod spelling;
 // How far long work is.
 pub mod progress;
 // The measurement as it lies on disk.

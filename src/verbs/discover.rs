@@ -18,6 +18,7 @@ use qcar_runtime::model::{About, Default};
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::put;
+use crate::parameters::check_vehicle;
 use crate::progress::Showing;
 use crate::workshop::Bench;
 
@@ -97,6 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
+    check_vehicle(bench.model().about(), campaign)?;
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
     let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));

@@ -121,6 +121,28 @@ fn campaigns_are_read_with_care() {
     assert!(!Path::new("nowhere").exists());
 }
 
+#[test]
+fn facts_of_the_vehicle_are_known_to_somebody() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    copy(&shipped, folder.path());
+    let file = folder.path().join("campaign.toml");
+    let manifest = fs::read_to_string(&file).unwrap();
+    let line = 1 + manifest.lines().position(|line| line.starts_with("r_tire")).unwrap();
+    fs::write(&file, manifest.replacen("r_tire", "r_tyre", 1)).unwrap();
+    let said = [
+        &*format!("campaign.toml, line {line}, column 1, `vehicle.r_tyre`: found an unknown key"),
+        "did you mean `r_tire`?",
+    ];
+    for verb in ["fit", "simulate", "discover"] {
+        refused("", &[verb, folder.path().to_str().unwrap()], &said);
+    }
+    params(
+        "[parameters]\n[vehicle]\nc_tyre = 90.0\n",
+        &["line 3", "vehicle.c_tyre", "did you mean `c_tire`?"],
+    );
+}
+
 /// A copy of the campaign whose first sweep has been through `change`, line by line; empty lines go.
 fn damaged(change: impl Fn(usize, Vec<&str>) -> String) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();

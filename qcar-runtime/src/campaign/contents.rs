@@ -2,6 +2,17 @@
 
 use std::path::PathBuf;
 
+/// What `[vehicle]` may hold beside parameters of the model, corner values, SI.
+pub const FACTS: [&str; 7] = [
+    "m_corner",
+    "m_half_vehicle",
+    "m_wheel_other_axle",
+    "r_tire",
+    "static_tire_load",
+    "static_tire_def",
+    "gravity",
+];
+
 /// A campaign as its `campaign.toml` describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {
@@ -13,7 +24,7 @@ pub struct Campaign {
     pub description: String,
     /// The axle model that the engineer starts from.
     pub model: String,
-    /// What is known before any fit, corner values, SI; in the order of the file. A model's parameters may be among them.
+    /// What is known before any fit, corner values, SI; in the order of the file: [`FACTS`] and parameters of the model.
     pub vehicle: Vec<(String, f64)>,
     /// Start values, in the order of the file.
     pub parameters: Vec<Parameter>,

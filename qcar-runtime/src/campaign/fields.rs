@@ -8,6 +8,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use crate::error::{InputError, Place, Problem};
+use crate::spelling;
 
 /// A TOML file, with what was found wrong in it so far.
 pub(super) struct Document {
@@ -237,12 +238,8 @@ impl<'a> Section<'a> {
         let asked = self.asked.borrow();
         for name in self.names().into_iter().filter(|name| !asked.contains(name)) {
             let known: Vec<_> = asked.iter().map(|key| format!("`{key}`")).collect();
-            self.wrong(
-                name,
-                "an unknown key",
-                format!("one of {}", known.join(", ")),
-                "correct its name or remove it",
-            );
+            let remedy = spelling::remedy(name, asked.iter().copied());
+            self.wrong(name, "an unknown key", format!("one of {}", known.join(", ")), remedy);
         }
     }
 

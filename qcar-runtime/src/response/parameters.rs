@@ -2,6 +2,7 @@
 
 use crate::error::{Place, Problem};
 use crate::model::{About, Default};
+use crate::spelling::nearest;
 use std::collections::BTreeMap;
 use std::path::Path;
 use thiserror::Error;
@@ -182,33 +183,10 @@ fn unknown(about: &About, name: &str) -> Option<ParameterError> {
     if about.parameters.iter().any(|p| p.name == name) {
         return None;
     }
-    let nearest = about
-        .parameters
-        .iter()
-        .map(|p| (distance(name, &p.name), &p.name))
-        .min();
-    let nearest = nearest
-        .filter(|(distance, _)| 3 * distance <= name.len())
-        .map(|(_, nearest)| nearest.to_string());
+    let known = about.parameters.iter().map(|p| &*p.name);
     Some(ParameterError::Unknown {
         name: name.to_owned(),
         model: about.name.to_string(),
-        nearest,
+        nearest: nearest(name, known).map(String::from),
     })
-}
-
-/// Levenshtein's edit distance.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, a) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, b) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(a != *b);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
 }
