@@ -18,6 +18,8 @@ use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::progress::while_counting;
 
+// What K&C curves say beside it.
+mod clamped;
 // The result as text and JSON.
 pub(crate) mod render;
 // The result as files.
@@ -25,7 +27,8 @@ pub(crate) mod files;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
-/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with.
+/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. A parameter that no fitted
+/// channel depends on takes its value from the K&C curve that measures it, where the campaign has one.
 /// The exit status is 1 where the search does not end at a minimum.
 #[derive(Args)]
 #[command(
@@ -149,13 +152,15 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     model.check_inertias(setup.values())?;
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
     let fit = while_counting(searches, |told| setup.fit_telling(told));
-    Ok(Fitted {
+    let mut fitted = Fitted {
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
         model,
         levels,
         fit,
-    })
+    };
+    clamped::take_over(&mut fitted)?;
+    Ok(fitted)
 }
 
 /// The campaign's plan with the user's choices.

@@ -41,7 +41,7 @@ enum Format {
 }
 
 /// What a curve says.
-#[derive(Debug, Serialize)]
+#[derive(Clone, Debug, Serialize)]
 pub(crate) struct Gradient {
     /// `bounce`, `dynamic_bounce` or `longitudinal`.
     pub test: &'static str,
@@ -73,6 +73,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         Format::Text => text(&gradients),
         Format::Json => json::line(&gradients),
     })
+}
+
+/// True where a campaign has K&C curves.
+pub(crate) fn has_curves(campaign: &Campaign) -> bool {
+    let is_curve = |test: &Test| matches!(test, Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal);
+    campaign.runs.iter().any(|run| is_curve(&run.test))
 }
 
 /// Gradients of all K&C runs; vertical sines are taken together.
@@ -185,7 +191,7 @@ fn model(campaign: &Campaign) -> Option<(Loaded, Values)> {
 }
 
 /// Asks the model what a parameter must be for it to have a gradient.
-fn take_apart(gradient: &mut Gradient, model: &Loaded, values: &Values) {
+pub(crate) fn take_apart(gradient: &mut Gradient, model: &Loaded, values: &Values) {
     let axis = if gradient.test == "longitudinal" { "x" } else { "z" };
     let slope = if gradient.quantity == "damping" {
         Slope::Damping

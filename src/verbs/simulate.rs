@@ -81,11 +81,27 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(folder) = &arguments.out {
         render::histories(model.about(), &cleats, &driven.rides, folder)?;
     }
+    let guessed = guessed(&campaign, &model, &values);
     Ok(match arguments.format {
-        Format::Text => render::text(&driven.compared),
-        Format::Json => render::json(&campaign, &model, &driven.compared),
+        Format::Text => render::text(&driven.compared, &guessed),
+        Format::Json => render::json(&campaign, &model, &driven.compared, &guessed),
         Format::Csv => render::csv(&driven.compared),
     })
+}
+
+/// The parameters that the campaign wants fitted and that still have its start values: no error is the model's before
+/// these are known.
+fn guessed(campaign: &Campaign, model: &Loaded, values: &Values) -> Vec<String> {
+    let parameters = model.about().parameters.iter().zip(values.as_slice());
+    let is_start = |name: &str, value: f64| {
+        campaign
+            .parameter(name)
+            .is_some_and(|own| own.fit && own.value == value)
+    };
+    parameters
+        .filter(|(parameter, value)| is_start(&parameter.name, **value))
+        .map(|(parameter, _)| parameter.name.to_string())
+        .collect()
 }
 
 /// Every cleat run, simulated and compared.

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::Path;
 
+use qcar_runtime::campaign::Truth;
 use serde_json::Value;
 
 use crate::common::{copy, qcar, succeeds};
@@ -31,7 +32,50 @@ fn what_is_kept_stays_and_says_so() {
         assert_eq!(parameter["stderr"], Value::Null);
     }
     assert_eq!(fit["starts"], 2);
-    assert_eq!(fit["parameters"]["k_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+    assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+}
+
+/// The rig excites nothing along the road; a K&C curve does.
+#[test]
+fn what_the_rig_does_not_see_comes_from_its_curve() {
+    let fit = fitted(&[AXLE, "--starts", "2"]);
+    let own = &fit["parameters"]["k_wheel_x"];
+    let number = |key: &str| own[key].as_f64().unwrap();
+    let truth = Truth::read(&Path::new(AXLE).join("truth.toml")).unwrap();
+    let true_value = truth.parameters.iter().find(|(name, _)| name == "k_wheel_x").unwrap().1;
+    assert!(
+        (number("value") - true_value).abs() < 3.0 * number("stderr"),
+        "{own} is {true_value}"
+    );
+    assert_eq!((&own["curve"], &own["fitted"]), (&"longitudinal".into(), &false.into()));
+    assert_eq!(fit["parameters"]["k_wheel_x_other"]["value"], own["value"]);
+}
+
+#[test]
+fn a_curve_of_two_springs_in_series_tells_neither() {
+    let folder = tempfile::tempdir().unwrap();
+    copy(Path::new(AXLE), folder.path());
+    let patched = succeeds(&["patch", "axle_a", "subframe", "--at", "body"]);
+    fs::write(folder.path().join("on_subframe.axle"), patched).unwrap();
+    let manifest = folder.path().join("campaign.toml");
+    let open = "[parameters.k_sf_x]\nvalue = 2e6\nunit = \"N/m\"\nfit = true\n\n[[channel]]";
+    let text = fs::read_to_string(&manifest).unwrap().replacen("[[channel]]", open, 1);
+    fs::write(&manifest, text.replacen("\"axle_a\"", "\"on_subframe.axle\"", 1)).unwrap();
+    let fit = fitted(&[folder.path().to_str().unwrap(), "--starts", "1"]);
+    let own = &fit["parameters"]["k_wheel_x"];
+    assert_eq!(
+        own["why_no_stderr"],
+        serde_json::json!({"reason": "only_together", "with": ["k_sf_x"]})
+    );
+    assert_eq!((&own["curve"], &own["stderr"]), (&"longitudinal".into(), &Value::Null));
+    let in_series = |k: f64| 1.0 / (1.0 / k + 1.0 / 2e6);
+    let alone = fitted(&[AXLE, "--starts", "1"])["parameters"]["k_wheel_x"]["value"]
+        .as_f64()
+        .unwrap();
+    assert!(
+        (in_series(own["value"].as_f64().unwrap()) / alone - 1.0).abs() < 1e-3,
+        "{own}"
+    );
 }
 
 #[test]

@@ -26,6 +26,7 @@ fn the_true_parameters_give_the_measured_cleat_runs() {
     let rides = simulated(&["--params", TRUTH]);
     assert!(size(&rides, "body_z", "peak", "median") < 0.05);
     assert!(size(&rides, "body_z", "peak", "worst") < 0.15);
+    assert_eq!(rides["at_start"], serde_json::json!([]));
     assert!(size(&rides, "body_z", "after_shake", "median") < 0.08);
 }
 
@@ -37,6 +38,10 @@ fn a_fit_to_the_rig_predicts_the_cleat() {
     let rides = simulated(&["--params", &format!("{out}/parameters.toml")]);
     assert!(size(&rides, "body_z", "peak", "median") < 0.1);
     assert!(size(&rides, "body_z", "after_shake", "median") < 0.1);
+    assert_eq!(
+        rides["at_start"],
+        serde_json::json!(["c_wheel_x", "k_pwt_x", "c_pwt_x"])
+    );
 }
 
 #[test]

@@ -55,7 +55,7 @@ pub struct ParameterFit {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// The value found, or the start value where it was not fitted.
+    /// The value found, or the start value where nothing gave another.
     pub value: f64,
     /// The start value.
     pub start: f64,
@@ -75,6 +75,8 @@ pub struct ParameterFit {
     pub why_no_stderr: Option<NoError>,
     /// The parameter that it takes its value from.
     pub tied_to: Option<String>,
+    /// The K&C test that gave its value, where no fitted channel depends on it.
+    pub curve: Option<&'static str>,
 }
 
 /// An end of a range.
@@ -231,6 +233,7 @@ fn parameter<M: Model + ?Sized>(
             .is_none()
             .then(|| why(setup, search, uncertainty, place, variable, tied)),
         tied_to: tied.then(|| about[values.leader(place)].name.to_string()),
+        curve: None,
     }
 }
 

@@ -54,9 +54,10 @@ function scaledNumber(value, unit, digits = 4) {
   return number(inUnit(value, unit).value, digits);
 }
 
-function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_stderr: relative }) {
+function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_stderr: relative, curve }) {
   if (bound) return `at the ${bound} end of its range`;
   if (tied) return `as ${tied}`;
+  if (curve) return `from the K&C ${curve} curve${why ? `, ${WHY[why.reason](why)}` : ''}`;
   if (why) return WHY[why.reason] ? WHY[why.reason](why) : words(why.reason);
   return relative > 0.05 ? 'poorly determined' : '';
 }

@@ -108,11 +108,17 @@ fn remark(of: &ParameterFit) -> String {
         Bound::Lower => "at the lower end of its range",
         Bound::Upper => "at the upper end of its range",
     });
-    match (bound, &of.tied_to, &of.why_no_stderr) {
+    match (bound, &of.tied_to, &of.why_no_stderr, of.curve) {
         (Some(bound), ..) => bound.into(),
-        (None, Some(other), _) => format!("as {other}"),
-        (None, None, Some(why)) => why.sentence(),
-        (None, None, None) => String::new(),
+        (None, Some(other), ..) => format!("as {other}"),
+        (None, None, why, Some(curve)) => {
+            let why = why
+                .as_ref()
+                .map_or(String::new(), |why| format!(", {}", why.sentence()));
+            format!("no fitted channel depends on it: from the K&C {curve} curve{why}")
+        }
+        (None, None, Some(why), None) => why.sentence(),
+        (None, None, None, None) => String::new(),
     }
 }
 

@@ -20,19 +20,21 @@ use crate::table::{Table, number};
 struct Result<'a> {
     campaign: &'a str,
     model: &'a str,
+    at_start: &'a [String],
     #[serde(flatten)]
     compared: &'a Compared,
 }
 
-pub(super) fn json(campaign: &Campaign, model: &Loaded, of: &Compared) -> String {
+pub(super) fn json(campaign: &Campaign, model: &Loaded, of: &Compared, guessed: &[String]) -> String {
     json::line(&Result {
         campaign: &campaign.name,
         model: &model.about().name,
+        at_start: guessed,
         compared: of,
     })
 }
 
-pub(super) fn text(of: &Compared) -> String {
+pub(super) fn text(of: &Compared, guessed: &[String]) -> String {
     let mut runs = Table::new([
         "run",
         "role",
@@ -64,7 +66,18 @@ pub(super) fn text(of: &Compared) -> String {
         let cells = [size.peak, size.after_shake].into_iter().flat_map(median_and_worst);
         sizes.row(std::iter::once(name.clone()).chain(cells).collect());
     }
-    format!("{}\n{}", runs.text(), sizes.text())
+    format!("{}\n{}{}", runs.text(), sizes.text(), note(guessed))
+}
+
+fn note(guessed: &[String]) -> String {
+    match guessed {
+        [] => String::new(),
+        names => format!(
+            "\nnote: at the campaign's start values: {}; what depends on them is as good as these. `qcar discover --out` \
+             finds those that cleat runs with the role fit determine\n",
+            names.join(", ")
+        ),
+    }
 }
 
 fn median_and_worst(of: Option<Summary>) -> [String; 2] {

@@ -87,8 +87,7 @@ pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, F
 }
 
 fn gradients(campaign: &Campaign, out: &Path) -> Result<Vec<Gradient>, InputError> {
-    let is_curve = |test: &Test| matches!(test, Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal);
-    if !campaign.runs.iter().any(|run| is_curve(&run.test)) {
+    if !kc::has_curves(campaign) {
         return Ok(Vec::new());
     }
     let gradients = kc::gradients(campaign)?;

@@ -1,0 +1,79 @@
+//! What the rig leaves open and K&C curves say: a parameter that no channel sees takes the value that its curve gives.
+
+use qcar_runtime::error::InputError;
+use qcar_runtime::fit::report::{NoError, ParameterFit};
+
+use super::Fitted;
+use crate::verbs::kc::{self, Gradient};
+
+/// How far another open parameter is moved to see whether a curve's answer stands on it.
+const DOUBT: f64 = 1.1;
+
+/// Gives the parameters that the fit left at their start values those with which the fitted model has the measured
+/// gradients, where these are within their ranges.
+///
+/// # Errors
+/// A curve without gradients.
+pub(super) fn take_over(fitted: &mut Fitted) -> Result<(), InputError> {
+    let open: Vec<String> = fitted
+        .fit
+        .parameters
+        .iter()
+        .filter(|p| is_open(p))
+        .map(|p| p.name.clone())
+        .collect();
+    if open.is_empty() || !kc::has_curves(&fitted.campaign) {
+        return Ok(());
+    }
+    for mut gradient in kc::gradients(&fitted.campaign)? {
+        if gradient
+            .parameter
+            .is_some_and(|name| open.iter().any(|open| open == name))
+        {
+            kc::take_apart(&mut gradient, &fitted.model, &fitted.values());
+            adopt(fitted, &gradient);
+        }
+    }
+    Ok(())
+}
+
+fn is_open(parameter: &ParameterFit) -> bool {
+    parameter.why_no_stderr == Some(NoError::NotSeen)
+}
+
+fn adopt(fitted: &mut Fitted, gradient: &Gradient) {
+    let (Some(name), Some(value)) = (gradient.parameter, gradient.parameter_value) else {
+        return;
+    };
+    let with = partners(fitted, gradient, value);
+    let parameters = &mut fitted.fit.parameters;
+    let within = |own: &&mut ParameterFit| own.range.is_none_or(|(low, high)| (low..=high).contains(&value));
+    if let Some(own) = parameters.iter_mut().find(|own| own.name == name).filter(within) {
+        let error = with.is_empty().then_some(gradient.uncertainty);
+        own.value = value;
+        own.stderr = error;
+        own.relative_stderr = error.map(|error| error / value);
+        own.why_no_stderr = (!with.is_empty()).then_some(NoError::OnlyTogether { with });
+        own.curve = Some(gradient.test);
+        let tied = |other: &&mut ParameterFit| other.tied_to.as_deref() == Some(name);
+        parameters.iter_mut().filter(tied).for_each(|tied| tied.value = value);
+    }
+}
+
+/// The open parameters on whose start values the answer of a curve stands: moved, they move it by more than its error.
+fn partners(fitted: &Fitted, gradient: &Gradient, value: f64) -> Vec<String> {
+    let moves = |at: usize| {
+        let (mut values, mut moved) = (fitted.values(), gradient.clone());
+        values.set(at, DOUBT * values.as_slice()[at]);
+        kc::take_apart(&mut moved, &fitted.model, &values);
+        moved
+            .parameter_value
+            .is_none_or(|moved| (moved - value).abs() > gradient.uncertainty)
+    };
+    let others = fitted.fit.parameters.iter().enumerate();
+    let others = others.filter(|(_, other)| is_open(other) && Some(other.name.as_str()) != gradient.parameter);
+    others
+        .filter(|(at, _)| moves(*at))
+        .map(|(_, other)| other.name.clone())
+        .collect()
+}
