@@ -1,4 +1,4 @@
-//! Quasi-static K&C cycles as evidence, written in closed form and held against what compiled models say of them.
+//! K&C cycles as evidence, written in closed form and held against what compiled models say of them.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -18,9 +18,11 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 
 const FRICTION: f64 = 140.0;
+const PRESLIDING: f64 = 1e6;
 /// Stiffness of the wheel's bushing and of the sub-frame's, along x.
 const BUSHINGS: [f64; 2] = [5e5, 2.4e6];
 const SPRING: f64 = 26e3;
+const AMPLITUDE: f64 = 0.02;
 
 /// A cycle there and back whose friction changes sign with the direction.
 fn cycle(reach: f64, force: impl Fn(f64) -> f64) -> String {
@@ -36,12 +38,48 @@ fn cycle(reach: f64, force: impl Fn(f64) -> f64) -> String {
         })
 }
 
+/// Two sines and three quarters: a spring, a damper, and a friction that has turned all but e^(-d) after so many times
+/// `FRICTION / PRESLIDING` of travel behind a reversal (the solution of Dahl's law).
+fn sine(frequency: f64, damping: f64) -> String {
+    let omega = std::f64::consts::TAU * frequency;
+    let samples = 1000;
+    (0..=samples).fold("time,displacement,velocity,force\n".to_string(), |mut text, i| {
+        let t = 2.75 / frequency * f64::from(i) / f64::from(samples);
+        let (x, v) = (AMPLITUDE * (omega * t).cos(), -omega * AMPLITUDE * (omega * t).sin());
+        let behind = AMPLITUDE - x * -v.signum();
+        let turned = 1.0 - 2.0 * (-behind * PRESLIDING / FRICTION).exp();
+        let force = SPRING * x + damping * v + FRICTION * turned * v.signum();
+        let _ = writeln!(text, "{t:.6},{x:.8},{v:.8},{force:.4}");
+        text
+    })
+}
+
 fn campaign(folder: &Path, kind: &str, curve: &str) -> Campaign {
     fs::write(folder.join("curve.csv"), curve).unwrap();
     let run = format!("[[run]]\nkind = \"{kind}\"\nfile = \"curve.csv\"\nrole = \"fit\"\n");
+    opened(folder, &run)
+}
+
+/// A slow cycle, and sines of these frequencies on a damper.
+fn with_sines(folder: &Path, curve: &str, frequencies: &[f64], damping: f64) -> Campaign {
+    fs::write(folder.join("curve.csv"), curve).unwrap();
+    let mut runs = "[[run]]\nkind = \"bounce\"\nfile = \"curve.csv\"\nrole = \"fit\"\n".to_string();
+    for (i, frequency) in frequencies.iter().enumerate() {
+        fs::write(folder.join(format!("sine_{i}.csv")), sine(*frequency, damping)).unwrap();
+        let peak = std::f64::consts::TAU * frequency * AMPLITUDE;
+        let _ = write!(
+            runs,
+            "[[run]]\nkind = \"dynamic_bounce\"\nfile = \"sine_{i}.csv\"\nrole = \"fit\"\npeak_velocity = \
+             {peak}\namplitude = {AMPLITUDE}\n"
+        );
+    }
+    opened(folder, &runs)
+}
+
+fn opened(folder: &Path, runs: &str) -> Campaign {
     let channel = "[[channel]]\nname = \"pad\"\nlocation = \"pad\"\nside = \"left\"\naxis = \"z\"\nquantity = \
                    \"acceleration\"\nunit = \"m/s^2\"\n";
-    let toml = format!("format = 1\nname = \"rig\"\nmodel = \"axle_c\"\n{channel}{run}");
+    let toml = format!("format = 1\nname = \"rig\"\nmodel = \"axle_c\"\n{channel}{runs}");
     fs::write(folder.join("campaign.toml"), toml).unwrap();
     Campaign::open(folder).unwrap()
 }
@@ -120,4 +158,66 @@ fn the_longitudinal_curve_sees_bushing_and_sub_frame_in_series() {
     let evidence = Evidence::from_campaign(&campaign, bench.model().about()).unwrap();
     let error = worst(bench.model(), &values(bench.model(), &[]), &evidence);
     assert!(error < 0.1, "{error} N");
+}
+
+/// Without dampers of a known speed nobody can tell the friction in the width of a loop from what a damper adds.
+#[test]
+fn the_width_of_a_loop_needs_sines_beside_it() {
+    let folder = tempfile::tempdir().unwrap();
+    let alone = campaign(folder.path(), "bounce", &cycle(0.08, |x| SPRING * x));
+    let bench = bench("axle_c_rigid_tm");
+    let kinds = |campaign: &Campaign| {
+        let evidence = Evidence::from_campaign(campaign, bench.model().about()).unwrap();
+        evidence.series.iter().map(|series| series.kind).collect::<Vec<_>>()
+    };
+    assert_eq!(kinds(&alone), [Kind::Travel]);
+    let folder = tempfile::tempdir().unwrap();
+    let beside = with_sines(folder.path(), &cycle(0.08, |x| SPRING * x), &[0.5], 1500.0);
+    let all = [
+        Kind::Travel,
+        Kind::Width,
+        Kind::Cycle(1),
+        Kind::Cycle(2),
+        Kind::Cycle(3),
+    ];
+    assert_eq!(kinds(&beside), all);
+}
+
+/// A damper's force grows with the speed of the rig and a friction's does not: only a model with both has all loops.
+#[test]
+fn loops_of_several_speeds_tell_friction_from_a_damper() {
+    const DAMPING: f64 = 1500.0;
+    let folder = tempfile::tempdir().unwrap();
+    let frequencies = [0.2, 0.6, 1.0];
+    let campaign = with_sines(folder.path(), &cycle(0.08, |x| SPRING * x), &frequencies, DAMPING);
+    let bench = bench("axle_c_rigid_tm");
+    let evidence = Evidence::from_campaign(&campaign, bench.model().about()).unwrap();
+    // A sine of N/m is as large as its force over the amplitude.
+    let newtons = |model: &dyn Model, effect: &[(&str, f64)]| {
+        let given: Vec<_> = effect.iter().copied().chain([("c_wheel_z", DAMPING)]).collect();
+        let values = values(model, &given);
+        let predictions = predict(model, &values, &[], &evidence, Role::Fit).unwrap();
+        let of = |p: &qcar_runtime::discover::predict::Prediction| {
+            let series = &evidence.series[p.series];
+            let unit = if series.kind.complex() { AMPLITUDE } else { 1.0 };
+            let pairs = series.value.iter().zip(&p.value);
+            unit * pairs
+                .map(|(measured, said)| (measured - said).norm())
+                .fold(0.0, f64::max)
+        };
+        predictions.iter().map(of).collect::<Vec<_>>()
+    };
+    let without = newtons(bench.model(), &[]);
+    assert!((without[1] - FRICTION).abs() < 1.5, "{without:?}");
+    // A square wave has harmonics of 4/π and 4/3π of its height, and no even one.
+    for harmonics in without[2..].chunks(3) {
+        let [first, second, third] = harmonics.try_into().unwrap();
+        assert!(
+            first > FRICTION && second < 1.0 && third > 0.3 * FRICTION,
+            "{without:?}"
+        );
+    }
+    let both = bench.with("coulomb_friction", "damper", Some("in_damper")).unwrap();
+    let with = newtons(both.model(), &[("f_coulomb", FRICTION), ("k_presliding", PRESLIDING)]);
+    assert!(with.iter().all(|missing| *missing < 1.5), "{with:?}");
 }

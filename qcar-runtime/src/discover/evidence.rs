@@ -15,6 +15,8 @@ pub(super) mod cleat;
 pub mod means;
 // Quasi-static K&C cycles.
 pub(super) mod travel;
+// K&C sines.
+mod cycle;
 
 use means::Means;
 use nalgebra::Complex;
@@ -47,7 +49,7 @@ pub struct Run {
     /// What it may be used for.
     pub role: Role,
     /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a
-    /// history's input, height (m) of an obstacle.
+    /// history's input, height (m) of an obstacle, largest travel (m) of a K&C cycle.
     pub level: f64,
     /// What drove it.
     pub stimulus: Stimulus,
@@ -84,8 +86,20 @@ pub enum Stimulus {
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
-    /// A K&C rig that moved the wheel slowly along an axis, against the body.
-    Travel(Axis),
+    /// A K&C rig that moved the wheel slowly against the body.
+    Travel {
+        /// Along which it moved.
+        axis: Axis,
+        /// m.
+        ends: [f64; 2],
+    },
+    /// The same as a sine.
+    Sine {
+        /// Along which it moved.
+        axis: Axis,
+        /// Hz.
+        frequency: f64,
+    },
 }
 
 /// A ride over an obstacle at constant speed.
@@ -133,7 +147,7 @@ impl Stimulus {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),
             Stimulus::History { inputs, .. } => Some(&inputs.signals[0].0),
-            Stimulus::Cleat(_) | Stimulus::Travel(_) => None,
+            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => None,
         }
     }
 }
@@ -166,13 +180,17 @@ pub enum Kind {
     Passage,
     /// Forces at a travel (m), both positive in compression, or forwards.
     Travel,
+    /// Half of what the force is larger at that travel while it grows than while it falls.
+    Width,
+    /// Forces at `order` times the frequency (Hz) of a sine of travel at which they stand, over its amplitude.
+    Cycle(usize),
 }
 
 impl Kind {
     /// Which harmonic the values are; `None` for other than harmonics.
     pub fn order(self) -> Option<usize> {
         match self {
-            Kind::Harmonic(order) => Some(order),
+            Kind::Harmonic(order) | Kind::Cycle(order) => Some(order),
             _ => None,
         }
     }
@@ -180,16 +198,16 @@ impl Kind {
     /// True where values have an imaginary part.
     pub fn complex(self) -> bool {
         match self {
-            Kind::Harmonic(_) => true,
-            Kind::Time | Kind::Passage | Kind::Travel => false,
+            Kind::Harmonic(_) | Kind::Cycle(_) => true,
+            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width => false,
         }
     }
 
-    /// What a value at `at` is listed under in Hz, where it has a frequency.
+    /// The frequency (Hz) at which a sensor of motion reads a value at `at`, where it has one.
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
-            Kind::Time | Kind::Passage | Kind::Travel => None,
+            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => None,
         }
     }
 }
@@ -285,7 +303,10 @@ impl Evidence {
             Test::Cleat { .. } => self.add_cleat(campaign, about, run),
             Test::Bounce => self.add_travel(campaign, about, run, Axis::Z),
             Test::Longitudinal => self.add_travel(campaign, about, run, Axis::X),
-            _ => Ok(()),
+            Test::DynamicBounce {
+                peak_velocity,
+                amplitude,
+            } => self.add_sine(campaign, about, run, (*amplitude, *peak_velocity)),
         }
     }
 

@@ -197,7 +197,7 @@ impl Nuisance {
                 slopes
             }
             // Over a wide band the mean gain is what counts.
-            Kind::Passage | Kind::Travel => self.gain(series).into_iter().collect(),
+            Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => self.gain(series).into_iter().collect(),
             // Driven by what was recorded, a gain is what parameters are too: it stays with the uncertainty of the values.
             Kind::Time => Vec::new(),
         }

@@ -14,7 +14,9 @@ mod unsteady;
 mod history;
 // Rides over an obstacle.
 mod cleat;
-// Slow cycles of a K&C rig.
+// What a K&C rig moves, and what follows.
+mod bench;
+// Cycles of a K&C rig.
 mod travel;
 
 pub use unsteady::unsteady;
@@ -154,9 +156,6 @@ fn of_run(
         Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
         Stimulus::Cleat(passage) => cleat::passage(model, side, free, evidence, (run, passage)),
         Stimulus::History { .. } => history::history(model, values, free, evidence, run),
-        Stimulus::Travel(axis) => {
-            travel::check(model, evidence, run, *axis)?;
-            Ok(travel::travel(model, values, free, evidence, (run, *axis)))
-        }
+        Stimulus::Travel { .. } | Stimulus::Sine { .. } => travel::travel(model, values, free, evidence, run),
     }
 }

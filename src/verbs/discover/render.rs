@@ -136,7 +136,7 @@ fn place(tile: &Tile) -> Where {
         harmonic: tile.kind.order(),
         band_hz: tile.kind.order().map(|_| tile.span),
         window_s: matches!(tile.kind, Kind::Time | Kind::Passage).then_some(tile.span),
-        travel_m: (tile.kind == Kind::Travel).then_some(tile.span),
+        travel_m: matches!(tile.kind, Kind::Travel | Kind::Width).then_some(tile.span),
         level: tile.level,
         strength: tile.strength,
     }

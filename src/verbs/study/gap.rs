@@ -13,7 +13,7 @@ use super::rounded::{curve, rounded};
 #[derive(Serialize)]
 pub struct Patch {
     channel: String,
-    /// `harmonic`, `time` or `passage`.
+    /// `harmonic`, `time`, `passage`, `travel`, `width` or `cycle`.
     kind: &'static str,
     harmonic: Option<usize>,
     /// Hz of a harmonic, else s.
@@ -57,6 +57,8 @@ pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
             Kind::Time => "time",
             Kind::Passage => "passage",
             Kind::Travel => "travel",
+            Kind::Width => "width",
+            Kind::Cycle(_) => "cycle",
         },
         harmonic: tile.kind.order(),
         span: (rounded(tile.span.0), rounded(tile.span.1)),

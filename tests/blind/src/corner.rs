@@ -199,14 +199,14 @@ impl Corner<'_> {
     }
 
     /// Resisting force of the spring at the wheel, N, over its stretch in wheel travel.
-    pub fn spring(&self, s: f64) -> f64 {
+    fn spring(&self, s: f64) -> f64 {
         let rise = self.laws.rate_increase_at_40mm.unwrap_or(0.0) / 3.0 * (s / 0.04).powi(2);
         let stop = self.laws.bump_stop.map_or(0.0, |b| b.k_stop * (s + b.gap).min(0.0));
         self.axle.k_wheel_z * s * (1.0 + rise) + stop
     }
 
     /// Resisting force of the damper at the wheel without its friction, N.
-    pub fn damper_law(&self, share: f64, s: f64, v: f64) -> f64 {
+    fn damper_law(&self, share: f64, s: f64, v: f64) -> f64 {
         let l = self.laws;
         let mut c = self.axle.c_wheel_z * (1.0 - l.fade.unwrap_or(0.0) * share);
         if let Some(ratio) = l.rebound_over_compression {

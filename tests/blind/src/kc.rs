@@ -1,72 +1,107 @@
-//! The K&C rig: wheel against a clamped body, quasi-static or slow.
+//! The K&C rig: the wheel is moved against a clamped body.
 
-use crate::corner::Corner;
+use std::f64::consts::{PI, TAU};
+
+use crate::corner::{BELT, BODY, COORDINATES, Corner, Push, RESONATOR, STATES, State, WHEEL};
+use crate::hidden::Laws;
+use crate::integrate::step;
 use crate::random::Random;
+
+/// Peak velocity of what is called quasi-static, m/s.
+const SLOW: f64 = 0.008;
+/// Time from the design position to the end of the travel, where every cycle begins, s.
+const RUN_IN: f64 = 2.0;
+/// Step of the integration, s, at most.
+const STEP: f64 = 5e-4;
+
+/// A vertical sine of the wheel.
+struct Sine {
+    /// m.
+    amplitude: f64,
+    /// rad/s.
+    omega: f64,
+}
+
+impl Sine {
+    fn new(amplitude: f64, peak_velocity: f64) -> Self {
+        Self {
+            amplitude,
+            omega: peak_velocity / amplitude,
+        }
+    }
+
+    /// Travel and velocity; times before zero lead to where it begins.
+    fn at(&self, t: f64) -> [f64; 2] {
+        let a = self.amplitude;
+        if t < 0.0 {
+            let angle = PI * t / RUN_IN;
+            return [a / 2.0 * (1.0 + angle.cos()), -a / 2.0 * PI / RUN_IN * angle.sin()];
+        }
+        let angle = self.omega * t;
+        [a * angle.cos(), -a * self.omega * angle.sin()]
+    }
+
+    /// Rows of time, travel, velocity and force, so many s apart. The rig is slow: inertia counts for nothing.
+    fn run(&self, corner: &Corner, samples: usize, apart: f64) -> Vec<[f64; 4]> {
+        let laws = Laws {
+            inertance: None,
+            ..corner.laws.clone()
+        };
+        let (axle, laws) = (corner.axle, &laws);
+        let corner = Corner { axle, laws };
+        let derivative = |t: f64, y: &State| corner.derivative(0.5, &self.clamped(t, y), Push::default(), false);
+        let finer = (apart / STEP).ceil();
+        let mut y = [0.0; STATES];
+        for i in 0..(RUN_IN / STEP) as usize {
+            y = step(i as f64 * STEP - RUN_IN, &y, STEP, &derivative);
+        }
+        let wheel = axle.m_wheel - laws.belt.map_or(0.0, |belt| belt.m_belt);
+        let mut rows = Vec::new();
+        for i in 0..samples {
+            let t = i as f64 * apart;
+            let [travel, velocity] = self.at(t);
+            rows.push([t, travel, velocity, -wheel * derivative(t, &y)[COORDINATES + WHEEL]]);
+            for k in 0..finer as usize {
+                y = step(t + k as f64 * apart / finer, &y, apart / finer, &derivative);
+            }
+        }
+        rows
+    }
+
+    /// The state with the body held and the wheel where the rig has it; what hangs on the wheel goes with it.
+    fn clamped(&self, t: f64, y: &State) -> State {
+        let mut y = *y;
+        let [travel, velocity] = self.at(t);
+        (y[BODY], y[COORDINATES + BODY]) = (0.0, 0.0);
+        for part in [WHEEL, BELT, RESONATOR] {
+            (y[part], y[COORDINATES + part]) = (travel, velocity);
+        }
+        y
+    }
+}
 
 /// A vertical cycle of `amplitude` m: rows of displacement (compression positive) and force.
 pub fn bounce(corner: &Corner, amplitude: f64, random: &mut Random) -> Vec<[f64; 2]> {
-    let mut friction = Friction::default();
-    let mut last = amplitude;
-    (0..=1200)
-        .map(|i| {
-            let x = amplitude * (std::f64::consts::TAU * f64::from(i) / 1200.0).cos();
-            friction.slide(corner, x - last);
-            last = x;
-            let force = -corner.spring(-x) + friction.force();
-            [x + 2e-5 * random.normal(), force + 0.004 * 3000.0 * random.normal()]
-        })
+    let sine = Sine::new(amplitude, SLOW);
+    let rows = sine.run(corner, 1201, TAU / sine.omega / 1200.0);
+    rows.into_iter()
+        .map(|[_, x, _, force]| [x + 2e-5 * random.normal(), force + 0.004 * 3000.0 * random.normal()])
         .collect()
 }
 
-/// What resists slow travel, N: Dahl's friction and the loop of a hysteresis.
-#[derive(Default)]
-struct Friction {
-    dry: f64,
-    hysteresis: f64,
-}
-
-impl Friction {
-    /// After a slow step of travel.
-    fn slide(&mut self, corner: &Corner, step: f64) {
-        if let Some(law) = corner.laws.friction {
-            let towards = law.f_coulomb * step.signum();
-            self.dry = towards + (self.dry - towards) * (-law.k_presliding * step.abs() / law.f_coulomb).exp();
-        }
-        if let Some(b) = corner.laws.bouc_wen {
-            const FINER: u32 = 50;
-            let d = step / f64::from(FINER);
-            for _ in 0..FINER {
-                let part = self.hysteresis / b.f_hysteresis;
-                let lost = b.loop_shape * d.abs() * part * part.abs() + (1.0 - b.loop_shape) * d * part * part;
-                self.hysteresis += b.k_hysteresis * (d - lost);
-            }
-        }
-    }
-
-    fn force(&self) -> f64 {
-        self.dry + self.hysteresis
-    }
-}
-
-/// Two sine cycles at a peak velocity: rows of time, displacement, velocity, force.
+/// Two sine cycles and three quarters at a peak velocity: rows of time, displacement, velocity, force.
 pub fn dynamic_bounce(corner: &Corner, amplitude: f64, peak_velocity: f64, random: &mut Random) -> Vec<[f64; 4]> {
-    let omega = peak_velocity / amplitude;
-    let steps = (2.75 * std::f64::consts::TAU / omega / 0.005) as usize;
-    let mut friction = Friction::default();
-    let mut last = amplitude;
-    (0..=steps)
-        .map(|i| {
-            let t = 0.005 * i as f64;
-            let (x, v) = (amplitude * (omega * t).cos(), -amplitude * omega * (omega * t).sin());
-            friction.slide(corner, x - last);
-            last = x;
-            let force = -corner.spring(-x) - corner.damper_law(0.5, -x, -v) + friction.force();
-            let noisy = |value: f64, sigma: f64, random: &mut Random| value + sigma * random.normal();
+    let sine = Sine::new(amplitude, peak_velocity);
+    let apart = 0.005;
+    let samples = (2.75 * TAU / sine.omega / apart) as usize + 1;
+    let rows = sine.run(corner, samples, apart);
+    rows.into_iter()
+        .map(|[t, x, v, force]| {
             [
                 t,
-                noisy(x, 3e-5, random),
-                noisy(v, 5e-4, random),
-                noisy(force, 8.0, random),
+                x + 3e-5 * random.normal(),
+                v + 5e-4 * random.normal(),
+                force + 8.0 * random.normal(),
             ]
         })
         .collect()

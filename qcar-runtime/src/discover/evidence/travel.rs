@@ -1,13 +1,17 @@
-//! A quasi-static K&C cycle as evidence: the force over the travel, in the middle between both directions.
+//! A quasi-static K&C cycle as evidence: the force over the travel, as the middle between both directions and as half
+//! their distance.
 //!
 //! What friction and damping add to one direction they take from the other, so that the mean of both is what springs,
-//! stops and bushings give. How wide the loop is depends on the speed of the rig, which a campaign does not say.
+//! stops and bushings give. Half the width of the loop is the dry friction, and what dampers add at the speed of the rig.
+//! A campaign does not say that speed; sines of known speed tell how much it may be, and without them the width is no
+//! evidence.
 
 use nalgebra::Complex;
 
 use super::{Evidence, Kind, Run, Series, Stimulus};
-use crate::campaign::{Axis, Campaign, Quantity};
+use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::InputError;
+use crate::kc::{SineSamples, sines};
 use crate::model::{About, StateKind};
 use crate::transmissibility::Point;
 
@@ -24,7 +28,9 @@ const FEWEST: usize = 4;
 /// The direction of travel is that over so many parts of the curve before and behind a sample.
 const DIRECTION_PARTS: usize = 100;
 /// Of the largest force: how straight a load cell is.
-const FLOOR: f64 = 0.001;
+pub(super) const FLOOR: f64 = 0.001;
+/// Speed of a quasi-static rig, m/s: a whole cycle through 0.15 m of travel takes half a minute or longer.
+const RIG: f64 = 0.01;
 
 impl Evidence {
     pub(super) fn add_travel(
@@ -35,69 +41,135 @@ impl Evidence {
         axis: Axis,
     ) -> Result<(), InputError> {
         let curve = campaign.curve(run)?;
+        if !self.is_on_rig(about, run, axis) {
+            return Ok(());
+        }
+        let damping = (axis == Axis::Z).then(|| damping(campaign)).transpose()?.flatten();
+        let Some(cycle) = Loop::read(&curve.displacement, &curve.force) else {
+            self.notices
+                .push(format!("{}: no whole cycle; the run is left out", run.file));
+            return Ok(());
+        };
+        let place = self.runs.len();
+        self.series.push(cycle.series(place, axis, Kind::Travel, 0.0));
+        self.series
+            .extend(damping.map(|c| cycle.series(place, axis, Kind::Width, c.abs() * RIG)));
+        self.runs.push(Run {
+            name: run.file.clone(),
+            role: run.role,
+            level: cycle.ends[1].max(-cycle.ends[0]),
+            stimulus: Stimulus::Travel { axis, ends: cycle.ends },
+        });
+        Ok(())
+    }
+
+    /// Whether a model has what the rig moves; leaves a notice where it has not.
+    pub(super) fn is_on_rig(&mut self, about: &About, run: &crate::campaign::Run, axis: Axis) -> bool {
         let moves = |location: &str| {
             let mut states = about.states.iter();
             states.any(|s| s.kind == StateKind::Position && s.location == location && s.axis == axis.name())
         };
         let loaded = about.excitations.iter().any(|e| e.force && e.axis == axis.name());
-        if !(moves(MOVED) && moves(HELD) && loaded) {
+        let there = moves(MOVED) && moves(HELD) && loaded;
+        if !there {
             let what = format!("no {MOVED} that a force moves against a {HELD} along {}", axis.name());
             self.notices
                 .push(format!("{}: the model has {what}; the run is left out", run.file));
-            return Ok(());
         }
-        let Some(series) = series(self.runs.len(), axis, &curve.displacement, &curve.force) else {
-            self.notices
-                .push(format!("{}: no whole cycle; the run is left out", run.file));
-            return Ok(());
-        };
-        self.series.push(series);
-        self.runs.push(Run {
-            name: run.file.clone(),
-            role: run.role,
-            level: curve.displacement.iter().fold(0.0, |most, x| x.abs().max(most)),
-            stimulus: Stimulus::Travel(axis),
-        });
-        Ok(())
+        there
     }
 }
 
-/// `None` without travel in both directions.
-fn series(run: usize, axis: Axis, displacement: &[f64], force: &[f64]) -> Option<Series> {
-    let (low, high) = displacement
-        .iter()
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
-            (low.min(*x), high.max(*x))
-        });
-    let width = COVERED * (high - low) / VALUES as f64;
-    let first = low + (1.0 - COVERED) * (high - low) / 2.0;
-    let most = force.iter().fold(0.0, |most: f64, f| f.abs().max(most));
-    let mut series = Series {
-        run,
-        sensor: Point {
-            location: LOCATION.into(),
-            axis,
-            quantity: Quantity::Force,
-        },
-        kind: Kind::Travel,
-        at: Vec::new(),
-        value: Vec::new(),
-        sigma: Vec::new(),
-    };
-    for value in 0..VALUES {
-        let middle = first + (value as f64 + 0.5) * width;
-        let both = [1.0, -1.0].map(|way| {
-            let inside =
-                |&i: &usize| (displacement[i] - middle).abs() <= width / 2.0 && direction(displacement, i) == way;
-            let samples = (0..displacement.len()).filter(inside);
-            line(samples.map(|i| [displacement[i] - middle, force[i]]).collect())
-        });
-        let [Some(there), Some(back)] = both else { continue };
-        series.at.push(middle);
-        series.value.push(Complex::from((there.0 + back.0) / 2.0));
-        series.sigma.push((there.1.hypot(back.1) / 2.0).hypot(FLOOR * most));
+/// The sensor of the force on the wheel.
+pub(super) fn sensor(axis: Axis) -> Point {
+    Point {
+        location: LOCATION.into(),
+        axis,
+        quantity: Quantity::Force,
     }
-    (series.at.len() > VALUES / 2).then_some(series)
+}
+
+/// What the fitted sines of a campaign say of the damping between wheel and body, N s/m; `None` without any.
+fn damping(campaign: &Campaign) -> Result<Option<f64>, InputError> {
+    let is_sine = |run: &&crate::campaign::Run| run.role == Role::Fit && matches!(run.test, Test::DynamicBounce { .. });
+    let curves = campaign
+        .runs
+        .iter()
+        .filter(is_sine)
+        .map(|run| campaign.dynamic_curve(run));
+    let curves = curves.collect::<Result<Vec<_>, _>>()?;
+    let samples: Vec<SineSamples> = curves
+        .iter()
+        .map(|curve| SineSamples {
+            displacement: &curve.displacement,
+            velocity: &curve.velocity,
+            force: &curve.force,
+        })
+        .collect();
+    Ok(sines(&samples).ok().map(|sine| sine.damping.value))
+}
+
+/// Force over travel, there and back.
+struct Loop {
+    /// m, of the travel.
+    ends: [f64; 2],
+    at: Vec<f64>,
+    /// Height of both ways, each with its standard error.
+    ways: Vec<[(f64, f64); 2]>,
+    /// The largest force.
+    most: f64,
+}
+
+impl Loop {
+    /// `None` without travel in both directions.
+    fn read(displacement: &[f64], force: &[f64]) -> Option<Self> {
+        let (low, high) = displacement
+            .iter()
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
+                (low.min(*x), high.max(*x))
+            });
+        let width = COVERED * (high - low) / VALUES as f64;
+        let first = low + (1.0 - COVERED) * (high - low) / 2.0;
+        let (mut at, mut ways) = (Vec::new(), Vec::new());
+        for value in 0..VALUES {
+            let middle = first + (value as f64 + 0.5) * width;
+            let both = [1.0, -1.0].map(|way| {
+                let inside =
+                    |&i: &usize| (displacement[i] - middle).abs() <= width / 2.0 && direction(displacement, i) == way;
+                let samples = (0..displacement.len()).filter(inside);
+                line(samples.map(|i| [displacement[i] - middle, force[i]]).collect())
+            });
+            if let [Some(there), Some(back)] = both {
+                at.push(middle);
+                ways.push([there, back]);
+            }
+        }
+        let most = force.iter().fold(0.0, |most: f64, f| f.abs().max(most));
+        let ends = [low, high];
+        (at.len() > VALUES / 2).then_some(Self { ends, at, ways, most })
+    }
+
+    /// The middle, or half the width, which may be off by `common` N alike at every travel. That is spread over the
+    /// values, so that all of them together say no more than it allows.
+    fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
+        let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
+        let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());
+        let ways = self.ways.iter();
+        let (value, sigma) = ways
+            .map(|[there, back]| {
+                let value = (there.0 + sign * back.0) / 2.0;
+                (Complex::from(value), (there.1.hypot(back.1) / 2.0).hypot(floor))
+            })
+            .unzip();
+        Series {
+            run,
+            sensor: sensor(axis),
+            kind,
+            at: self.at.clone(),
+            value,
+            sigma,
+        }
+    }
 }
 
 /// Of samples on a straight line its height at zero, and the standard error of that; `None` of too few.

@@ -1,191 +1,189 @@
-//! Quasi-static K&C cycles: the body is held, the wheel is moved, and all between them is where it comes to rest.
+//! K&C cycles, slow ones and sines.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use std::f64::consts::{PI, TAU};
 
+use nalgebra::Complex;
+
+use super::bench::{Bench, Instant};
 use super::{Free, PredictError, Prediction};
-use crate::campaign::Axis;
-use crate::discover::evidence::Evidence;
-use crate::discover::evidence::travel::{HELD, MOVED};
-use crate::model::{About, InputKind, Model, Quantity, StateKind};
+use crate::discover::evidence::travel::MOVED;
+use crate::discover::evidence::{Evidence, Kind, Series, Stimulus};
+use crate::model::Model;
 use crate::response::parameters::Values;
 
 /// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range.
 const DIFFERENCE: f64 = 1e-5;
 const PART_OF_RANGE: f64 = 1e-3;
-/// Change of a position for its difference, m.
-const NUDGE: f64 = 1e-7;
-/// Newton's steps to rest, and when one is small enough, m.
-const STEPS: usize = 30;
-const RESTS: f64 = 1e-10;
+/// Of a cycle whose speed does not count, m/s: no damper gives a newton.
+const SLOW: f64 = 1e-4;
+/// Step where the wheel stays where it was, s.
+const SHORTEST: f64 = 1e-3;
+/// Instants on the way to the end of the travel, and from there to where it is read first.
+const APPROACH: usize = 6;
+/// Parts of a sine, of which half goes before, so that friction sets out as it does in every cycle.
+const PARTS: usize = 48;
+/// So many parts behind a reversal, where friction turns within a fraction of a millimetre, are taken finer.
+const TURNING: usize = 3;
+const FINER: usize = 8;
+
+/// The values of some series.
+type Said = Vec<Vec<Complex<f64>>>;
 
 pub(super) fn travel(
     model: &dyn Model,
     values: &Values,
     free: &[Free],
     evidence: &Evidence,
-    (run, axis): (usize, Axis),
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let of_run = &evidence.runs[run];
+    let (Stimulus::Travel { axis, .. } | Stimulus::Sine { axis, .. }) = of_run.stimulus else {
+        return Ok(Vec::new());
+    };
+    let bench = Bench::new(model.about(), axis).ok_or_else(|| PredictError::NoInput {
+        model: model.about().name.to_string(),
+        location: MOVED.to_owned(),
+        run: of_run.name.clone(),
+    })?;
+    let all = evidence.series.iter().enumerate();
+    let series: Vec<(usize, &Series)> = all.filter(|(_, series)| series.run == run).collect();
+    let says = |p: &[f64]| match of_run.stimulus {
+        Stimulus::Sine { frequency, .. } => sine(&bench, model, p, (of_run.level, frequency), &series),
+        Stimulus::Travel { ends, .. } => cycle(&bench, model, p, ends, &series),
+        _ => Vec::new(),
+    };
+    Ok(differentiated(values, free, &series, &says))
+}
+
+/// What is said of some series with the parameters as they are, and its differences.
+fn differentiated(
+    values: &Values,
+    free: &[Free],
+    series: &[(usize, &Series)],
+    says: &dyn Fn(&[f64]) -> Said,
 ) -> Vec<Prediction> {
-    let bench = Bench::new(model.about(), axis);
-    let of_run = evidence
-        .series
+    let mut predictions: Vec<Prediction> = series
         .iter()
-        .enumerate()
-        .filter(|(_, series)| series.run == run);
-    let predict = |(place, series): (usize, &crate::discover::evidence::Series)| {
-        let value = bench.forces(model, values.as_slice(), &series.at);
-        let slope = |free: &Free| {
-            let at = values.as_slice()[free.parameter];
-            let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
-            let mut moved = values.clone();
-            moved.set(free.parameter, at + step);
-            let moved = bench.forces(model, moved.as_slice(), &series.at);
+        .zip(says(values.as_slice()))
+        .map(|(&(series, _), value)| Prediction {
+            series,
+            value,
+            slopes: Vec::new(),
+        })
+        .collect();
+    for free in free {
+        let at = values.as_slice()[free.parameter];
+        let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
+        let mut moved = values.clone();
+        moved.set(free.parameter, at + step);
+        for (prediction, moved) in predictions.iter_mut().zip(says(moved.as_slice())) {
             let slopes = moved
                 .iter()
-                .zip(&value)
-                .map(|(moved, value)| Complex::from((moved - value) / step));
-            slopes.collect()
-        };
-        Prediction {
-            series: place,
-            slopes: free.iter().map(slope).collect(),
-            value: value.iter().copied().map(Complex::from).collect(),
+                .zip(&prediction.value)
+                .map(|(moved, value)| (moved - value) / step);
+            prediction.slopes.push(slopes.collect());
         }
+    }
+    predictions
+}
+
+/// Middle and half width of a slow cycle, at the travels of the series; both are at the same.
+fn cycle(bench: &Bench, model: &dyn Model, p: &[f64], ends: [f64; 2], series: &[(usize, &Series)]) -> Said {
+    let travels = &series[0].1.at;
+    let there = way(0.0, ends[0]).chain(way(ends[0], travels[0]));
+    let back = way(ends[1], travels[travels.len() - 1]);
+    let stops: Vec<f64> = there
+        .chain(travels[1..].iter().copied())
+        .chain([ends[1]])
+        .chain(back)
+        .chain(travels.iter().rev().skip(1).copied())
+        .collect();
+    let mut last = 0.0;
+    let path: Vec<Instant> = stops
+        .iter()
+        .map(|&travel| {
+            let way: f64 = travel - std::mem::replace(&mut last, travel);
+            Instant {
+                travel,
+                speed: SLOW * way.signum(),
+                step: (way.abs() / SLOW).max(SHORTEST),
+            }
+        })
+        .collect();
+    let forces = bench.forces(model, p, &path);
+    let back = &forces[forces.len() - travels.len()..];
+    let there = &forces[2 * APPROACH - 1..][..travels.len()];
+    let of = |series: &(usize, &Series)| {
+        let back_sign = if series.1.kind == Kind::Width { -0.5 } else { 0.5 };
+        let pairs = there.iter().zip(back.iter().rev());
+        pairs
+            .map(|(there, back)| Complex::from(0.5 * there + back_sign * back))
+            .collect()
     };
-    of_run.map(predict).collect()
+    series.iter().map(of).collect()
 }
 
-/// Refuses a model without the parts that the rig moves.
-///
-/// # Errors
-/// A model that lacks them.
-pub(super) fn check(model: &dyn Model, evidence: &Evidence, run: usize, axis: Axis) -> Result<(), PredictError> {
-    let bench = Bench::new(model.about(), axis);
-    match (bench.moved, bench.held, bench.force) {
-        (Some(_), Some(_), Some(_)) => Ok(()),
-        _ => Err(PredictError::NoInput {
-            model: model.about().name.to_string(),
-            location: MOVED.to_owned(),
-            run: evidence.runs[run].name.clone(),
-        }),
-    }
+/// Equal steps to the end of a way.
+fn way(from: f64, to: f64) -> impl Iterator<Item = f64> {
+    (1..=APPROACH).map(move |i| from + (to - from) * i as f64 / APPROACH as f64)
 }
 
-/// Places in a model on the rig.
-struct Bench {
-    /// Position of the wheel, and the row that says what moves it.
-    moved: Option<(usize, usize)>,
-    /// Position of the body.
-    held: Option<usize>,
-    /// The force on the wheel.
-    force: Option<usize>,
-    /// Positions that come to rest, and the row of each that is zero then.
-    between: Vec<(usize, usize)>,
-    /// The ground under the wheel, which goes with it: the force of the tyre is none of the curve's.
-    ground: Vec<usize>,
+/// Harmonics of the force over the amplitude of a sine that begins at its end of travel.
+fn sine(
+    bench: &Bench,
+    model: &dyn Model,
+    p: &[f64],
+    (amplitude, frequency): (f64, f64),
+    series: &[(usize, &Series)],
+) -> Said {
+    let omega = TAU * frequency;
+    let approach = way(0.0, amplitude).map(|travel| Instant {
+        travel,
+        speed: omega * amplitude,
+        step: 1.0 / (frequency * PARTS as f64),
+    });
+    let turns: Vec<Turn> = (0..PARTS + PARTS / 2).flat_map(Turn::of_part).collect();
+    let swing = turns.iter().map(|turn| Instant {
+        travel: amplitude * turn.angle.cos(),
+        speed: -omega * amplitude * turn.angle.sin(),
+        step: turn.width / omega,
+    });
+    let path: Vec<Instant> = approach.chain(swing).collect();
+    let forces = bench.forces(model, p, &path);
+    let harmonic = |order: usize| {
+        let settled = turns.iter().zip(&forces[APPROACH..]);
+        let settled = settled.filter(|(turn, _)| turn.settled);
+        let part = |(turn, force): (&Turn, &f64)| {
+            Complex::from_polar(turn.width / PI, -(order as f64) * turn.angle) * force / amplitude
+        };
+        vec![settled.map(part).sum()]
+    };
+    let of = |series: &(usize, &Series)| match series.1.kind {
+        Kind::Cycle(order) => harmonic(order),
+        _ => Vec::new(),
+    };
+    series.iter().map(of).collect()
 }
 
-impl Bench {
-    fn new(about: &About, axis: Axis) -> Self {
-        let along = about
-            .states
-            .iter()
-            .enumerate()
-            .filter(|(_, state)| state.axis == axis.name());
-        let positions = along.clone().filter(|(_, state)| state.kind == StateKind::Position);
-        let row = |place: usize| {
-            let location = &about.states[place].location;
-            let mut speeds = along.clone().filter(|(_, state)| state.kind == StateKind::Velocity);
-            let speed = speeds.find(|(_, state)| state.location == *location);
-            (place, speed.map_or(place, |(speed, _)| speed))
-        };
-        let called = |name: &str| {
-            positions
-                .clone()
-                .find(|(_, s)| s.location == name)
-                .map(|(place, _)| place)
-        };
-        let (moved, held) = (called(MOVED), called(HELD));
-        let others = positions.clone().map(|(place, _)| place);
-        let of_axis = |excitation: u16| about.excitations[usize::from(excitation)].axis == axis.name();
-        let is_force = |kind| matches!(kind, InputKind::Force(excitation) if of_axis(excitation));
-        let is_ground = |kind| matches!(kind, InputKind::Motion(excitation, Quantity::Position) if of_axis(excitation));
-        let inputs = || about.inputs.iter().enumerate();
-        Self {
-            moved: moved.map(row),
-            held,
-            force: inputs().find(|(_, input)| is_force(input.kind)).map(|(place, _)| place),
-            between: others
-                .filter(|place| Some(*place) != moved && Some(*place) != held)
-                .map(row)
-                .collect(),
-            ground: inputs()
-                .filter(|(_, input)| is_ground(input.kind))
-                .map(|(place, _)| place)
-                .collect(),
-        }
-    }
+/// A piece of a sine.
+struct Turn {
+    /// Its middle, rad.
+    angle: f64,
+    /// rad.
+    width: f64,
+    /// Whether it is behind the first half of a cycle.
+    settled: bool,
+}
 
-    /// The force on the wheel at each travel against the body.
-    fn forces(&self, model: &dyn Model, p: &[f64], travels: &[f64]) -> Vec<f64> {
-        let about = model.about();
-        let mut constants = vec![0.0; about.constants];
-        model.prepare(p, &mut constants);
-        let (mut x, mut u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
-        let force = |&travel: &f64| {
-            let (Some((wheel, row)), Some(force)) = (self.moved, self.force) else {
-                return f64::NAN;
-            };
-            x[wheel] = travel;
-            self.ground.iter().for_each(|&place| u[place] = travel);
-            let rates = |x: &[f64], u: &[f64]| {
-                let mut dx = vec![0.0; x.len()];
-                model.derivative(&constants, x, u, &mut dx);
-                dx
-            };
-            self.rest(&mut x, &|x| rates(x, &u));
-            let pulled = rates(&x, &u)[row];
-            u[force] = 1.0;
-            let of_unit = rates(&x, &u)[row] - pulled;
-            u[force] = 0.0;
-            -pulled / of_unit
-        };
-        travels.iter().map(force).collect()
-    }
-
-    /// Moves what is between to where nothing pulls at it (Newton's method).
-    fn rest(&self, x: &mut [f64], rates: &dyn Fn(&[f64]) -> Vec<f64>) {
-        let n = self.between.len();
-        if n == 0 {
-            return;
-        }
-        for _ in 0..STEPS {
-            let here = rates(x);
-            let columns: Vec<Vec<f64>> = self
-                .between
-                .iter()
-                .map(|&(place, _)| {
-                    let mut nudged = x.to_vec();
-                    nudged[place] += NUDGE;
-                    rates(&nudged)
-                })
-                .collect();
-            let row = |i: usize| self.between[i].1;
-            let slope = DMatrix::from_fn(n, n, |i, j| (columns[j][row(i)] - here[row(i)]) / NUDGE);
-            let pull = DVector::from_fn(n, |i, _| -here[row(i)]);
-            if !slope.iter().chain(&pull).all(|entry| entry.is_finite()) {
-                return;
-            }
-            // What nothing holds stays where it is: the smallest step of all.
-            let Ok(step) = slope.svd(true, true).solve(&pull, f64::EPSILON) else {
-                return;
-            };
-            self.between
-                .iter()
-                .zip(&step)
-                .for_each(|(&(place, _), step)| x[place] += step);
-            if step.amax() < RESTS {
-                return;
-            }
-        }
+impl Turn {
+    /// A part around its angle, in one piece or more; the first and the middle part of a cycle are at its reversals.
+    fn of_part(part: usize) -> impl Iterator<Item = Turn> {
+        let pieces = if part % (PARTS / 2) < TURNING { FINER } else { 1 };
+        let width = TAU / (PARTS * pieces) as f64;
+        (0..pieces).map(move |piece| Turn {
+            angle: width * ((part * pieces + piece) as f64 - (pieces - 1) as f64 / 2.0),
+            width,
+            settled: part >= PARTS / 2,
+        })
     }
 }
