@@ -175,11 +175,13 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     InputError::unless_empty(problems, Some(found))
 }
 
+/// The rides, if there is one for every run. What keeps several of them from being simulated is said once.
 fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {
-    let (mut done, mut problems) = (Vec::new(), Vec::new());
+    let (mut done, mut problems): (Vec<Ride>, Vec<Problem>) = (Vec::new(), Vec::new());
     for (cleat, ride) in cleats.iter().zip(rides) {
         match ride {
             Ok(ride) => done.push(ride),
+            Err(error) if problems.iter().any(|told| told.found == error.to_string()) => {}
             Err(error) => {
                 let remedy = "correct the run, the vehicle or the parameters";
                 let file = &cleat.measured.file;

@@ -92,6 +92,32 @@ fn what_cannot_roll_is_refused() {
     assert_eq!(ran.status, 2, "{}", ran.stdout);
 }
 
+/// A spring that pushes by 500 N and gives in by 100 N at most lifts the body off for good.
+#[test]
+fn a_model_that_cannot_stand_is_refused_once() {
+    let text = succeeds(&["patch", "axle_a", "inerter", "--at", "damper"]);
+    let spring = "spring k_wheel_z;";
+    assert!(text.contains(spring));
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("lifted.axle");
+    fs::write(
+        &file,
+        text.replacen(spring, "force = 500 N + 100 N*tanh(k_wheel_z*s/100 N);", 1),
+    )
+    .unwrap();
+    let ran = qcar(&["simulate", AXLE, "--model", file.to_str().unwrap()]);
+    assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
+    assert_eq!(ran.stderr.lines().count(), 1, "{}", ran.stderr);
+    for said in [
+        "v20_h30.csv.gz: found model",
+        "has no static equilibrium",
+        "d(vz_body)/dt",
+        "check k_tire",
+    ] {
+        assert!(ran.stderr.contains(said), "expected `{said}` in\n{}", ran.stderr);
+    }
+}
+
 /// What `qcar simulate` says of the campaign with `from` replaced by `to` and its higher cleat by a road of these points.
 fn refused(from: &str, to: &str, road: &[[f64; 2]]) -> String {
     let folder = tempfile::tempdir().unwrap();

@@ -37,17 +37,17 @@ pub enum SimulateError {
         least: f64,
     },
     #[error(
-        "the tyre would be deflected by {deflection} m under the static load, more than its radius of {radius} m; \
+        "the tyre would be deflected by {deflection:.4} m under the static load, more than its radius of {radius} m; \
          check k_tire, the static load and deflection, and the masses"
     )]
     TooSoft { deflection: f64, radius: f64 },
     #[error(
-        "the tyre pushes no more when it is pressed further than its static deflection of {deflection} m, so nothing \
+        "the tyre pushes no more when it is pressed further than its static deflection of {deflection:.4} m, so nothing \
          stands on it; check k_tire, the static load and deflection"
     )]
     Unstable { deflection: f64 },
     #[error(
-        "model `{model}` has no static equilibrium on its tyre: with all else balanced, d({state})/dt stays at {rate}; \
+        "model `{model}` has no static equilibrium on its tyre: with all else balanced, d({state})/dt stays at {rate:.3e}; \
          check k_tire, the static load and deflection, and that every parameter is a number"
     )]
     NoEquilibrium { model: String, state: String, rate: f64 },
