@@ -1,0 +1,3 @@
+qcar_derive::axle_file!("../../../tmp/refused.axle");
+
+fn main() {}
