@@ -20,7 +20,8 @@ use crate::syntax::{Axle, AxleKind, Element, File, Item, Path};
 /// The report of every mistake that is found, with the texts that were read.
 pub fn check_text(source: Source, load: Load) -> Result<Checked, Report> {
     let mut front = Front::new(source, load);
-    let checked = front.file().and_then(|file| front.model(&file));
+    let file = front.file();
+    let checked = front.model(&file);
     front.finish(checked)
 }
 
@@ -36,7 +37,8 @@ pub fn check_tokens(tokens: TokenStream, load: Load) -> Result<Checked, TokenStr
     let mut front = Front::new(source, load);
     let reading = parse_tokens(tokens);
     let places = reading.places.clone();
-    let checked = front.read(reading).and_then(|file| front.model(&file));
+    let file = front.read(reading);
+    let checked = front.model(&file);
     front.finish(checked).map_err(|report| compile_errors(&report, &places))
 }
 
@@ -50,16 +52,18 @@ pub type Member = (Choices, Result<Checked, Report>);
 pub fn check_members(source: Source, load: Load) -> Result<Vec<Member>, Report> {
     let mut front = Front::new(source, load);
     let file = front.file();
-    let Some((file, family)) = file.as_ref().and_then(|file| Some((file, front.one_axle(file)?))) else {
-        return Err(front.report());
+    let family = match front.one_axle(&file) {
+        Some(family) if !front.partial => family,
+        _ => return Err(front.report()),
     };
     let one = |choices: Choices| {
         let mut front = Front {
             sources: front.sources.clone(),
             found: vec![],
+            partial: false,
             load,
         };
-        let checked = front.member(&member(family, &choices), Some(family), &elements(file));
+        let checked = front.member(&member(family, &choices), Some(family), &elements(&file));
         (choices, front.finish(checked))
     };
     Ok(members(family).into_iter().map(one).collect())
@@ -69,6 +73,8 @@ pub fn check_members(source: Source, load: Load) -> Result<Vec<Member>, Report> 
 struct Front<'a> {
     sources: Vec<Source>,
     found: Vec<Diagnostic>,
+    /// A text could not be read in full.
+    partial: bool,
     load: Load<'a>,
 }
 
@@ -77,25 +83,31 @@ impl<'a> Front<'a> {
         Front {
             sources: vec![source.without_mark()],
             found: vec![],
+            partial: false,
             load,
         }
     }
 
-    fn refused(&self) -> bool {
-        self.found
-            .iter()
-            .any(|diagnostic| diagnostic.severity == Severity::Error)
+    /// Keeps what was found. Of a text that could not be read in full, what is missing in it says nothing.
+    fn note(&mut self, found: impl IntoIterator<Item = Diagnostic>) {
+        let partial = self.partial;
+        self.found.extend(
+            found
+                .into_iter()
+                .filter(|diagnostic| !partial || diagnostic.code.is_of_units()),
+        );
     }
 
     /// The tree of the first source.
-    fn file(&mut self) -> Option<File> {
+    fn file(&mut self) -> File {
         let reading = parse_text(&self.sources[0], 0);
         self.read(reading)
     }
 
-    fn read(&mut self, reading: Reading) -> Option<File> {
+    fn read(&mut self, reading: Reading) -> File {
+        self.partial |= refuses(&reading.mistakes);
         self.found.extend(reading.mistakes);
-        (!self.refused()).then_some(reading.file)
+        reading.file
     }
 
     fn model(&mut self, file: &File) -> Option<Checked> {
@@ -109,7 +121,7 @@ impl<'a> Front<'a> {
             _ => None,
         });
         let Some(family) = family else {
-            self.found.push(names::not_a_family(path.span, &path.text));
+            self.note([names::not_a_family(path.span, &path.text)]);
             return None;
         };
         let all = [elements(&family_file), elements(file)].concat();
@@ -123,7 +135,7 @@ impl<'a> Front<'a> {
             _ => None,
         });
         if let Some(effect) = effect {
-            self.found.push(reading::effect_is_no_model(effect.name.span));
+            self.note([reading::effect_is_no_model(effect.name.span)]);
             return None;
         }
         let axles = file.items.iter().filter_map(|item| match item {
@@ -135,7 +147,7 @@ impl<'a> Front<'a> {
             [only] => Some(only),
             others => {
                 let span = others.get(1).map_or(Span::default(), |second| second.name.span);
-                self.found.push(reading::not_one_model(span, others.len()));
+                self.note([reading::not_one_model(span, others.len())]);
                 None
             }
         }
@@ -148,7 +160,7 @@ impl<'a> Front<'a> {
                 let source = source.without_mark();
                 let reading = parse_text(&source, self.sources.len() as u16);
                 self.sources.push(source);
-                self.read(reading)
+                Some(self.read(reading))
             }
             Err(reason) => {
                 self.found
@@ -158,15 +170,20 @@ impl<'a> Front<'a> {
         }
     }
 
-    /// Takes the options, resolves and checks. No stage begins where an earlier one has refused the model.
+    /// Takes the options, resolves and checks. No stage begins where an earlier one has refused the model, but units are
+    /// looked at in what could be read of a text.
     fn member(&mut self, axle: &Axle, family: Option<&Axle>, elements: &[&Element]) -> Option<Checked> {
-        let taken = take(axle, family, &mut self.found);
-        if self.refused() {
+        let mut found = vec![];
+        let taken = take(axle, family, &mut found);
+        let chosen = !refuses(&found);
+        self.note(found);
+        if !chosen {
             return None;
         }
         let (model, found) = resolve(axle, &taken, elements);
-        self.found.extend(found);
-        if self.refused() {
+        let resolved = !self.partial && !refuses(&found);
+        self.note(found);
+        if !resolved {
             return None;
         }
         match check(model) {
@@ -204,6 +221,10 @@ impl<'a> Front<'a> {
             diagnostics,
         }
     }
+}
+
+fn refuses(found: &[Diagnostic]) -> bool {
+    found.iter().any(|diagnostic| diagnostic.severity == Severity::Error)
 }
 
 fn elements(file: &File) -> Vec<&Element> {

@@ -99,3 +99,28 @@ fn warnings_do_not_refuse() {
         assert_eq!(severity == Some(Severity::Warning), warned.contains(&code));
     }
 }
+
+/// A statement that cannot be read may declare what others use; units are wrong without it, too.
+#[test]
+fn units_are_looked_at_beside_what_cannot_be_read() {
+    let text = r#"axle half {
+        "Three mistakes: a parameter without colon and two units"
+        known param m: kg "Mass of the body";
+        param k N/m = 20 N/mm "Stiffness of the spring";
+        param c: N s/m = 1000 "Damping";
+        let twice = m + c;
+        direction z {
+            road pad;
+            mass body = m;
+            link spring: body - pad { spring k; }
+            link damper: body - pad { spring c; }
+        }
+    }"#;
+    let source = Source {
+        name: "half.axle".into(),
+        text: text.into(),
+    };
+    let report = check_text(source, &|_, _| Err(String::new())).unwrap_err();
+    let found: Vec<Code> = report.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
+    assert_eq!(found, [Code::Expected, Code::UnitsDiffer, Code::WrongUnit], "{report}");
+}

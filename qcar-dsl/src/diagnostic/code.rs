@@ -23,6 +23,20 @@ macro_rules! codes {
     };
 }
 
+impl Code {
+    /// True for mistakes of units: what makes one stands in the expression itself, so that it is one whatever else of
+    /// the text cannot be read.
+    pub fn is_of_units(self) -> bool {
+        use Code::{
+            ArgumentHasUnit, ChannelUnitsDiffer, NotCoherent, OddExponent, UnitsDiffer, UnknownUnit, WrongUnit,
+        };
+        matches!(
+            self,
+            UnknownUnit | NotCoherent | OddExponent | UnitsDiffer | WrongUnit | ArgumentHasUnit | ChannelUnitsDiffer
+        )
+    }
+}
+
 codes! {
     /// A character that the language does not know.
     ForeignCharacter = "foreign_character",
