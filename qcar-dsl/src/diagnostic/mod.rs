@@ -126,11 +126,12 @@ fn listed<Word: AsRef<str>>(words: &[Word], last: &str) -> String {
     }
 }
 
-/// The candidate that a misspelt name most likely means.
+/// The candidate that a misspelt name most likely means; none for names so short that they resemble every other.
 fn nearest<'a, Word: AsRef<str>>(name: &str, candidates: &'a [Word]) -> Option<&'a str> {
     let distance = |word: &&str| edits(name, word);
     let best = candidates.iter().map(AsRef::as_ref).min_by_key(distance)?;
-    (edits(name, best) <= 1 + name.chars().count() / 4).then_some(best)
+    let length = name.chars().count();
+    (length > 2 && edits(name, best) <= 1 + length / 4).then_some(best)
 }
 
 /// Levenshtein's distance.
@@ -158,5 +159,9 @@ mod tests {
         assert_eq!(edits("kitten", "sitting"), 3);
         assert_eq!(nearest("k_tyre", &["c_tire", "k_tire"]), Some("k_tire"));
         assert_eq!(nearest("mass", &["k_tire"]), None);
+        assert_eq!(nearest("c", &["s", "c_tire"]), None);
+        assert_eq!(nearest("k2", &["k1"]), None);
+        assert_eq!(nearest("pda", &["pad"]), None);
+        assert_eq!(nearest("pat", &["pad"]), Some("pad"));
     }
 }
