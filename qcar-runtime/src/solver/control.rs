@@ -9,13 +9,17 @@ const SAFETY: f64 = 0.9;
 /// A step changes at most by these factors.
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 10.0;
+/// A smaller error over the tolerance is remembered as this.
+const LEAST: f64 = 1e-4;
 
 /// What is known of the step size.
 pub(super) struct Control {
     /// The next step, s, if nothing cuts it short; zero before the first.
     pub step: f64,
-    longest: f64,
-    last_error: f64,
+    /// The longest step that is allowed, s.
+    pub longest: f64,
+    /// Logarithm of the last error over the tolerance: a power of it is a product.
+    last_log: f64,
     just_rejected: bool,
 }
 
@@ -24,7 +28,7 @@ impl Control {
         Self {
             step: 0.0,
             longest,
-            last_error: 1e-4,
+            last_log: LEAST.ln(),
             just_rejected: false,
         }
     }
@@ -54,7 +58,8 @@ impl Control {
     pub fn judge(&mut self, error: f64, h: f64) -> bool {
         let accepted = error <= 1.0;
         if accepted {
-            let factor = SAFETY * self.last_error.powf(BETA) / error.max(1e-16).powf(ALPHA);
+            let log = error.max(1e-16).ln();
+            let factor = SAFETY * (BETA * self.last_log - ALPHA * log).exp();
             let most = if self.just_rejected { 1.0 } else { GROW };
             // A step that was cut short by an end says nothing against the length that was meant.
             let grown = h * factor.clamp(SHRINK, most);
@@ -64,7 +69,7 @@ impl Control {
                 grown
             }
             .min(self.longest);
-            self.last_error = error.max(1e-4);
+            self.last_log = log.max(LEAST.ln());
         } else {
             let factor = SAFETY / error.powf(ALPHA);
             self.step = h * if factor.is_finite() { factor.max(SHRINK) } else { SHRINK };

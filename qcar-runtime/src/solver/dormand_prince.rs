@@ -279,7 +279,7 @@ impl DormandPrince {
             slopes,
             quartic: &self.quartic,
             means: &self.means,
-            error,
+            error: error * self.control.longest / h,
         };
         let cut = self.watch.first_cut(system, &step, &mut self.effort);
         match cut {

@@ -21,13 +21,13 @@ pub struct Step<'a> {
     pub(super) quartic: &'a [f64],
     /// The mean of each signal over the step.
     pub(super) means: &'a [f64],
-    /// The estimated error of the step over what is tolerated; infinite where there is no estimate, or where an event
-    /// has cut the step short and the stages of the method lie beyond it.
+    /// The estimated error over what is tolerated, of as many such steps as make the longest that is allowed; infinite
+    /// where there is no estimate, or where an event has cut the step short and the stages of the method lie beyond it.
     pub(super) error: f64,
 }
 
 /// An error so far below the tolerance shows a smooth step.
-const SMOOTH: f64 = 0.03;
+const SMOOTH: f64 = 0.1;
 
 impl<'a> Step<'a> {
     /// The state where the step begins.
@@ -76,7 +76,8 @@ impl<'a> Step<'a> {
     /// True where the signals between the ends of the step are as good as its ends.
     ///
     /// That asks for a step shorter than the tolerance would have it, as it is where something else limits its length:
-    /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step.
+    /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step. A bend makes the
+    /// tolerance shorten the step, and the same error in a shorter step is one of a signal that is further off.
     pub fn has_signals(&self) -> bool {
         self.error < SMOOTH
     }
