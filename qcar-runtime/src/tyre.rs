@@ -13,6 +13,8 @@
 //! point and has slope `k` there. It is progressive for `k >= F0/d0`, and falls nowhere for `k <= 2 F0/d0`.
 //! As a resisting force of the stretch: `a s - b s² + c v` for `s < 0`.
 
+mod series;
+// What they are of.
 mod circle;
 // Where the road is inside the circle.
 mod patches;
@@ -227,7 +229,12 @@ fn combined(v: [f64; 2], first: [f64; 2], second: [f64; 2]) -> [f64; 2] {
 
 /// The unit vector against `v`; zero for zero.
 fn against(v: [f64; 2]) -> [f64; 2] {
-    let length = norm(v);
-    let scale = if length > 0.0 { -1.0 / length } else { 0.0 };
+    let squared = dot(v, v);
+    // The root and the quotient do not wait for each other.
+    let scale = if squared >= f64::MIN_POSITIVE {
+        -squared.sqrt() * squared.recip()
+    } else {
+        0.0
+    };
     [v[0] * scale, v[1] * scale]
 }

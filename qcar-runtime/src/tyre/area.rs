@@ -3,7 +3,7 @@
 use std::cell::Cell;
 
 use super::patches::{Line, Patch, candidates, patches};
-use super::sweep::{Sweep, Sweeps};
+use super::sweep::{Part, Sweep, Sweeps};
 use super::{Change, Touch, Tyre, Wheel, against};
 use crate::road::{Circle, Moments, Road};
 
@@ -56,14 +56,13 @@ pub(super) fn overlap(radius: f64, road: &Road, wheel: &Wheel) -> Overlap {
 #[inline]
 fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
     let clip = line.clip()?;
+    let (from, to) = (line.at(clip.from), line.at(clip.to));
     let mut sweeps = Sweeps::new(tyre.radius, wheel.velocity);
-    sweeps.add(line.at(clip.from), line.at(clip.to));
-    Some(with_rates(
-        tyre,
-        tyre.radius - line.distance,
-        line.frame().1,
-        &sweeps.finish(),
-    ))
+    let parts = sweeps.across(from, to).unwrap_or_else(|| {
+        sweeps.add(from, to);
+        sweeps.finish().map(Part::from)
+    });
+    Some(with_rates(tyre, tyre.radius - line.distance, line.frame().1, parts))
 }
 
 fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
@@ -71,26 +70,22 @@ fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
         return None;
     }
     let deflection = tyre.deflection(overlap.area);
-    Some(with_rates(
-        tyre,
-        deflection,
-        against(overlap.moment),
-        &[overlap.growth, overlap.shrinkage],
-    ))
+    let parts = [overlap.growth, overlap.shrinkage].map(Part::from);
+    Some(with_rates(tyre, deflection, against(overlap.moment), parts))
 }
 
 #[inline]
-fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], sweeps: &[Sweep; 2]) -> Touch {
+fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], parts: [Part; 2]) -> Touch {
     let rate = tyre.rate(deflection);
-    let change = |sweep: &Sweep| Change {
-        rate: sweep.flux * rate,
-        direction: against(sweep.moment),
-    };
+    let [growth, shrinkage] = parts.map(|Part { flux, direction }| Change {
+        rate: flux * rate,
+        direction,
+    });
     Touch {
         deflection,
         direction,
-        growth: change(&sweeps[0]),
-        shrinkage: change(&sweeps[1]),
+        growth,
+        shrinkage,
     }
 }
 

@@ -5,8 +5,8 @@
 
 use std::array;
 
-use super::circle::angles;
-use super::{combined, dot};
+use super::circle::{angles, swept_directions};
+use super::{against, combined, dot};
 
 /// Integrals over the arcs that advance, or over those that retreat; `n` is the normal out of the circle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,6 +30,15 @@ pub(super) struct Sweeps {
     ahead: Sweep,
     /// As `ahead`, with the sign of `sin θ`: negative.
     behind: Sweep,
+}
+
+/// One of the two parts of a contact's rim, without its moment: that of a single arc has a closed direction.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Part {
+    /// The area swept per second, m²/s.
+    pub flux: f64,
+    /// The unit vector from the centroid of what is swept to the circle's centre.
+    pub direction: [f64; 2],
 }
 
 /// A point of the circle by its angle θ ahead of the turning point, with integrals from there to it.
@@ -80,29 +89,47 @@ impl Sweeps {
         to.angle - from.angle
     }
 
+    /// Growth and shrinkage of a single short arc that goes across the turning point; none for any other.
+    #[inline]
+    pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> Option<[Part; 2]> {
+        let (sine, cosine) = self.places([from, to]);
+        if !(sine[0] < 0.0 && 0.0 < sine[1]) {
+            return None;
+        }
+        let up = [-self.along[1], self.along[0]];
+        let directions = swept_directions(sine, cosine)?;
+        let [behind, ahead] = array::from_fn(|i| Part {
+            flux: self.radius * self.speed.abs() * (1.0 - cosine[i]),
+            direction: combined([-directions[i][0], directions[i][1]], self.along, up),
+        });
+        Some(self.growth_first(ahead, behind))
+    }
+
     /// Growth and shrinkage of all arcs.
     #[inline]
     pub fn finish(&self) -> [Sweep; 2] {
-        let scale = self.radius * self.speed;
+        let scale = self.radius * self.speed.abs();
         let down = [self.along[1], -self.along[0]];
         let swept = |sweep: &Sweep, scale: f64| Sweep {
             flux: scale * sweep.flux,
             moment: combined([scale * sweep.moment[0], scale * sweep.moment[1]], self.along, down),
         };
+        self.growth_first(swept(&self.ahead, scale), swept(&self.behind, -scale))
+    }
+
+    /// What is ahead of the turning point grows where the wheel rolls to the front.
+    #[inline]
+    fn growth_first<T>(&self, ahead: T, behind: T) -> [T; 2] {
         if self.speed > 0.0 {
-            [swept(&self.ahead, scale), swept(&self.behind, -scale)]
+            [ahead, behind]
         } else {
-            [swept(&self.behind, scale), swept(&self.ahead, -scale)]
+            [behind, ahead]
         }
     }
 
     #[inline]
     fn rims(&self, points: [[f64; 2]; 2]) -> [Rim; 2] {
-        let [along, down] = [self.along, [self.along[1], -self.along[0]]].map(|v| v.map(|v| v * self.per_radius));
-        let (sine, cosine) = (
-            points.map(|point| dot(point, along)),
-            points.map(|point| dot(point, down)),
-        );
+        let (sine, cosine) = self.places(points);
         let angle = angles(sine, cosine);
         array::from_fn(|i| Rim {
             angle: angle[i],
@@ -112,6 +139,16 @@ impl Sweeps {
                 moment: [0.5 * (angle[i] - sine[i] * cosine[i]), 0.5 * sine[i] * sine[i]],
             },
         })
+    }
+
+    /// Sines and cosines of the angles of two points of the circle.
+    #[inline]
+    fn places(&self, points: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
+        let [along, down] = [self.along, [self.along[1], -self.along[0]]].map(|v| v.map(|v| v * self.per_radius));
+        (
+            points.map(|point| dot(point, along)),
+            points.map(|point| dot(point, down)),
+        )
     }
 }
 
@@ -124,6 +161,16 @@ impl Sweep {
                 self.moment[0] + times * other.moment[0],
                 self.moment[1] + times * other.moment[1],
             ],
+        }
+    }
+}
+
+impl From<Sweep> for Part {
+    #[inline]
+    fn from(sweep: Sweep) -> Self {
+        Self {
+            flux: sweep.flux,
+            direction: against(sweep.moment),
         }
     }
 }
