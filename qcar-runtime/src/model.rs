@@ -118,6 +118,16 @@ pub struct About {
     pub responses: Cow<'static, [ResponseLayout]>,
 }
 
+impl About {
+    /// The state whose rate a signal is: the velocity of a mass, for its acceleration.
+    pub fn rate(&self, signal: &Signal) -> Option<usize> {
+        let moves = |state: &State| state.axis == signal.axis && state.location == signal.location;
+        let accelerates = signal.kind == SignalKind::Motion(Quantity::Acceleration);
+        let velocity = |state: &State| state.kind == StateKind::Velocity && accelerates && moves(state);
+        self.states.iter().position(velocity)
+    }
+}
+
 /// A parameter of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {

@@ -28,7 +28,7 @@ pub trait System {
     /// A value that is not finite is legal and means that the solution does not exist there: the step is refused.
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]);
 
-    /// The number of signals that come with the derivative, written behind it; an accepted step interpolates them.
+    /// The number of signals that come with the derivative, written behind it; an accepted step interpolates both.
     ///
     /// So a signal that the right-hand side has at hand costs nothing more, however finely it is recorded.
     fn signals(&self) -> usize {

@@ -445,12 +445,12 @@ impl System for Watched {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        if step.has_signals() {
+        if step.has_rates() {
             self.smooth += 1;
             for part in [0.0, 0.2, 0.5, 0.8, 1.0] {
                 let t = step.start + part * (step.end - step.start);
                 let mut signals = [0.0; 2];
-                step.signals_at(t, &mut signals);
+                step.rates_at(t, 2, &mut signals);
                 self.seen.push((t, signals));
             }
         }

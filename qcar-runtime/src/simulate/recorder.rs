@@ -2,21 +2,23 @@
 
 use super::rolling::Rolling;
 use super::sampling::Grid;
-use crate::model::{Contact, Model};
+use crate::model::{About, Contact, Model};
 use crate::solver::{After, Event, Step, System};
 
 /// A rolling model with its records.
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     grid: Grid,
-    /// Each output on the fine grid.
-    fine: Vec<Vec<f64>>,
-    /// Room for a state, its derivative, and the signals.
-    room: [Vec<f64>; 3],
-    /// Force of the tyre on the wheel in z and x at the samples, N.
-    pub force: [Vec<f64>; 2],
-    /// Area of its contact at the samples, m².
-    pub area: Vec<f64>,
+    /// Room for a state.
+    state: Vec<f64>,
+    /// Room for its rate, behind that the outputs where the model is asked for them, and what is told of the contact.
+    rates: Vec<f64>,
+    /// For each output its place there. The acceleration of a mass is a rate, so that most models need not be asked.
+    places: Vec<usize>,
+    /// From this place on all is recorded.
+    first: usize,
+    /// The record for each point of the fine grid, one behind the other.
+    rows: Vec<f64>,
     /// When the tyre lost the ground, s.
     pub lift_offs: Vec<f64>,
     /// When it came back, s.
@@ -25,18 +27,24 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     last: (f64, bool),
 }
 
-/// The signals behind the outputs: force of the tyre in z and x, and its deflection.
+/// What is told of a contact, at the end of each row: force of the tyre in z and x, and its deflection.
 const OF_CONTACT: usize = 3;
 
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
-    pub fn new(rolling: Rolling<'a, M>, grid: Grid, states: usize, outputs: usize) -> Self {
-        let samples = || Vec::with_capacity(grid.samples());
+    pub fn new(rolling: Rolling<'a, M>, grid: Grid, about: &About) -> Self {
+        let (states, outputs) = (about.states.len(), &about.outputs);
+        let rates: Option<Vec<_>> = outputs.iter().map(|output| about.rate(&output.signal)).collect();
+        let asked = if rates.is_some() { 0 } else { outputs.len() };
+        let places = rates.unwrap_or_else(|| (states..).take(asked).collect());
+        let first = places.iter().copied().min().unwrap_or(states);
+        let room = states + asked + OF_CONTACT;
         Self {
             rolling,
-            fine: (0..outputs).map(|_| Vec::with_capacity(grid.points())).collect(),
-            room: [states, states, outputs + OF_CONTACT].map(|n| vec![0.0; n]),
-            force: [samples(), samples()],
-            area: samples(),
+            state: vec![0.0; states],
+            rates: vec![0.0; room],
+            places,
+            first,
+            rows: Vec::with_capacity(grid.points() * (room - first)),
             lift_offs: Vec::new(),
             landings: Vec::new(),
             last: (f64::NAN, true),
@@ -46,40 +54,41 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
 
     /// Records a car that is at rest in state `x` until a time, s.
     pub fn rest(&mut self, until: f64, x: &[f64]) {
-        let [_, dx, signals] = &mut self.room;
-        observe(&self.rolling, until, x, dx, signals);
-        while let Some((_, is_sample)) = self.grid.next(until.next_down()) {
-            self.record(is_sample);
-        }
-    }
-
-    /// Takes down the signals in the room.
-    fn record(&mut self, is_sample: bool) {
-        let signals = &self.room[2];
-        for (fine, y) in self.fine.iter_mut().zip(signals) {
-            fine.push(*y);
-        }
-        if let (true, [.., z, x, deflection]) = (is_sample, &signals[..]) {
-            self.force[0].push(*z);
-            self.force[1].push(*x);
-            self.area.push(self.rolling.tyre.area(*deflection));
+        observe(&self.rolling, until, x, &mut self.rates);
+        while self.grid.next(until.next_down()).is_some() {
+            self.rows.extend_from_slice(&self.rates[self.first..]);
         }
     }
 
     /// Each output at the samples.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
-        self.fine.iter().map(|fine| self.grid.decimate(fine)).collect()
+        let column = |place| self.grid.decimate(&self.rows, self.width(), place - self.first);
+        self.places.iter().copied().map(column).collect()
+    }
+
+    /// Force of the tyre on the wheel in z and x at the samples, N, and area of its contact, m².
+    pub fn contact(&self) -> [Vec<f64>; 3] {
+        let of = |what: usize| {
+            let rows = self.grid.at_samples(&self.rows, self.width());
+            rows.map(move |row| row[row.len() - OF_CONTACT + what])
+        };
+        let area = |deflection| self.rolling.tyre.area(deflection);
+        [of(0).collect(), of(1).collect(), of(2).map(area).collect()]
+    }
+
+    /// Length of a record.
+    fn width(&self) -> usize {
+        self.rates.len() - self.first
     }
 }
 
 impl<M: Model + ?Sized> System for Recorder<'_, M> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        let (dx, signals) = dx.split_at_mut(x.len());
-        self.last = (t, observe(&self.rolling, t, x, dx, signals));
+        self.last = (t, observe(&self.rolling, t, x, dx));
     }
 
     fn signals(&self) -> usize {
-        self.room[2].len()
+        self.rates.len() - self.state.len()
     }
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
@@ -87,16 +96,16 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        let smooth = step.has_signals();
-        while let Some((t, is_sample)) = self.grid.next(step.end) {
-            let [x, dx, signals] = &mut self.room;
+        let smooth = step.has_rates();
+        while let Some(t) = self.grid.next(step.end) {
+            let record = &mut self.rates[self.first..];
             if smooth {
-                step.signals_at(t, signals);
+                step.rates_at(t, self.first, record);
             } else {
-                step.at(t, x);
-                observe(&self.rolling, t, x, dx, signals);
+                step.at(t, &mut self.state);
+                observe(&self.rolling, t, &self.state, &mut self.rates);
             }
-            self.record(is_sample);
+            self.rows.extend_from_slice(&self.rates[self.first..]);
         }
     }
 
@@ -128,13 +137,8 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
 /// Derivative and signals at time `t`, and whether the tyre is on the ground.
 #[inline]
-fn observe<M: Model + ?Sized>(
-    rolling: &Rolling<'_, M>,
-    t: f64,
-    x: &[f64],
-    dx: &mut [f64],
-    signals: &mut [f64],
-) -> bool {
+fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], rates: &mut [f64]) -> bool {
+    let (dx, signals) = rates.split_at_mut(x.len());
     let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);
     let contact = rolling.motion(t, x, dx, outputs);
     let Contact { s, force, .. } = contact.unwrap_or_default();

@@ -59,15 +59,17 @@ pub fn replay<M: Model + ?Sized>(
         inputs: vec![0.0; about.inputs.len()],
         leg: span.0,
         grid,
-        fine: vec![Vec::new(); about.outputs.len()],
-        states: vec![Vec::new(); about.states.len()],
-        room: (vec![0.0; about.states.len()], vec![0.0; about.outputs.len()]),
+        rows: Vec::new(),
+        room: vec![0.0; about.states.len() + about.outputs.len()],
     };
     let longest_step = 1.0 / recorded.rate();
     let effort = settings.integrate(about, &mut rig, span, (longest_step, &jumps), &mut x)?;
+    let (grid, rows, width) = (&rig.grid, &rig.rows, rig.room.len());
+    let state = |place: usize| grid.at_samples(rows, width).map(|row| row[place]).collect();
+    let states = about.states.len();
     Ok(Replay {
-        outputs: rig.fine.iter().map(|fine| rig.grid.decimate(fine)).collect(),
-        states: rig.states,
+        outputs: (states..width).map(|place| grid.decimate(rows, width, place)).collect(),
+        states: (0..states).map(state).collect(),
         effort,
     })
 }
@@ -95,12 +97,10 @@ struct Rig<'a, M: ?Sized> {
     /// When the present leg began, s: until its end, held inputs stay as they were then.
     leg: f64,
     grid: Grid,
-    /// Each output on the fine grid.
-    fine: Vec<Vec<f64>>,
-    /// Each state at the samples.
-    states: Vec<Vec<f64>>,
-    /// Room for one state and for its outputs.
-    room: (Vec<f64>, Vec<f64>),
+    /// For each point of the fine grid, the state and behind it the outputs.
+    rows: Vec<f64>,
+    /// Room for one of them.
+    room: Vec<f64>,
 }
 
 impl<M: Model + ?Sized> System for Rig<'_, M> {
@@ -114,17 +114,12 @@ impl<M: Model + ?Sized> System for Rig<'_, M> {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        let (x, y) = &mut self.room;
-        while let Some((t, is_sample)) = self.grid.next(step.end) {
+        while let Some(t) = self.grid.next(step.end) {
+            let (x, y) = self.room.split_at_mut(step.start_state().len());
             step.at(t, x);
             self.recorded.at(t, self.leg, &mut self.inputs);
             self.model.outputs(&self.constants, x, &self.inputs, y);
-            for (fine, y) in self.fine.iter_mut().zip(y.iter()) {
-                fine.push(*y);
-            }
-            if is_sample {
-                self.states.iter_mut().zip(x.iter()).for_each(|(row, x)| row.push(*x));
-            }
+            self.rows.extend_from_slice(&self.room);
         }
     }
 }

@@ -82,14 +82,15 @@ pub fn ride<M: Model + ?Sized>(
 
     let about = car.model.about();
     let span = (drive.reaches(&tyre).max(start), grid.end());
-    let mut recorder = Recorder::new(rolling, grid, about.states.len(), about.outputs.len());
+    let mut recorder = Recorder::new(rolling, grid, about);
     recorder.rest(span.0, &x);
     let effort = settings.integrate(about, &mut recorder, span, (drive.longest_step(&tyre), &[]), &mut x)?;
+    let [vertical, longitudinal, area] = recorder.contact();
     Ok(Ride {
         time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
         outputs: recorder.outputs(),
-        force: recorder.force,
-        area: recorder.area,
+        force: [vertical, longitudinal],
+        area,
         lift_offs: recorder.lift_offs,
         landings: recorder.landings,
         static_deflection,

@@ -108,7 +108,8 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             .rolling_derivative(&self.constants, x, &self.inputs, &contact, dx);
     }
 
-    /// `dx/dt` and the outputs of the model at time `t`, and the contact that they stem from; none in the air.
+    /// `dx/dt` and, where there is room for them, the outputs of the model at time `t`, and the contact that they stem
+    /// from; none in the air.
     #[inline]
     pub fn motion(&self, t: f64, x: &[f64], dx: &mut [f64], y: &mut [f64]) -> Option<Contact> {
         let contact = self.touch(t, x).map(|touch| self.contact(Some(&touch), x));
@@ -118,7 +119,9 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         for &place in &self.locked {
             dx[place] = 0.0;
         }
-        self.model.rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
+        if !y.is_empty() {
+            self.model.rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
+        }
         contact
     }
 

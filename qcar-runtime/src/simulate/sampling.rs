@@ -42,12 +42,16 @@ impl AntiAlias {
     /// Samples of a fine signal that begins [`AntiAlias::REACH`] samples before the first and ends as many after the
     /// last.
     pub fn decimate(&self, fine: &[f64]) -> Vec<f64> {
+        self.decimate_column(fine, 1, 0)
+    }
+
+    /// The same for one column of rows of a `width`.
+    fn decimate_column(&self, rows: &[f64], width: usize, column: usize) -> Vec<f64> {
         let (every, reach) = (self.oversampling, self.taps.len() - 1);
-        let samples = (fine.len().saturating_sub(2 * reach)).div_ceil(every);
+        let samples = (rows.len() / width).saturating_sub(2 * reach).div_ceil(every);
         // Points of one phase stand a sample apart, so that a tap weighs neighbours in memory.
-        let phases: Vec<Vec<f64>> = (0..every)
-            .map(|phase| fine.iter().skip(phase).step_by(every).copied().collect())
-            .collect();
+        let phase = |phase| rows.iter().skip(phase * width + column).step_by(every * width);
+        let phases: Vec<Vec<f64>> = (0..every).map(|k| phase(k).copied().collect()).collect();
         let from = |point: usize| &phases[point % every][point / every..][..samples];
         let mut out: Vec<f64> = from(reach).iter().map(|y| self.taps[0] * y).collect();
         // At the distance of whole samples the taps vanish: of two points a sample, every other one.
@@ -82,11 +86,6 @@ impl Grid {
         }
     }
 
-    /// Number of samples.
-    pub fn samples(&self) -> usize {
-        self.samples
-    }
-
     /// Number of points.
     pub fn points(&self) -> usize {
         (self.samples - 1 + 2 * AntiAlias::REACH) * self.filter.oversampling + 1
@@ -102,29 +101,32 @@ impl Grid {
         self.time(self.points() - 1)
     }
 
-    /// The samples of a signal at all points.
-    pub fn decimate(&self, fine: &[f64]) -> Vec<f64> {
-        self.filter.decimate(fine)
+    /// The samples of one column of a row of `width` for each point.
+    pub fn decimate(&self, rows: &[f64], width: usize, column: usize) -> Vec<f64> {
+        self.filter.decimate_column(rows, width, column)
     }
 
-    /// The time of the next point up to `end` (s), given once, and whether it is a sample.
-    pub fn next(&mut self, end: f64) -> Option<(f64, bool)> {
-        let (point, time) = (self.next, self.time(self.next));
-        (point < self.points() && time <= end).then(|| {
+    /// Of a row of `width` for each point, those at the samples.
+    pub fn at_samples<'a>(&self, rows: &'a [f64], width: usize) -> impl Iterator<Item = &'a [f64]> {
+        let first = AntiAlias::REACH * self.filter.oversampling;
+        rows.chunks(width)
+            .skip(first)
+            .step_by(self.filter.oversampling)
+            .take(self.samples)
+    }
+
+    /// The time of the next point up to `end` (s), given once.
+    pub fn next(&mut self, end: f64) -> Option<f64> {
+        let time = self.time(self.next);
+        (self.next < self.points() && time <= end).then(|| {
             self.next += 1;
-            (time, self.is_sample(point))
+            time
         })
     }
 
     fn time(&self, point: usize) -> f64 {
         let first = AntiAlias::REACH * self.filter.oversampling;
         (point as f64 - first as f64) * self.spacing
-    }
-
-    fn is_sample(&self, point: usize) -> bool {
-        let sample = point / self.filter.oversampling;
-        let inside = (AntiAlias::REACH..AntiAlias::REACH + self.samples).contains(&sample);
-        inside && point.is_multiple_of(self.filter.oversampling)
     }
 }
 

@@ -33,7 +33,7 @@ pub struct DormandPrince {
     /// The stages' derivatives, and behind each its signals; the last is the first of the next step.
     k: [Vec<f64>; 7],
     quartic: Vec<f64>,
-    /// The mean of each signal over the step.
+    /// Over the step, the mean rate of each state and the mean of each signal.
     means: Vec<f64>,
     watch: Watch,
     control: Control,
@@ -84,9 +84,8 @@ impl DormandPrince {
 
     /// Room for signals behind the derivatives.
     fn make_room(&mut self, signals: usize) {
-        let rows = self.k.iter_mut().chain([&mut self.quartic]);
+        let rows = self.k.iter_mut().chain([&mut self.quartic, &mut self.means]);
         rows.for_each(|row| row.resize(self.x.len() + signals, 0.0));
-        self.means.resize(signals, 0.0);
     }
 
     /// Integrates over one smooth leg: why and when it stopped.
@@ -248,15 +247,14 @@ impl DormandPrince {
         (sum / n.max(1) as f64).sqrt() + probe
     }
 
-    /// What the dense output of an accepted step needs beside its ends: its quartic, and the means of the signals.
+    /// What the dense output of an accepted step needs beside its ends: its quartic, and means.
     fn make_dense(&mut self) {
-        let (states, n) = (self.x.len(), self.quartic.len());
+        let n = self.quartic.len();
         let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
+        let means = &mut self.means[..n];
         for i in 0..n {
             self.quartic[i] = dot(DENSE, [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]]);
-        }
-        for i in states..n {
-            self.means[i - states] = dot(A7, [k0[i], k2[i], k3[i], k4[i], k5[i]]);
+            means[i] = dot(A7, [k0[i], k2[i], k3[i], k4[i], k5[i]]);
         }
     }
 

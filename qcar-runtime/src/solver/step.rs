@@ -19,7 +19,7 @@ pub struct Step<'a> {
     pub(super) slopes: [&'a [f64]; 2],
     /// The term of fourth order divided by the length; empty for a cubic.
     pub(super) quartic: &'a [f64],
-    /// The mean of each signal over the step.
+    /// The mean rate of each state over the step, and behind it the mean of each signal.
     pub(super) means: &'a [f64],
     /// The estimated error over what is tolerated, of as many such steps as make the longest that is allowed; infinite
     /// where there is no estimate, or where an event has cut the step short and the stages of the method lie beyond it.
@@ -54,31 +54,29 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Writes the signals at time `t` of the step: the slopes of the interpolants of their integrals.
+    /// Writes the rates of the states from place `first` on at time `t` of the step, and behind them the signals: the
+    /// slopes of the interpolants of the states, and of those of the signals' integrals.
     ///
-    /// They are exact at both ends; between them they are accurate to the order of the dense output less one.
-    pub fn signals_at(&self, t: f64, signals: &mut [f64]) {
-        let (states, n) = (self.states[0].len(), signals.len());
-        let [y0, y1] = self.slopes.map(|slopes| &slopes[states..][..n]);
-        let means = &self.means[..n];
+    /// They are exact at both ends; between them they are accurate to the order of the dense output less one. To be asked
+    /// only where [`Step::has_rates`].
+    pub fn rates_at(&self, t: f64, first: usize, rates: &mut [f64]) {
+        let n = rates.len();
+        let [y0, y1] = self.slopes.map(|slopes| &slopes[first..][..n]);
+        let (means, quartic) = (&self.means[first..][..n], &self.quartic[first..][..n]);
         let a = (t - self.start) / self.length;
         let b = 1.0 - a;
-        let weights = [b * (b - 2.0 * a), 6.0 * a * b, a * (a - 2.0 * b)];
+        let weights = [b * (b - 2.0 * a), 6.0 * a * b, a * (a - 2.0 * b), 2.0 * a * b * (b - a)];
         for i in 0..n {
-            signals[i] = weights[0] * y0[i] + weights[1] * means[i] + weights[2] * y1[i];
-        }
-        let weight = 2.0 * a * b * (b - a);
-        for (signal, q) in signals.iter_mut().zip(self.quartic.iter().skip(states)) {
-            *signal += weight * q;
+            rates[i] = weights[0] * y0[i] + weights[1] * means[i] + weights[2] * y1[i] + weights[3] * quartic[i];
         }
     }
 
-    /// True where the signals between the ends of the step are as good as its ends.
+    /// True where [`Step::rates_at`] is as good between the ends of the step as at its ends.
     ///
     /// That asks for a step shorter than the tolerance would have it, as it is where something else limits its length:
     /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step. A bend makes the
     /// tolerance shorten the step, and the same error in a shorter step is one of a signal that is further off.
-    pub fn has_signals(&self) -> bool {
+    pub fn has_rates(&self) -> bool {
         self.error < SMOOTH
     }
 

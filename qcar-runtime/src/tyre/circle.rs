@@ -28,7 +28,9 @@ pub(super) fn angles<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> [f64; 
 #[inline]
 pub(super) fn swept_directions<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> Option<[[f64; 2]; N]> {
     let y = short_arcs(cosine)?;
-    Some(array::from_fn(|i| [sine[i] * value(&FORWARD, y[i]), value(&DOWN, y[i])]))
+    Some(array::from_fn(|i| {
+        [sine[i] * value(&FORWARD, y[i]), value(&DOWN, y[i])]
+    }))
 }
 
 /// `sin² θ/2`, where it is small for all.
