@@ -1,0 +1,100 @@
+//! The error of a model on the whole Silverbox record, of which the repository holds but four periods.
+//!
+//! ```text
+//! qcar discover models/campaigns/silverbox --out results
+//! cargo run --release --example silverbox -- SNLS80mV.csv results/one_mass_with_progressive_spring.axle results/parameters.toml
+//! ```
+//!
+//! A sensor has a zero of its own, which discovery does not ask of the model. Here it is what the model's error is in the
+//! mean of the fitted periods.
+//!
+//! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in nonlinear
+//! system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at 610.35 Hz.
+
+use std::error::Error;
+use std::fs;
+use std::ops::Range;
+use std::path::Path;
+
+use qcar::catalogue;
+use qcar::parameters;
+use qcar_runtime::model::SignalKind;
+use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
+
+/// Hz.
+const RATE: f64 = 610.35;
+/// The growing random signal, less the start, where the circuit did not rest as the model does.
+const ARROW: Range<usize> = 50..40_000;
+/// The last whole period of the first multisine, how long each is, how far they are apart, and how many they are.
+const MULTISINE: usize = 40_973;
+const PERIOD: usize = 8192;
+const SPACING: usize = 8695;
+const MULTISINES: usize = 10;
+/// The model has been fitted to the first of them.
+const FITTED: usize = 3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [record, model, values] = arguments.as_slice() else {
+        return Err("expected the record (CSV), a model (name or file) and its parameters (TOML)".into());
+    };
+    let [force, measured] = columns(record)?;
+    let modelled = respond(model, Path::new(values), &force)?;
+    let errors: Vec<f64> = modelled.iter().zip(&measured).map(|(own, other)| own - other).collect();
+    let period = |at: usize| &errors[MULTISINE + at * SPACING..][..PERIOD];
+    let zero = mean(&(0..FITTED).flat_map(period).copied().collect::<Vec<_>>());
+    let power = |of: &[f64]| mean(&of.iter().map(|error| (error - zero).powi(2)).collect::<Vec<_>>());
+    let unseen: Vec<f64> = (FITTED..MULTISINES).flat_map(period).copied().collect();
+    println!(
+        "zero of the sensor  {:.3} mV, from the periods that were fitted",
+        -1e3 * zero
+    );
+    println!("arrow               {:.3} mV RMS", 1e3 * power(&errors[ARROW]).sqrt());
+    println!(
+        "multisines          {:.3} mV RMS, over the {} that no fit has seen",
+        1e3 * power(&unseen).sqrt(),
+        MULTISINES - FITTED
+    );
+    Ok(())
+}
+
+/// The first two columns of a CSV with a header line.
+fn columns(file: &str) -> Result<[Vec<f64>; 2], Box<dyn Error>> {
+    let text = fs::read_to_string(file).map_err(|error| format!("{file}: {error}"))?;
+    let mut columns = [vec![], vec![]];
+    for (at, line) in text
+        .lines()
+        .enumerate()
+        .skip(1)
+        .filter(|(_, line)| !line.trim().is_empty())
+    {
+        let mut cells = line.split(',');
+        for column in &mut columns {
+            let cell = cells.next().and_then(|cell| cell.trim().parse().ok());
+            column.push(cell.ok_or_else(|| format!("{file}, line {}: expected two numbers", at + 1))?);
+        }
+    }
+    let (needed, found) = (MULTISINE + (MULTISINES - 1) * SPACING + PERIOD, columns[0].len());
+    if found < needed {
+        return Err(format!("{file}: {found} samples, expected at least {needed}; take the whole record").into());
+    }
+    Ok(columns)
+}
+
+/// The only output of a model under its only force.
+fn respond(model: &str, values: &Path, force: &[f64]) -> Result<Vec<f64>, Box<dyn Error>> {
+    let model = catalogue::load(model).map_err(|failure| format!("{failure:?}"))?;
+    let values = parameters::resolve(model.about(), [values], &[])?;
+    let record = Record {
+        excitation: 0,
+        kind: SignalKind::Force,
+        samples: force,
+    };
+    let recorded = Recorded::new(model.about(), &[record], RATE, Between::BandLimited)?;
+    let mut replayed = replay(&*model, values.as_slice(), &recorded, &Settings::default())?;
+    Ok(replayed.outputs.swap_remove(0))
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
