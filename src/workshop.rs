@@ -65,7 +65,7 @@ impl Workshop for Bench {
         let values = |name: &str| self.values.get(name).copied();
         let patched = self.catalogue.par_iter();
         let patched = patched.flat_map_iter(|patch| patch.candidates(&self.model, &values));
-        patched.filter_map(candidate).collect()
+        patched.flat_map_iter(candidates).collect()
     }
 
     fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>> {
@@ -75,29 +75,41 @@ impl Workshop for Bench {
     }
 }
 
-/// What the search needs of a patched model.
-fn candidate(patched: Patched) -> Option<Candidate> {
-    let change = match patched.signals.first() {
-        None => Change::Model {
-            parameters: patched.parameters.iter().map(added).collect(),
-            model: Box::new(Evaluated::new(&derive(patched.model))),
-        },
-        Some(signal) => Change::Sensor {
-            location: signal.location.clone(),
-            axis: if signal.axis == "x" { Axis::X } else { Axis::Z },
-            form: match signal.kind {
-                Signal::Delay => Form::Delay,
-                Signal::Gain => Form::Gain(0),
+/// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.
+fn candidates(patched: Patched) -> Vec<Candidate> {
+    let Some(signal) = patched.signals.first() else {
+        return vec![Candidate {
+            effect: patched.effect,
+            at: patched.place,
+            form: patched.form,
+            change: Change::Model {
+                parameters: patched.parameters.iter().map(added).collect(),
+                model: Box::new(Evaluated::new(&derive(patched.model))),
             },
-            parameter: added(patched.parameters.first()?),
-        },
+        }];
     };
-    Some(Candidate {
-        effect: patched.effect,
-        at: patched.place,
-        form: patched.form,
-        change,
-    })
+    let axis = if signal.axis == "x" { Axis::X } else { Axis::Z };
+    let mut axes = vec![(format!("along_{}", signal.axis), Some(axis))];
+    if patched.place == signal.location {
+        axes.push(("along_every_axis".into(), None));
+    }
+    let sensor = |(form, axis)| {
+        Some(Candidate {
+            effect: patched.effect.clone(),
+            at: patched.place.clone(),
+            form: Some(form),
+            change: Change::Sensor {
+                location: signal.location.clone(),
+                axis,
+                form: match signal.kind {
+                    Signal::Delay => Form::Delay,
+                    Signal::Gain => Form::Gain(0),
+                },
+                parameter: added(patched.parameters.first()?),
+            },
+        })
+    };
+    axes.into_iter().filter_map(sensor).collect()
 }
 
 fn added(parameter: &NewParameter) -> Added {

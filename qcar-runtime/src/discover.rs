@@ -6,10 +6,10 @@
 
 // What a campaign holds: series of measured values with their uncertainty.
 pub mod evidence;
-// What sensors may be wrong by, in all runs alike.
-pub mod nuisance;
 // What a model says of the evidence.
 pub mod predict;
+// What sensors may be wrong by, in all runs alike.
+pub mod nuisance;
 // Parameters and sensor errors that explain the evidence best.
 pub mod refit;
 // What is left, in units of uncertainty: how much, and where.

@@ -30,8 +30,8 @@ pub enum Change {
     Sensor {
         /// Its location.
         location: String,
-        /// Its axis.
-        axis: Axis,
+        /// Its axis; `None` for all sensors of the location alike.
+        axis: Option<Axis>,
         /// How it is wrong.
         form: Form,
         /// The number that says by how much.

@@ -50,9 +50,10 @@ impl Gap {
     /// Where the model lacks what was measured.
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
+        let late = refit.nuisance.lateness(evidence, &refit.coefficients);
         for role in [Role::Fit, Role::HeldOut] {
             let unsteady = unsteady(model, &refit.values, evidence, role)?;
-            for mut prediction in predict_sides(model, [&refit.values, &refit.side], &[], evidence, role)? {
+            for mut prediction in predict_sides(model, [&refit.values, &refit.side], &late, &[], evidence, role)? {
                 let series = &evidence.series[prediction.series];
                 prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);

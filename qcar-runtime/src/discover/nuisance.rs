@@ -6,11 +6,13 @@
 //! gap. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
 //! in a time history there is an offset too.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Kind, Series};
+use super::evidence::{Evidence, Kind, Series, Stimulus};
+use super::predict::Prediction;
 use crate::campaign::Axis;
 use crate::transmissibility::Point;
 
@@ -90,8 +92,19 @@ pub struct Nuisance {
     pub sensors: Vec<Point>,
     /// The lowest and highest frequency of the polynomials, Hz.
     pub band: (f64, f64),
-    /// Coefficients under suspicion: the place of each, and its standard deviation before any measurement.
-    pub suspects: Vec<(usize, f64)>,
+    /// What is suspected beside their calibration.
+    pub suspects: Vec<Suspect>,
+}
+
+/// An error that some sensors have in common: they are one device, or are read through one.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Suspect {
+    /// Places of the sensors in [`Nuisance::sensors`].
+    pub sensors: Vec<usize>,
+    /// How they are wrong.
+    pub form: Form,
+    /// Standard deviation of its coefficient before any measurement.
+    pub sigma: f64,
 }
 
 impl Nuisance {
@@ -120,18 +133,26 @@ impl Nuisance {
         }
     }
 
-    /// The same with a sensor under suspicion: its error of this form may be of the size `sigma`. `None` where no such
-    /// sensor is in the evidence.
-    pub fn suspecting(mut self, location: &str, axis: Axis, form: Form, sigma: f64) -> Option<Self> {
-        let is_it = |sensor: &Point| sensor.location == location && sensor.axis == axis;
-        let sensor = self.sensors.iter().position(is_it)?;
-        let shape = SENSOR.iter().position(|shape| shape.form == form)?;
-        self.suspects.push((sensor * SENSOR.len() + shape, sigma));
+    /// The same with the sensors of a location under suspicion, those of one axis or of all: an error of this form that
+    /// they have in common may be of the size `sigma`. `None` where the evidence has no such sensor, or no other axis.
+    pub fn suspecting(mut self, location: &str, axis: Option<Axis>, form: Form, sigma: f64) -> Option<Self> {
+        let is_it = |sensor: &Point| sensor.location == location && axis.is_none_or(|axis| sensor.axis == axis);
+        let sensors: Vec<usize> = (0..self.sensors.len()).filter(|&k| is_it(&self.sensors[k])).collect();
+        let first = &self.sensors[*sensors.first()?];
+        if axis.is_none() && sensors.iter().all(|&k| self.sensors[k].axis == first.axis) {
+            return None;
+        }
+        self.suspects.push(Suspect { sensors, form, sigma });
         Some(self)
     }
 
-    /// Number of coefficients: [`SENSOR`] for each sensor in turn.
+    /// Number of coefficients: [`SENSOR`] for each sensor in turn, and one for each suspect.
     pub fn len(&self) -> usize {
+        self.of_calibration() + self.suspects.len()
+    }
+
+    /// Number of coefficients before those of the suspects.
+    pub fn of_calibration(&self) -> usize {
         self.sensors.len() * SENSOR.len()
     }
 
@@ -143,9 +164,68 @@ impl Nuisance {
     /// The standard deviation of each coefficient before any measurement.
     pub fn sigmas(&self) -> Vec<f64> {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
-        let mut sigmas: Vec<f64> = priors.collect();
-        self.suspects.iter().for_each(|&(place, sigma)| sigmas[place] = sigma);
-        sigmas
+        priors
+            .chain(self.suspects.iter().map(|suspect| suspect.sigma))
+            .collect()
+    }
+
+    /// How late the sensor of each series is against what drove its run, s, where that is no phase.
+    pub fn lateness(&self, evidence: &Evidence, coefficients: &[f64]) -> Vec<f64> {
+        let late = |series: &Series| {
+            let delays = self.late_by(evidence, series).into_iter();
+            delays.map(|(k, times)| times * coefficients[k]).sum()
+        };
+        evidence.series.iter().map(late).collect()
+    }
+
+    /// The derivatives of a prediction along the coefficients that make its series late, by place.
+    pub fn delays(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
+        let Some(delay) = &prediction.delay else {
+            return Vec::new();
+        };
+        let mut times: BTreeMap<usize, f64> = BTreeMap::new();
+        let shifts = delay.shares.iter().map(|&(series, share)| (series, -share));
+        for (series, share) in std::iter::once((prediction.series, 1.0)).chain(shifts) {
+            for (k, by) in self.late_by(evidence, &evidence.series[series]) {
+                *times.entry(k).or_default() += share * by;
+            }
+        }
+        let along = |(k, times): (usize, f64)| (k, delay.slope.iter().map(|slope| slope * times).collect());
+        times.into_iter().map(along).collect()
+    }
+
+    /// The coefficients that make a series late over time, and how many times.
+    fn late_by(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, f64)> {
+        let prior = || self.coefficient(&series.sensor, Form::Delay).map(|k| (k, 1.0));
+        let suspects = |sensor, times| self.suspected(sensor, Form::Delay).map(move |k| (k, times));
+        match (series.kind, &evidence.runs[series.run].stimulus) {
+            (Kind::Passage, _) => prior().into_iter().chain(suspects(&series.sensor, 1.0)).collect(),
+            // Of several inputs each would have to be shifted for itself.
+            (Kind::Time, Stimulus::History { inputs, .. }) if inputs.signals.len() == 1 => {
+                let input = suspects(&inputs.signals[0].0, -1.0);
+                suspects(&series.sensor, 1.0).chain(input).collect()
+            }
+            (Kind::Time, _) => suspects(&series.sensor, 1.0).collect(),
+            (Kind::Harmonic(_) | Kind::Travel | Kind::Width | Kind::Cycle(_), _) => Vec::new(),
+        }
+    }
+
+    /// The place of a sensor's coefficient.
+    fn coefficient(&self, sensor: &Point, form: Form) -> Option<usize> {
+        let place = self.sensors.iter().position(|s| s == sensor)?;
+        let shape = SENSOR.iter().position(|shape| shape.form == form)?;
+        Some(place * SENSOR.len() + shape)
+    }
+
+    /// The places of the suspects' coefficients of a form in which a sensor is.
+    fn suspected(&self, sensor: &Point, form: Form) -> impl Iterator<Item = usize> {
+        let place = self.sensors.iter().position(|s| s == sensor);
+        let is_it =
+            move |suspect: &Suspect| suspect.form == form && place.is_some_and(|k| suspect.sensors.contains(&k));
+        let suspects = self.suspects.iter().enumerate();
+        suspects
+            .filter(move |(_, s)| is_it(s))
+            .map(|(k, _)| self.of_calibration() + k)
     }
 
     /// What a sensor with errors of these coefficients shows of a predicted series.
@@ -178,17 +258,17 @@ impl Nuisance {
 
     /// The coefficient of a history's offset, and what one of it adds.
     fn offset(&self, series: &Series) -> Option<(usize, f64)> {
-        let place = self.sensors.iter().position(|s| *s == series.sensor)?;
-        let form = SENSOR.iter().position(|shape| shape.form == Form::Offset)?;
+        let place = self.coefficient(&series.sensor, Form::Offset)?;
         let power: f64 = series.value.iter().map(|value| value.norm_sqr()).sum();
         let rms = (power / series.value.len() as f64).sqrt();
-        matches!(series.kind, Kind::Time | Kind::Travel).then_some((place * SENSOR.len() + form, rms))
+        matches!(series.kind, Kind::Time | Kind::Travel).then_some((place, rms))
     }
 
     /// For each value of a series, what each of the coefficients adds to its logarithm.
     ///
     /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
     fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
+        let constant = |k: usize| (k, vec![Complex::ONE; series.at.len()]);
         match series.kind {
             Kind::Harmonic(order) => {
                 let mut slopes = self.of_sensor(&series.sensor, series, 1.0, order as f64);
@@ -197,33 +277,34 @@ impl Nuisance {
                 slopes
             }
             // Over a wide band the mean gain is what counts.
-            Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => self.gain(series).into_iter().collect(),
-            // Driven by what was recorded, a gain is what parameters are too: it stays with the uncertainty of the values.
-            Kind::Time => Vec::new(),
+            Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => {
+                let own = self.coefficient(&series.sensor, Form::Gain(0));
+                own.into_iter()
+                    .chain(self.suspected(&series.sensor, Form::Gain(0)))
+                    .map(constant)
+                    .collect()
+            }
+            // Driven by what was recorded, a gain is what parameters are too: that of a calibration stays with the
+            // uncertainty of the values.
+            Kind::Time => self.suspected(&series.sensor, Form::Gain(0)).map(constant).collect(),
         }
-    }
-
-    /// The mean gain of the sensor of a series.
-    fn gain(&self, series: &Series) -> Option<(usize, Vec<Complex<f64>>)> {
-        let place = self.sensors.iter().position(|s| *s == series.sensor)?;
-        let form = SENSOR.iter().position(|shape| shape.form == Form::Gain(0))?;
-        Some((place * SENSOR.len() + form, vec![Complex::ONE; series.at.len()]))
     }
 
     /// Of the errors of one sensor, read at so many times the frequency of the series.
     fn of_sensor(&self, sensor: &Point, series: &Series, sign: f64, times: f64) -> Vec<(usize, Vec<Complex<f64>>)> {
-        let Some(place) = self.sensors.iter().position(|s| s == sensor) else {
-            return Vec::new();
-        };
-        let column = |(k, shape): (usize, &Shape)| {
-            let slope = series.at.iter().map(|&at| sign * self.shape(shape.form, times * at));
-            (place * SENSOR.len() + k, slope.collect())
-        };
         let factors = SENSOR
             .iter()
-            .enumerate()
-            .filter(|(_, shape)| shape.form != Form::Offset);
-        factors.map(column).collect()
+            .map(|shape| shape.form)
+            .filter(|&form| form != Form::Offset);
+        let own = factors.filter_map(|form| Some((self.coefficient(sensor, form)?, form)));
+        let suspects = [Form::Gain(0), Form::Delay]
+            .into_iter()
+            .flat_map(|form| self.suspected(sensor, form).map(move |k| (k, form)));
+        let column = |(k, form): (usize, Form)| {
+            let slope = series.at.iter().map(|&at| sign * self.shape(form, times * at));
+            (k, slope.collect())
+        };
+        own.chain(suspects).map(column).collect()
     }
 
     fn shape(&self, form: Form, f: f64) -> Complex<f64> {

@@ -53,6 +53,17 @@ pub struct Prediction {
     pub value: Vec<Complex<f64>>,
     /// For each free parameter the derivatives of the values.
     pub slopes: Vec<Vec<Complex<f64>>>,
+    /// What a delay of sensors does to values over time; `None` where it only turns their phase, or nothing.
+    pub delay: Option<Delay>,
+}
+
+/// What delays do to a series over time.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Delay {
+    /// The derivatives of the values by a delay (s) of their own sensor.
+    pub slope: Vec<Complex<f64>>,
+    /// Series of the same run, and which share of a delay of their sensors shifts the clock of the whole run.
+    pub shares: Vec<(usize, f64)>,
 }
 
 impl Prediction {
@@ -113,16 +124,18 @@ pub fn predict(
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
-    predict_sides(model, [values, values], free, evidence, role)
+    predict_sides(model, [values, values], &[], free, evidence, role)
 }
 
-/// The same of a car whose recorded side has parameters of its own (the second set): cleat runs see these.
+/// The same of a car whose recorded side has parameters of its own (the second set): cleat runs see these. Series over
+/// time are as `late` (s, series by series) as their sensors; without entries none is.
 ///
 /// # Errors
 /// As [`predict`].
 pub fn predict_sides(
     model: &dyn Model,
     [values, side]: [&Values; 2],
+    late: &[f64],
     free: &[Free],
     evidence: &Evidence,
     role: Role,
@@ -131,7 +144,7 @@ pub fn predict_sides(
     let runs: Vec<usize> = runs.collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, [values, side], free, evidence, run));
+        .map(|run| of_run(model, [values, side], late, free, evidence, run));
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
@@ -147,6 +160,7 @@ fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Po
 fn of_run(
     model: &dyn Model,
     [values, side]: [&Values; 2],
+    late: &[f64],
     free: &[Free],
     evidence: &Evidence,
     run: usize,
@@ -154,8 +168,8 @@ fn of_run(
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
         Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
-        Stimulus::Cleat(passage) => cleat::passage(model, side, free, evidence, (run, passage)),
-        Stimulus::History { .. } => history::history(model, values, free, evidence, run),
+        Stimulus::Cleat(passage) => cleat::passage(model, side, late, free, evidence, (run, passage)),
+        Stimulus::History { .. } => history::history(model, values, late, free, evidence, run),
         Stimulus::Travel { .. } | Stimulus::Sine { .. } => travel::travel(model, values, free, evidence, run),
     }
 }

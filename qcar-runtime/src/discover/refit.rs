@@ -308,6 +308,9 @@ impl<'a> Posterior<'a> {
                 along(slope, 1.0, &mut columns[k]);
             }
         }
+        for (k, slope) in self.nuisance.delays(self.evidence, prediction) {
+            along(&slope, 1.0, &mut columns[self.free.len() + k]);
+        }
         for (k, slope) in shown.slopes {
             scaled(
                 series,
@@ -333,7 +336,8 @@ impl Problem for Posterior<'_> {
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
         self.move_to(x);
         let both = [&self.values, &self.side];
-        let predictions = predict_sides(self.model, both, &self.free, self.evidence, Role::Fit);
+        let late = self.nuisance.lateness(self.evidence, &x[self.free.len()..]);
+        let predictions = predict_sides(self.model, both, &late, &self.free, self.evidence, Role::Fit);
         let predictions = match predictions {
             Ok(predictions) => predictions,
             Err(error) => {

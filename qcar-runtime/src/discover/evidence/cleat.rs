@@ -19,6 +19,8 @@ const HALF: f64 = 5e-3;
 const DURATION: f64 = 1.0;
 /// The most that the clock of a record may be off, s: a trigger, and the error of the speed over the run-in.
 pub(in crate::discover) const TIMING: f64 = 5e-3;
+/// The most that a sensor may be ahead of the others, s.
+const AHEAD: f64 = 0.01;
 /// What no model of a tyre on an edge gets right, and no second sensor of a pair: this share of the envelope.
 const SHARE: f64 = 0.025;
 /// The same of the whole record, so that a record without noise has an uncertainty too.
@@ -129,7 +131,7 @@ impl Window {
 
     /// How long a ride has to be to be seen like the record, s.
     fn end(&self) -> f64 {
-        self.start + (self.count + 1) as f64 * self.means.half() + TIMING
+        self.start + (self.count + 1) as f64 * self.means.half() + TIMING + AHEAD
     }
 
     /// What one sensor says; nothing where it never moves.

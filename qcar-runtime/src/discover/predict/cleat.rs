@@ -7,7 +7,7 @@
 use nalgebra::Complex;
 use rayon::prelude::*;
 
-use super::{Free, PredictError, Prediction};
+use super::{Delay, Free, PredictError, Prediction};
 use crate::discover::evidence::cleat::TIMING;
 use crate::discover::evidence::means::Means;
 use crate::discover::evidence::{Evidence, Passage, Series, signal_of};
@@ -31,6 +31,7 @@ const STEPS: usize = 4;
 pub(super) fn passage(
     model: &dyn Model,
     values: &Values,
+    late: &[f64],
     free: &[Free],
     evidence: &Evidence,
     (run, passage): (usize, &Passage),
@@ -62,10 +63,14 @@ pub(super) fn passage(
     let rides: Vec<Vec<Vec<f64>>> = rides.collect::<Result<_, _>>()?;
     let seen = Seen {
         means: passage.means,
-        series: series.iter().map(|(_, series)| *series).collect(),
+        late: series
+            .iter()
+            .map(|(place, _)| late.get(*place).copied().unwrap_or(0.0))
+            .collect(),
+        places: series.iter().map(|(place, _)| *place).collect(),
+        series: series.into_iter().map(|(_, series)| series).collect(),
     };
-    let places = series.iter().map(|(place, _)| *place);
-    Ok(seen.predictions(&rides[0], &rides[1..], &changes, places))
+    Ok(seen.predictions(&rides[0], &rides[1..], &changes))
 }
 
 /// By how much a parameter is changed for its difference; towards its lower bound where it stands at the upper one.
@@ -104,19 +109,17 @@ fn accelerations(
 struct Seen<'a> {
     means: Means,
     series: Vec<&'a Series>,
+    /// Of each its place in the evidence,
+    places: Vec<usize>,
+    /// and how late its sensor is, s.
+    late: Vec<f64>,
 }
 
 /// For each series its values, and their derivatives by the shift.
 type Shifted = Vec<(Vec<f64>, Vec<f64>)>;
 
 impl Seen<'_> {
-    fn predictions(
-        &self,
-        base: &[Vec<f64>],
-        moved: &[Vec<Vec<f64>>],
-        changes: &[f64],
-        places: impl Iterator<Item = usize>,
-    ) -> Vec<Prediction> {
+    fn predictions(&self, base: &[Vec<f64>], moved: &[Vec<Vec<f64>>], changes: &[f64]) -> Vec<Prediction> {
         let shift = self.best_shift(base);
         let here = self.shifted(base, shift);
         let slopes = moved.iter().zip(changes).map(|(moved, change)| {
@@ -134,24 +137,44 @@ impl Seen<'_> {
         });
         let slopes: Vec<Vec<Vec<f64>>> = slopes.collect();
         let complex = |values: &[f64]| values.iter().copied().map(Complex::from).collect::<Vec<_>>();
-        let predict = |(column, place): (usize, usize)| Prediction {
+        let shares = self.shares(&here, shift);
+        let predict = |(column, &place): (usize, &usize)| Prediction {
             series: place,
             value: complex(&here[column].0),
             slopes: slopes
                 .iter()
                 .map(|of_parameter| complex(&of_parameter[column]))
                 .collect(),
+            delay: Some(Delay {
+                slope: complex(&here[column].1),
+                shares: shares.clone(),
+            }),
         };
-        places.enumerate().map(predict).collect()
+        self.places.iter().enumerate().map(predict).collect()
     }
 
-    /// The records as they are read when they begin `shift` later.
+    /// The records as they are read when they begin `shift` later, each by a sensor as late as it is.
     fn shifted(&self, records: &[Vec<f64>], shift: f64) -> Shifted {
-        let read = |(series, record): (&&Series, &Vec<f64>)| {
-            let means = series.at.iter().map(|t| self.means.at(record, t - shift));
+        let read = |((series, late), record): ((&&Series, &f64), &Vec<f64>)| {
+            let means = series.at.iter().map(|t| self.means.at(record, t - shift - late));
             means.map(|(mean, slope)| (mean, -slope)).unzip()
         };
-        self.series.iter().zip(records).map(read).collect()
+        self.series.iter().zip(&self.late).zip(records).map(read).collect()
+    }
+
+    /// Of a delay of each sensor, what the shift of all takes up; none at the limit of the shift.
+    fn shares(&self, here: &Shifted, shift: f64) -> Vec<(usize, f64)> {
+        let square = |(series, (_, by_shift)): (&&Series, &(Vec<f64>, Vec<f64>))| -> f64 {
+            let scaled = by_shift.iter().zip(&series.sigma).map(|(slope, sigma)| slope / sigma);
+            scaled.map(|slope| slope * slope).sum()
+        };
+        let squares: Vec<f64> = self.series.iter().zip(here).map(square).collect();
+        let all: f64 = squares.iter().sum();
+        if shift.abs() >= TIMING || all == 0.0 {
+            return Vec::new();
+        }
+        let shares = squares.iter().map(|square| square / all);
+        self.places.iter().copied().zip(shares).collect()
     }
 
     /// The shift at which the records agree best with the measurement (Gauss-Newton).

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 
 use super::input::{Between, Recorded};
 use super::replay::{Reading, Replay, reading};
-use super::{Free, PredictError, Prediction};
+use super::{Delay, Free, PredictError, Prediction};
 use crate::campaign::Quantity;
 use crate::discover::evidence::{Evidence, Stimulus, excitation_of, order_of, signal_of};
 use crate::model::{About, Model, StateKind};
@@ -21,6 +21,7 @@ const PART_OF_RANGE: f64 = 1e-3;
 pub(super) fn history(
     model: &dyn Model,
     values: &Values,
+    late: &[f64],
     free: &[Free],
     evidence: &Evidence,
     run: usize,
@@ -55,12 +56,18 @@ pub(super) fn history(
             (step, replay.run(values.as_slice()))
         })
         .collect();
-    let at = |t: &f64| ((t - start) * rate).round() as usize;
     let predict = |(column, (place, series)): (usize, &(usize, &crate::discover::evidence::Series))| {
-        let read = |signal: &[f64]| -> Vec<f64> { series.at.iter().map(|t| signal[at(t)]).collect() };
-        let value = read(&runs[0].1[column]);
+        let late = late.get(*place).copied().unwrap_or(0.0);
+        let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
+            series
+                .at
+                .iter()
+                .map(|t| between(signal, (t - start - late) * rate))
+                .unzip()
+        };
+        let (value, by_sample) = read(&runs[0].1[column]);
         let slope = |(step, signals): &(f64, Vec<Vec<f64>>)| {
-            let moved = read(&signals[column]);
+            let (moved, _) = read(&signals[column]);
             moved
                 .iter()
                 .zip(&value)
@@ -71,9 +78,31 @@ pub(super) fn history(
             series: *place,
             slopes: runs[1..].iter().map(slope).collect(),
             value: value.iter().map(|&value| Complex::from(value)).collect(),
+            delay: Some(Delay {
+                slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
+                shares: Vec::new(),
+            }),
         }
     };
     Ok(series.iter().enumerate().map(predict).collect())
+}
+
+/// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
+/// side (Catmull and Rom); beyond its ends it stays as it is there.
+fn between(signal: &[f64], place: f64) -> (f64, f64) {
+    // Times are no exact multiples of the sample's length, and most places are samples.
+    const ROUNDING: f64 = 1e-6;
+    let place = if (place - place.round()).abs() < ROUNDING {
+        place.round()
+    } else {
+        place
+    };
+    let (first, t) = (place.floor() as i64, place - place.floor());
+    let last = signal.len() as i64 - 1;
+    let [a, b, c, d] = [-1, 0, 1, 2].map(|k| signal[(first + k).clamp(0, last) as usize]);
+    let (slope, bend, twist) = (c - a, 2.0 * a - 5.0 * b + 4.0 * c - d, d - a + 3.0 * (b - c));
+    let value = b + t / 2.0 * (slope + t * (bend + t * twist));
+    (value, (slope + t * (2.0 * bend + 3.0 * t * twist)) / 2.0)
 }
 
 /// The replay of a run, read by some sensors.

@@ -42,6 +42,7 @@ pub(super) fn sweep(
             series: place,
             slopes: free.iter().map(slope).collect(),
             value: ratio.value,
+            delay: None,
         });
     }
     Ok(predictions)
@@ -53,5 +54,6 @@ fn silence(series: usize, values: usize, free: usize) -> Prediction {
         series,
         slopes: vec![zero.clone(); free],
         value: zero,
+        delay: None,
     }
 }

@@ -101,6 +101,7 @@ impl Reading<'_> {
             series: self.place,
             value: places.iter().map(value).collect(),
             slopes: (0..free).map(slope).collect(),
+            delay: None,
         }
     }
 }

@@ -69,6 +69,7 @@ fn differentiated(
             series,
             value,
             slopes: Vec::new(),
+            delay: None,
         })
         .collect();
     for free in free {

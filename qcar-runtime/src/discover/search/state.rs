@@ -325,7 +325,7 @@ impl Taken {
                 parameters.iter().map(unknown).collect()
             }
             Change::Sensor { form, parameter, .. } => {
-                let place = nuisance.suspects.last().map_or(0, |(place, _)| *place);
+                let place = nuisance.len().saturating_sub(1);
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };
