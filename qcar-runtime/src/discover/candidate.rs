@@ -53,6 +53,11 @@ pub struct Added {
 }
 
 impl Candidate {
+    /// True where it changes no model.
+    pub fn is_sensor(&self) -> bool {
+        matches!(self.change, Change::Sensor { .. })
+    }
+
     /// What is to be found.
     pub fn unknowns(&self) -> &[Added] {
         match &self.change {

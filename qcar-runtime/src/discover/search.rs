@@ -18,7 +18,7 @@ use super::explain::{Explanation, Setting};
 use super::predict::PredictError;
 use crate::campaign::Role;
 use rules::Judge;
-use state::{Contender, State};
+use state::{Contender, Field, State};
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -63,6 +63,9 @@ pub struct Rival {
     /// How much worse it explains the fitted runs: difference of the penalised sums of squares, in units of the scatter
     /// that the best explanation leaves.
     pub behind: f64,
+    /// True where it was left behind before the end: `behind` is what it was then, in a fit that saw a part of the lines
+    /// or large features only.
+    pub early: bool,
 }
 
 /// What was found, and what is left.
@@ -112,10 +115,10 @@ pub fn discover(
         return Ok(verdict(Verdict::None, Vec::new(), &before));
     }
     let mut first = base.contenders(evidence, progress)?;
-    judge.simplest_first(&mut first);
+    judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
-    for pick in (0..first.len())
-        .filter(|&pick| judge.is_significant(&base, &first[pick]))
+    for pick in (0..first.contenders.len())
+        .filter(|&pick| judge.is_significant(&base, &first.contenders[pick]))
         .take(FIRST_PICKS)
     {
         let path = Path::begin(&base, &first, pick, &judge).follow(&judge, evidence, progress)?;
@@ -159,21 +162,21 @@ pub(super) struct Path {
 }
 
 impl Path {
-    fn begin(base: &State, contenders: &[Contender], pick: usize, judge: &Judge) -> Self {
+    fn begin(base: &State, field: &Field, pick: usize, judge: &Judge) -> Self {
         let empty = Path {
             state: base.clone(),
             findings: Vec::new(),
             class: Vec::new(),
         };
-        empty.taking(contenders, pick, judge)
+        empty.taking(field, pick, judge)
     }
 
     /// Goes on with one of the contenders.
-    fn taking(mut self, contenders: &[Contender], pick: usize, judge: &Judge) -> Self {
-        let chosen = &contenders[pick];
-        let finding = |contender: &Contender| judge.finding(&self.state, contender, contenders);
-        self.class = judge.alike(contenders, pick).map(finding).collect();
-        self.findings.push(judge.finding(&self.state, chosen, contenders));
+    fn taking(mut self, field: &Field, pick: usize, judge: &Judge) -> Self {
+        let chosen = &field.contenders[pick];
+        let finding = |contender: &Contender| judge.finding(&self.state, contender, field);
+        self.class = judge.alike(&field.contenders, pick).map(finding).collect();
+        self.findings.push(judge.finding(&self.state, chosen, field));
         self.state = self.state.with(chosen);
         self
     }
@@ -181,17 +184,17 @@ impl Path {
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
         while self.findings.len() < MOST_EFFECTS && judge.is_gap(&self.state.explanation) && self.class.len() < 2 {
-            let mut contenders = self.state.contenders(evidence, progress)?;
-            judge.simplest_first(&mut contenders);
+            let mut field = self.state.contenders(evidence, progress)?;
+            judge.simplest_first(&mut field.contenders);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best),
                 false => judge.is_significant(&self.state, best),
             };
-            if contenders.first().filter(helps).is_none() {
+            if field.contenders.first().filter(helps).is_none() {
                 break;
             }
-            self = self.taking(&contenders, 0, judge);
+            self = self.taking(&field, 0, judge);
         }
         Ok(self)
     }

@@ -238,10 +238,11 @@ fn described(finding: &Finding) -> String {
         finding.at,
         table.text()
     );
-    for rival in finding.rivals.iter().take(3) {
+    for rival in finding.rivals.iter().take(4) {
+        let when = if rival.early { ", when it was left behind" } else { "" };
         let _ = writeln!(
             out,
-            "behind it by {}: {} at {}",
+            "behind it by {}: {} at {}{when}",
             number(rival.behind, 3),
             rival.effect,
             rival.at

@@ -4,7 +4,7 @@
 //! local minimum. So each explanation is first fitted from several starts to a part of the lines, with a tolerance in
 //! which only the large features count. The best go on, sharply; all lines are kept for the last.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use rayon::prelude::*;
 
@@ -93,6 +93,14 @@ pub struct Finalist {
     pub score: f64,
 }
 
+/// One that was left behind before the end.
+pub struct Dropped {
+    /// Its place among those that entered.
+    pub entrant: usize,
+    /// How far behind the best it was then: difference of the scores in units of the scatter that the best left.
+    pub behind: f64,
+}
+
 /// An explanation that enters the contest.
 pub struct Entrant<'a> {
     /// The explanation.
@@ -111,12 +119,17 @@ struct Runner {
     score: f64,
 }
 
-/// The best of the entrants, the very best first. One without unknowns is no change at all: it sets the measure.
+/// The best of the entrants, the very best first, and the others, those that came far first. One without unknowns is no
+/// change at all: it sets the measure.
 ///
 /// # Errors
 /// Where a parameter has no value.
-pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> Result<Vec<Finalist>, PredictError> {
-    let mut field = Vec::new();
+pub fn contest(
+    entrants: &[Entrant],
+    looks: &Looks,
+    progress: Progress<'_>,
+) -> Result<(Vec<Finalist>, Vec<Dropped>), PredictError> {
+    let (mut field, mut dropped) = (Vec::new(), Vec::new());
     for (entrant, of) in entrants.iter().enumerate() {
         field.extend(of.explanandum.starts()?.into_iter().map(|values| Runner {
             entrant,
@@ -130,7 +143,12 @@ pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> R
         let fitted = field
             .into_par_iter()
             .filter_map(|runner| runner.run(entrants, &seen, stage));
-        field = best(fitted.collect(), entrants, stage);
+        let fitted: Vec<Runner> = fitted.collect();
+        let before = distances(&fitted);
+        field = best(fitted, entrants, stage);
+        let stays = |entrant: usize| field.iter().any(|runner| runner.entrant == entrant);
+        let left = before.into_iter().filter(|left| !stays(left.entrant));
+        dropped.splice(0..0, left);
         progress(&told(entrants, &field));
     }
     let finalists = field.into_par_iter().map(|runner| {
@@ -146,7 +164,7 @@ pub fn contest(entrants: &[Entrant], looks: &Looks, progress: Progress<'_>) -> R
     let mut finalists = finalists.collect::<Result<Vec<_>, PredictError>>()?;
     // What sweeps show beyond their steady harmonics is seen only now, and may change the order.
     finalists.sort_by(|a, b| a.score.total_cmp(&b.score));
-    Ok(finalists)
+    Ok((finalists, dropped))
 }
 
 impl Entrant<'_> {
@@ -193,6 +211,22 @@ impl Runner {
             score,
         })
     }
+}
+
+/// How far each entrant is behind the best, the best first.
+fn distances(field: &[Runner]) -> Vec<Dropped> {
+    let mut order: Vec<&Runner> = field.iter().collect();
+    order.sort_by(|a, b| a.score.total_cmp(&b.score));
+    let Some(&first) = order.first() else { return Vec::new() };
+    let left = first.refit.as_ref().map_or(1.0, |r| r.chi2 / r.residuals as f64);
+    let behind = |runner: &Runner| (runner.score - first.score) / left.max(1.0);
+    let mut met = BTreeSet::new();
+    let of_each = order.into_iter().filter(|runner| met.insert(runner.entrant));
+    let distance = |runner: &Runner| Dropped {
+        entrant: runner.entrant,
+        behind: behind(runner),
+    };
+    of_each.map(distance).collect()
 }
 
 /// Of each of the best entrants the best runners, the very best first.

@@ -1,6 +1,8 @@
 //! What earns a name.
 
-use super::state::{Contender, State};
+use std::collections::BTreeSet;
+
+use super::state::{Behind, Contender, Field, State};
 use super::{Finding, Path, Rival};
 use crate::campaign::Role;
 use crate::discover::evidence::Evidence;
@@ -26,6 +28,8 @@ const ALIKE: f64 = 20.0;
 const BY_CHANCE: f64 = 4.0;
 /// An explanation that leaves something unexplained is no judge of differences below this share of it.
 const VAGUE: f64 = 0.05;
+/// So many rivals are told of at least, those that were left behind early among them.
+const RIVALS: usize = 3;
 
 /// Holds explanations against the base model's, on runs that no fit has seen where there are any.
 pub struct Judge<'a> {
@@ -111,13 +115,7 @@ impl<'a> Judge<'a> {
     }
 
     /// What is told of a contender.
-    pub fn finding(&self, state: &State, contender: &Contender, contenders: &[Contender]) -> Finding {
-        let others = contenders.iter().filter(|other| !std::ptr::eq(*other, contender));
-        let rival = |other: &Contender| Rival {
-            effect: other.candidate.effect.clone(),
-            at: other.candidate.at.clone(),
-            behind: behind(other, contender),
-        };
+    pub fn finding(&self, state: &State, contender: &Contender, field: &Field) -> Finding {
         Finding {
             effect: contender.candidate.effect.clone(),
             at: contender.candidate.at.clone(),
@@ -125,7 +123,7 @@ impl<'a> Judge<'a> {
             parameters: contender.parameters.clone(),
             evidence: state.explanation.refit.chi2 - contender.explanation.refit.chi2,
             closed: self.closed(&state.explanation, &contender.explanation),
-            rivals: others.map(rival).collect(),
+            rivals: rivals(contender, field),
         }
     }
 
@@ -150,6 +148,24 @@ fn vague(contender: &Contender) -> f64 {
     VAGUE * (refit.chi2 - refit.residuals as f64).max(0.0)
 }
 
-fn behind(contender: &Contender, best: &Contender) -> f64 {
-    (contender.score - best.score) / best.explanation.scatter()
+/// All that was fitted to the end beside the chosen one, and the best of the others: some, and a sensor in any case.
+fn rivals(chosen: &Contender, field: &Field) -> Vec<Rival> {
+    let mut met = BTreeSet::from([(&chosen.candidate.effect, &chosen.candidate.at)]);
+    let (mut rivals, mut has_sensor) = (Vec::new(), chosen.candidate.is_sensor());
+    for other in &field.contenders {
+        if met.insert((&other.candidate.effect, &other.candidate.at)) {
+            let behind = (other.score - chosen.score) / chosen.explanation.scatter();
+            let other = Behind::new(&other.candidate, behind, false);
+            has_sensor |= other.is_sensor;
+            rivals.push(other.rival);
+        }
+    }
+    for other in &field.dropped {
+        let wanted = rivals.len() < RIVALS || other.is_sensor && !has_sensor;
+        if wanted && met.insert((&other.rival.effect, &other.rival.at)) {
+            has_sensor |= other.is_sensor;
+            rivals.push(other.rival.clone());
+        }
+    }
+    rivals
 }

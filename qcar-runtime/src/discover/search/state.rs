@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
-use super::{Finding, Progress};
+use super::{Finding, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::evidence::Evidence;
@@ -49,6 +49,37 @@ enum Unknown {
     Parameter(String, String),
     /// A coefficient of the sensors' errors.
     Coefficient(String, usize, Form),
+}
+
+/// What came of all candidates.
+pub struct Field {
+    /// Those that were fitted to the end, the very best first.
+    pub contenders: Vec<Contender>,
+    /// The others, those that came far first.
+    pub dropped: Vec<Behind>,
+}
+
+/// A candidate that is not the best.
+pub struct Behind {
+    /// As it is told of.
+    pub rival: Rival,
+    /// Whether it is a sensor.
+    pub is_sensor: bool,
+}
+
+impl Behind {
+    /// By so much; `early` where it was left behind before the end.
+    pub fn new(candidate: &Candidate, behind: f64, early: bool) -> Self {
+        Behind {
+            rival: Rival {
+                effect: candidate.effect.clone(),
+                at: candidate.at.clone(),
+                behind,
+                early,
+            },
+            is_sensor: candidate.is_sensor(),
+        }
+    }
 }
 
 /// A candidate that did well, and how well it explains.
@@ -114,7 +145,7 @@ impl State {
     ///
     /// # Errors
     /// Where a parameter has no value.
-    pub fn contenders(&self, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Contender>, PredictError> {
+    pub fn contenders(&self, evidence: &Evidence, progress: Progress<'_>) -> Result<Field, PredictError> {
         let candidates = self.workshop.candidates();
         progress(&format!("trying {} effects at their places", candidates.len()));
         let known = self.known();
@@ -134,13 +165,19 @@ impl State {
                 entered.push(place);
             }
         }
-        let finalists = contest(&entrants, &self.looks(evidence), progress)?;
+        let (finalists, dropped) = contest(&entrants, &self.looks(evidence), progress)?;
         let nuisance = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
         let finalists: Vec<_> = finalists
             .into_iter()
             .map(|f| (entered[f.entrant], nuisance(&f), f))
             .collect();
         drop(entrants);
+        let dropped = dropped
+            .iter()
+            .filter_map(|of| Some((candidates.get(entered[of.entrant])?, of.behind)));
+        let dropped = dropped
+            .map(|(candidate, behind)| Behind::new(candidate, behind, true))
+            .collect();
         let mut candidates: Vec<Option<Candidate>> = candidates.into_iter().map(Some).collect();
         let mut contenders = Vec::new();
         // The best form stands for the effect.
@@ -155,7 +192,7 @@ impl State {
                 contenders.push(contender);
             }
         }
-        Ok(contenders)
+        Ok(Field { contenders, dropped })
     }
 
     /// A candidate with what is known; `None` for a sensor that the evidence does not have.
@@ -301,7 +338,7 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
         all: evidence,
         tolerance: TOLERANCE,
     };
-    let best = contest(&[entrant], &looks, progress)?.into_iter().next();
+    let best = contest(&[entrant], &looks, progress)?.0.into_iter().next();
     best.map(|finalist| finalist.explanation).ok_or(PredictError::NoNumber)
 }
 
