@@ -11,7 +11,9 @@ use std::path::Path;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::evidence::means::Means;
+use qcar_runtime::discover::nuisance::{Form, Nuisance};
 use qcar_runtime::discover::predict::predict;
+use qcar_runtime::discover::refit::refit_with;
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;
@@ -48,14 +50,20 @@ impl Random {
     }
 }
 
-/// What is wrong with the recorder: its clock is late by so many samples, and the wheel's sensor reads so much too high.
+/// What is wrong with the recorder: its clock is late by so many samples, the wheel's sensor reads so much too high, and
+/// its sensors of both axes are late by so many samples more.
 #[derive(Clone, Copy)]
 struct Recorder {
     late: usize,
     gain: f64,
+    wheel: usize,
 }
 
-const RIGHT: Recorder = Recorder { late: 0, gain: 0.0 };
+const RIGHT: Recorder = Recorder {
+    late: 0,
+    gain: 0.0,
+    wheel: 0,
+};
 
 /// A campaign of cleat runs of the car with parameters `p`, its records `seconds` long.
 fn campaign(folder: &Path, p: &[f64], recorder: Recorder, seconds: f64) -> Campaign {
@@ -129,7 +137,8 @@ fn record(p: &[f64], road: &Road, speed: f64, recorder: Recorder, seconds: f64, 
             } else {
                 1.0
             };
-            let value = gain * output[i.saturating_sub(recorder.late)] + NOISE * random.normal();
+            let own = if name.contains("wheel") { recorder.wheel } else { 0 };
+            let value = gain * output[i.saturating_sub(recorder.late + own)] + NOISE * random.normal();
             let _ = write!(text, ",{value:.4}");
         }
         text.push('\n');
@@ -178,7 +187,11 @@ fn fitted(campaign: &Campaign) -> (Evidence, Refit, Gap) {
 #[test]
 fn a_late_clock_and_a_sensor_that_reads_high_leave_no_gap() {
     let folder = tempfile::tempdir().expect("a place for files");
-    let recorder = Recorder { late: 3, gain: 0.01 };
+    let recorder = Recorder {
+        late: 3,
+        gain: 0.01,
+        ..RIGHT
+    };
     let campaign = campaign(folder.path(), &parameters(), recorder, 1.4);
     let (evidence, refit, gap) = fitted(&campaign);
     assert_eq!(evidence.series.len(), 12);
@@ -198,6 +211,31 @@ fn a_late_clock_and_a_sensor_that_reads_high_leave_no_gap() {
             "{estimate}, made with {true_value}"
         );
     }
+}
+
+/// Each run is shifted to where it agrees best, and yet what is late against the others is seen.
+#[test]
+fn a_location_that_is_late_against_the_others_is_told_from_a_late_clock() {
+    let folder = tempfile::tempdir().expect("a place for files");
+    let recorder = Recorder {
+        late: 2,
+        wheel: 4,
+        ..RIGHT
+    };
+    let campaign = campaign(folder.path(), &parameters(), recorder, 1.4);
+    let (evidence, _, gap) = fitted(&campaign);
+    assert!(gap.fit > 1.5 && gap.held_out > 1.5, "{} {}", gap.fit, gap.held_out);
+
+    let model = Roller::new();
+    let (values, free) = (values(model.about(), 1.05), free(model.about()));
+    let suspecting = |location, axis| Nuisance::of(&evidence).suspecting(location, axis, Form::Delay, 0.02);
+    let late = suspecting("wheel", None).expect("both axes are there");
+    let refit = refit_with(&model, &values, &free, &evidence, late, 60).expect("it rolls");
+    let gap = Gap::of(&model, &refit, &evidence).expect("it rolls");
+    assert!(gap.fit < 1.1 && gap.held_out < 1.1, "{} {}", gap.fit, gap.held_out);
+    let delay = refit.coefficients[refit.nuisance.len() - 1];
+    assert!((delay - 0.004).abs() < 1e-4, "{delay} s");
+    assert_eq!(suspecting("pad", None), None);
 }
 
 #[test]
