@@ -90,7 +90,7 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// As [`load`]; a name that is not known is a mistake of the campaign where the user names none. Facts of the vehicle
 /// that nobody knows.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
-    let model = load(&wanted_or_campaigns(campaign, wanted)?)?;
+    let model = load(&named_by(campaign, wanted)?)?;
     check_vehicle(model.about(), campaign)?;
     Ok(model)
 }
@@ -100,10 +100,14 @@ pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, 
 /// # Errors
 /// As [`compiled`]; a name that is not known is a mistake of the campaign where the user names none.
 pub fn compiled_of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Compiled, Failure> {
-    compiled(&wanted_or_campaigns(campaign, wanted)?)
+    compiled(&named_by(campaign, wanted)?)
 }
 
-fn wanted_or_campaigns(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
+/// The name or path of the model that the user wants, else of the campaign's.
+///
+/// # Errors
+/// A name that is not known is a mistake of the campaign where the user names none.
+pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Failure> {
     if wanted.is_none() && models::find(&campaign.model).is_none() && !looks_like_a_path(&campaign.model) {
         let (place, found) = (Place::Name("model".into()), format!("`{}`", campaign.model));
         let remedy = format!("choose among {}, or give the path of a file with --model", listed());

@@ -4,7 +4,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
 use crate::verbs::{
-    check, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate, study,
+    check, compare, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate,
+    study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -32,6 +33,7 @@ enum Verb {
     Simulate(simulate::Arguments),
     Discover(discover::Arguments),
     Study(study::Arguments),
+    Compare(compare::Arguments),
     Score(score::Arguments),
     Effects(effects::Arguments),
     Patch(patch::Arguments),
@@ -53,6 +55,7 @@ impl Cli {
             Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Discover(arguments) => discover::run(&arguments),
             Verb::Study(arguments) => study::run(&arguments),
+            Verb::Compare(arguments) => compare::run(&arguments),
             Verb::Score(arguments) => score::run(&arguments),
             Verb::Effects(arguments) => effects::run(&arguments),
             Verb::Patch(arguments) => patch::run(&arguments),

@@ -2,6 +2,8 @@
 
 // What a file gives.
 mod file;
+// What a fit gives.
+mod fitted;
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,6 +16,7 @@ use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::spelling;
 
 use file::{ParameterFile, numbers};
+use fitted::Answer;
 
 /// `name=value`, as `--set` takes it.
 #[derive(Clone, Debug)]
@@ -47,10 +50,10 @@ pub fn resolve<'a>(
     paths: impl IntoIterator<Item = &'a Path>,
     settings: &[Setting],
 ) -> Result<Values, InputError> {
-    let mut file = ParameterFile::default();
-    for path in paths {
-        file.overlay(ParameterFile::read(path)?);
-    }
+    resolved(about, overlaid(paths)?, settings)
+}
+
+fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<Values, InputError> {
     let mut given = numbers(&file.parameters);
     given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
     let mut problems = wrong_units(about, &file);
@@ -67,6 +70,78 @@ pub fn resolve<'a>(
 pub fn check_vehicle(about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
     InputError::unless_empty(unknown_facts(about, &file), Some(()))
+}
+
+/// The same for two models, of which each takes what it has: a name is wrong that neither of them knows.
+///
+/// # Errors
+/// As [`resolve`].
+pub fn resolve_both<'a>(
+    abouts: [&About; 2],
+    paths: impl IntoIterator<Item = &'a Path> + Clone,
+    settings: &[Setting],
+) -> Result<[Values; 2], InputError> {
+    let knows = |about: &About, name: &str| about.parameters.iter().any(|parameter| parameter.name == *name);
+    let one = |own: &About, other: &About| {
+        let concerns = |name: &str| knows(own, name) || !knows(other, name);
+        let mut file = overlaid(paths.clone())?;
+        file.parameters.retain(|name, _| concerns(name));
+        let settings: Vec<Setting> = settings.iter().filter(|own| concerns(&own.name)).cloned().collect();
+        resolved(own, file, &settings)
+    };
+    Ok([one(abouts[0], abouts[1])?, one(abouts[1], abouts[0])?])
+}
+
+/// What a file says beside the values of parameters.
+pub struct Beside {
+    /// The name of the model to which they were fitted.
+    pub model: Option<String>,
+    /// Standard errors, where the file has them.
+    pub errors: BTreeMap<String, f64>,
+    /// Facts of the vehicle.
+    pub vehicle: BTreeMap<String, f64>,
+}
+
+impl Beside {
+    /// Reads a file as [`resolve`] takes it.
+    ///
+    /// # Errors
+    /// A file that cannot be read or understood.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let file = read(path)?;
+        let errors = file.parameters.iter();
+        Ok(Beside {
+            model: is_answer(path)
+                .then(|| Answer::read(path))
+                .transpose()?
+                .map(|answer| answer.model),
+            errors: errors
+                .filter_map(|(name, own)| Some((name.clone(), own.stderr?)))
+                .collect(),
+            vehicle: numbers(&file.vehicle),
+        })
+    }
+}
+
+fn overlaid<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<ParameterFile, InputError> {
+    let mut file = ParameterFile::default();
+    for path in paths {
+        file.overlay(read(path)?);
+    }
+    Ok(file)
+}
+
+fn read(path: &Path) -> Result<ParameterFile, InputError> {
+    if is_answer(path) {
+        Ok(Answer::read(path)?.parameters(path))
+    } else {
+        ParameterFile::read(path)
+    }
+}
+
+/// What a fit has written is JSON.
+fn is_answer(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension == "json")
 }
 
 /// What is computed from parameter values is a number.
@@ -91,7 +166,7 @@ pub fn require_finite<'a>(mut computed: impl Iterator<Item = &'a f64>) -> Result
 pub fn given(path: Option<&Path>, settings: &[Setting]) -> Result<BTreeMap<String, f64>, InputError> {
     let mut values = BTreeMap::new();
     if let Some(path) = path {
-        let file = ParameterFile::read(path)?;
+        let file = read(path)?;
         values.extend(numbers(&file.vehicle));
         values.extend(numbers(&file.parameters));
     }

@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+// Numbers as a page needs them.
+pub mod rounded;
+
 const TEMPLATE: &str = include_str!("report/page.html");
 
 /// Drawing of plots: uPlot 1.6.32, whose licence is beside it.
@@ -16,14 +19,21 @@ const STYLE: [&str; 3] = [
     include_str!("report/css/figures.css"),
 ];
 
-/// In the order in which they use each other; the last one starts.
-const SCRIPTS: [&str; 17] = [
+/// What every report draws with, in the order in which they use each other.
+const SCRIPTS: [&str; 7] = [
     include_str!("report/js/format.js"),
     include_str!("report/js/dom.js"),
     include_str!("report/js/plot.js"),
     include_str!("report/js/keys.js"),
     include_str!("report/js/layout.js"),
     include_str!("report/js/axle.js"),
+    include_str!("report/js/page.js"),
+];
+
+/// The sections of a study; the last one starts.
+const STUDY: [&str; 13] = [
+    include_str!("report/js/shapes.js"),
+    include_str!("report/js/changes.js"),
     include_str!("report/js/verdict.js"),
     include_str!("report/js/curves.js"),
     include_str!("report/js/rig.js"),
@@ -34,18 +44,50 @@ const SCRIPTS: [&str; 17] = [
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),
     include_str!("report/js/limits.js"),
-    include_str!("report/js/main.js"),
+    include_str!("report/js/study.js"),
 ];
 
-/// The report of a study.
-pub fn page(title: &str, data: &impl Serialize) -> String {
+/// The sections of a comparison; the last one starts.
+const COMPARISON: [&str; 10] = [
+    include_str!("report/js/shapes.js"),
+    include_str!("report/js/changes.js"),
+    include_str!("report/js/compare/sides.js"),
+    include_str!("report/js/compare/summary.js"),
+    include_str!("report/js/compare/moves.js"),
+    include_str!("report/js/compare/vibrations.js"),
+    include_str!("report/js/compare/gradients.js"),
+    include_str!("report/js/compare/ratios.js"),
+    include_str!("report/js/compare/passages.js"),
+    include_str!("report/js/compare/comparison.js"),
+];
+
+/// What a page reports.
+#[derive(Clone, Copy)]
+pub enum Report {
+    /// A campaign, worked through by all verbs.
+    Study,
+    /// Two sides.
+    Comparison,
+}
+
+impl Report {
+    fn sections(self) -> &'static [&'static str] {
+        match self {
+            Report::Study => &STUDY,
+            Report::Comparison => &COMPARISON,
+        }
+    }
+}
+
+/// A report.
+pub fn page(report: Report, title: &str, data: &impl Serialize) -> String {
     let mut out = String::new();
     for part in TEMPLATE.split("{{").enumerate() {
         match part {
             (0, text) => out += text,
             (_, part) => {
                 let (slot, text) = part.split_once("}}").expect("the template closes its slots");
-                out += &filled(slot, title, data);
+                out += &filled(slot, report, title, data);
                 out += text;
             }
         }
@@ -53,13 +95,13 @@ pub fn page(title: &str, data: &impl Serialize) -> String {
     out
 }
 
-fn filled(slot: &str, title: &str, data: &impl Serialize) -> String {
+fn filled(slot: &str, report: Report, title: &str, data: &impl Serialize) -> String {
     match slot {
         "title" => escaped(title),
         "style" => UPLOT[0].to_string() + "\n" + &STYLE.join("\n"),
         "uplot" => UPLOT[1].to_string(),
         "data" => inert(data),
-        "script" => SCRIPTS.join("\n"),
+        "script" => [&SCRIPTS, report.sections()].concat().join("\n"),
         other => unreachable!("the template has no slot {other}"),
     }
 }
@@ -76,11 +118,11 @@ fn escaped(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::page;
+    use super::{Report, page};
 
     #[test]
     fn data_cannot_leave_its_script() {
-        let page = page("a < b", &"</script><script>alert(1)</script>");
+        let page = page(Report::Study, "a < b", &"</script><script>alert(1)</script>");
         assert!(!page.contains("alert(1)</script>"));
         assert!(page.contains("\\u003c/script>\\u003cscript>alert(1)"));
         assert!(page.contains("<title>a &lt; b</title>"));
@@ -88,7 +130,9 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let page = page("t", &0);
+        let pages = [Report::Study, Report::Comparison]
+            .map(|report| page(report, "t", &0))
+            .concat();
         for loader in [
             "src=",
             "href=\"http",
@@ -98,7 +142,7 @@ mod tests {
             "XMLHttpRequest",
             "WebSocket",
         ] {
-            assert!(!page.contains(loader), "{loader}");
+            assert!(!pages.contains(loader), "{loader}");
         }
     }
 }

@@ -2,11 +2,12 @@
 
 use std::path::PathBuf;
 
-use clap::Args;
+use clap::{Args, ValueEnum};
 
 use crate::parameters::Setting;
 
 pub mod check;
+pub mod compare;
 pub mod completions;
 pub mod diff;
 pub mod discover;
@@ -33,4 +34,19 @@ pub struct ModelArguments {
     /// One value, in place of that of the file; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
+}
+
+/// How a result is printed.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum Format {
+    Text,
+    Json,
+}
+
+/// How a result that is one table is printed.
+#[derive(Clone, Copy, ValueEnum)]
+pub(crate) enum TableFormat {
+    Text,
+    Json,
+    Csv,
 }

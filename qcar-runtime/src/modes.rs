@@ -56,6 +56,47 @@ pub fn modes(model: &dyn Model, values: &Values) -> Vec<Mode> {
     modes
 }
 
+/// Modes of two models that are the same vibration, by their places in both lists; each mode is in one pair at most.
+///
+/// The likeliest pairs are taken first, down to one half, below which a mode is hardly the same any more.
+pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
+    let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
+    let mut likely: Vec<_> = all.map(|(a, b)| (likeness(&first[a], &second[b]), a, b)).collect();
+    likely.sort_by(|one, other| other.0.total_cmp(&one.0));
+    let mut pairs: Vec<(usize, usize)> = Vec::new();
+    for (likeness, a, b) in likely {
+        if likeness >= 0.5 && pairs.iter().all(|pair| pair.0 != a && pair.1 != b) {
+            pairs.push((a, b));
+        }
+    }
+    pairs.sort_unstable();
+    pairs
+}
+
+/// The modal assurance criterion `|a·b|² / (|a|² |b|²)` over the points that both models have (Allemang, "The Modal
+/// Assurance Criterion", Sound and Vibration 37 (2003)), times how much of both modes these points are: a vibration of
+/// what only one model has is like none of the other.
+fn likeness(first: &Mode, second: &Mode) -> f64 {
+    let shared = |one: &Part, among: &Mode| {
+        let mut others = among.shape.iter();
+        let same = others.find(|other| (&other.location, &other.axis) == (&one.location, &one.axis));
+        same.map(|other| other.amplitude)
+    };
+    let square = |of: &Mode, among: &Mode| {
+        let common = of.shape.iter().filter(|part| shared(part, among).is_some());
+        common.map(|part| part.amplitude.norm_sqr()).sum::<f64>()
+    };
+    let product = |part: &Part| Some(part.amplitude.conj() * shared(part, second)?);
+    let product: Complex<f64> = first.shape.iter().filter_map(product).sum();
+    let whole = (square(first, first) * square(second, second)).sqrt();
+    let common = (square(first, second) * square(second, first)).sqrt();
+    if common > 0.0 {
+        product.norm_sqr() / (common * whole)
+    } else {
+        0.0
+    }
+}
+
 /// A at rest.
 fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
     let about = model.about();

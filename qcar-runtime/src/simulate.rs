@@ -22,6 +22,8 @@ mod recorder;
 mod ride;
 // Those that a campaign has measured.
 mod cleat;
+// Those of the thesis.
+mod standard;
 // A recorded signal between its samples.
 mod wave;
 // What a rig has done to a model.
@@ -30,10 +32,11 @@ mod recorded;
 mod replay;
 
 pub use car::{Car, Variant};
-pub use cleat::{Cleat, tyre};
+pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
 pub use recorded::{Between, Record, Recorded};
 pub use replay::{Replay, replay};
 pub use ride::{Drive, Ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};
+pub use standard::Standard;

@@ -40,6 +40,8 @@ pub struct Stated {
     pub value: f64,
     /// Where the file declares one.
     pub unit: Option<String>,
+    /// Standard error, where the file knows it.
+    pub stderr: Option<f64>,
     /// Which file.
     pub file: PathBuf,
     /// Where in it.
@@ -181,6 +183,7 @@ impl Reader<'_> {
         Some(Stated {
             value: finite,
             unit: unit.map(String::from),
+            stderr: None,
             file: self.path.into(),
             place: self.place(name.span().start, &key),
         })

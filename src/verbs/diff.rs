@@ -1,12 +1,13 @@
 //! `qcar diff`: in what two models differ.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use qcar_dsl::difference::{Changed, Difference, difference};
 use serde::Serialize;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::json::{self, Ordered};
+use crate::verbs::Format;
 
 /// Show what a model has that another has not: parameters, masses, links, equations
 #[derive(Args)]
@@ -21,12 +22,6 @@ pub struct Arguments {
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// One line before and after.

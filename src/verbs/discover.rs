@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
@@ -20,6 +20,7 @@ use crate::failure::Failure;
 use crate::files::put;
 use crate::parameters::check_vehicle;
 use crate::progress::Showing;
+use crate::verbs::Format;
 use crate::workshop::Bench;
 
 // The answer as text and JSON.
@@ -46,12 +47,6 @@ pub struct Arguments {
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// A campaign, and what was found in it.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::Instant;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::measure::levels;
@@ -17,6 +17,7 @@ use qcar_runtime::transmissibility::Options;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::progress::while_counting;
+use crate::verbs::Format;
 
 // What K&C curves say beside it.
 mod clamped;
@@ -75,12 +76,6 @@ impl Choices {
             ..Choices::default()
         }
     }
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// Does it.

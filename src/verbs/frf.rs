@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use nalgebra::Complex;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Channel, Model, Signal};
@@ -15,7 +15,7 @@ use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
 use crate::table::{Table, number};
-use crate::verbs::ModelArguments;
+use crate::verbs::{ModelArguments, TableFormat};
 
 /// Print the frequency response of the channels of a model
 #[derive(Args)]
@@ -32,20 +32,13 @@ pub struct Arguments {
     #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:30:300")]
     frequencies: Frequencies,
     /// How to print; JSON holds the parameter Jacobian too
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    format: TableFormat,
 }
 
 /// Logarithmically spaced frequencies.
 #[derive(Clone, Debug, PartialEq)]
-struct Frequencies {
+pub(crate) struct Frequencies {
     from: f64,
     to: f64,
     lines: usize,
@@ -76,7 +69,7 @@ impl FromStr for Frequencies {
 
 impl Frequencies {
     /// In Hz; the first and the last are exact.
-    fn values(&self) -> Vec<f64> {
+    pub(crate) fn values(&self) -> Vec<f64> {
         let last = self.lines - 1;
         let ratio = self.to / self.from;
         let at = |i: usize| match i {
@@ -105,9 +98,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(values.flat_map(|channel| channel.re.iter().chain(&channel.im)))?;
     Ok(match arguments.format {
-        Format::Text => text(&response, &frequency),
-        Format::Json => json::line(&response),
-        Format::Csv => csv(&response, &frequency),
+        TableFormat::Text => text(&response, &frequency),
+        TableFormat::Json => json::line(&response),
+        TableFormat::Csv => csv(&response, &frequency),
     })
 }
 
@@ -196,7 +189,7 @@ fn respond(
 }
 
 /// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.
-fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
+pub(crate) fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     let Signal { location, axis, .. } = &channel.denominator;
     let along = || about.excitations.iter().enumerate().filter(|(_, of)| of.axis == *axis);
     let found = along()

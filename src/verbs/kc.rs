@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
@@ -14,6 +14,7 @@ use crate::failure::Failure;
 use crate::json;
 use crate::parameters;
 use crate::table::{Table, number};
+use crate::verbs::Format;
 
 // Start values in campaign.toml.
 mod write;
@@ -32,12 +33,6 @@ pub struct Arguments {
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// What a curve says.

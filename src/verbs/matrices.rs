@@ -1,6 +1,6 @@
 //! `qcar matrices`: the state-space matrices and their parameter Jacobians.
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
@@ -9,7 +9,7 @@ use crate::json;
 use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space};
 use crate::table::{Table, number};
-use crate::verbs::ModelArguments;
+use crate::verbs::{Format, ModelArguments};
 
 /// Print A, B, C, D and their derivatives by every parameter
 #[derive(Args)]
@@ -25,12 +25,6 @@ pub struct Arguments {
     /// How to print; JSON holds the parameter Jacobians too
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
 }
 
 /// Does it.

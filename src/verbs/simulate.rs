@@ -13,6 +13,7 @@ use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
+use crate::verbs::TableFormat;
 
 // Simulated beside measured.
 pub(crate) mod compared;
@@ -48,8 +49,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// How to print
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    format: Format,
+    #[arg(long, value_enum, default_value_t = TableFormat::Text)]
+    format: TableFormat,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -60,13 +61,6 @@ enum VariantName {
     Locked,
     /// Locked, and the tyre feels the height below the wheel's centre alone
     Vertical,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-    Csv,
 }
 
 /// Does it.
@@ -83,9 +77,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
     let guessed = guessed(&campaign, &model, &values);
     Ok(match arguments.format {
-        Format::Text => render::text(&driven.compared, &guessed),
-        Format::Json => render::json(&campaign, &model, &driven.compared, &guessed),
-        Format::Csv => render::csv(&driven.compared),
+        TableFormat::Text => render::text(&driven.compared, &guessed),
+        TableFormat::Json => render::json(&campaign, &model, &driven.compared, &guessed),
+        TableFormat::Csv => render::csv(&driven.compared),
     })
 }
 

@@ -2,25 +2,24 @@
 
 use std::path::PathBuf;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 
 use crate::failure::Failure;
 use crate::files::put;
 use crate::json;
-use crate::report;
+use crate::report::{Report, page};
+use crate::verbs::Format;
 
 // All verbs on one campaign.
 mod gather;
-// Numbers as a page needs them.
-mod rounded;
 // The masses and links of a model.
-mod axle;
+pub(crate) mod axle;
 // Cycles of the K&C rig.
 mod loops;
 // Measured and modelled ratios.
-mod rig;
+pub(crate) mod rig;
 // Natural vibrations.
-mod shapes;
+pub(crate) mod shapes;
 // Cleat runs, their errors and variants.
 mod track;
 // Where the gap is, and what explains it.
@@ -52,12 +51,6 @@ pub struct Arguments {
     format: Format,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum Format {
-    Text,
-    Json,
-}
-
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let study = gather::gather(&arguments.campaign, arguments.model.as_deref(), &arguments.out)?;
@@ -65,7 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let json = json::line(&contents.result);
     put(&arguments.out, "study.json", &json)?;
     let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
-    put(&arguments.out, "report.html", &report::page(&title, &contents))?;
+    put(&arguments.out, "report.html", &page(Report::Study, &title, &contents))?;
     let result = match arguments.format {
         Format::Text => summary::text(&study, &contents.result.summary, &arguments.out),
         Format::Json => json,

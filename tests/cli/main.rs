@@ -8,6 +8,7 @@ mod effects;
 mod fits;
 mod help;
 mod interruption;
+mod json_reference;
 mod newcomer;
 mod readme;
 mod rides;

@@ -1,5 +1,7 @@
 //! Cleat runs of a campaign, ready to be driven again.
 
+use std::path::Path;
+
 use crate::campaign::{Campaign, History, Run, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::road::Road;
@@ -63,21 +65,28 @@ fn road(campaign: &Campaign, name: &str) -> Result<Road, InputError> {
 /// # Errors
 /// Where `[vehicle]` lacks `r_tire`, `static_tire_def` or `static_tire_load`, or where they make no tyre.
 pub fn tyre(campaign: &Campaign) -> Result<(Tyre, f64), InputError> {
-    let radius = fact(campaign, "r_tire", "m")?;
-    let deflection = fact(campaign, "static_tire_def", "m")?;
-    let load = fact(campaign, "static_tire_load", "N")?;
+    tyre_of(&|name| campaign.vehicle(name), &campaign.manifest())
+}
+
+/// The same of any vehicle, whose facts stand in `file`.
+///
+/// # Errors
+/// As [`tyre`].
+pub fn tyre_of(vehicle: &dyn Fn(&str) -> Option<f64>, file: &Path) -> Result<(Tyre, f64), InputError> {
+    let fact = |name: &str, unit: &str| vehicle(name).ok_or_else(|| missing(file, name, unit));
+    let radius = fact("r_tire", "m")?;
+    let deflection = fact("static_tire_def", "m")?;
+    let load = fact("static_tire_load", "N")?;
     let tyre = Tyre::new(radius, deflection, Geometry::Area, Rates::AtStaticDeflection).map_err(|error| {
         let (place, remedy) = (Place::Name("vehicle".into()), "correct r_tire and static_tire_def");
         let (found, expected) = (error.to_string(), "a tyre that carries the car");
-        Problem::new(campaign.manifest(), place, found, expected, remedy)
+        Problem::new(file, place, found, expected, remedy)
     })?;
     Ok((tyre, load))
 }
 
-fn fact(campaign: &Campaign, name: &str, unit: &str) -> Result<f64, InputError> {
-    campaign.vehicle(name).ok_or_else(|| {
-        let (place, remedy) = (Place::Name("vehicle".into()), format!("add `{name} = …` in {unit}"));
-        let (found, expected) = (format!("no `{name}`"), "what a rolling tyre needs");
-        Problem::new(campaign.manifest(), place, found, expected, remedy).into()
-    })
+fn missing(file: &Path, name: &str, unit: &str) -> InputError {
+    let (place, remedy) = (Place::Name("vehicle".into()), format!("add `{name} = …` in {unit}"));
+    let (found, expected) = (format!("no `{name}`"), "what a rolling tyre needs");
+    Problem::new(file, place, found, expected, remedy).into()
 }

@@ -108,3 +108,8 @@ function equationSheet(text) {
 function key(role, text) {
   return h('span', { class: `key ${role}` }, text);
 }
+
+// One of the few numbers at the head of a report.
+function answer(title, ...lines) {
+  return h('div', { class: 'answer' }, h('h3', {}, title), lines);
+}

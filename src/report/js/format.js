@@ -38,6 +38,12 @@ function percent(share, digits = 2) {
   return share === null || !Number.isFinite(share) ? '–' : `${number(100 * share, digits)} %`;
 }
 
+// A relative change with its sign.
+function signed(share, digits = 2) {
+  if (share === null || share === undefined || !Number.isFinite(share)) return '–';
+  return `${share > 0 ? '+' : ''}${percent(share, digits)}`;
+}
+
 // In how many of a larger unit an SI value is best read.
 const SCALES = {
   'N/m': [1e-3, 'N/mm'],

@@ -9,10 +9,13 @@ function colour(name) {
 // What a curve stands for decides how it is drawn, everywhere.
 const ROLES = {
   measured: { label: 'measured', width: 4 },
+  'measured-a': { label: 'measured A', width: 4 },
+  'measured-b': { label: 'measured B', width: 4 },
   band: { label: 'band', width: 0 },
   start: { label: 'start values', width: 1.1, dash: [2, 4] },
   before: { label: 'before', width: 1.6, dash: [7, 4] },
   after: { label: 'after', width: 1.6 },
+  change: { label: 'B over A', width: 1.6 },
   locked: { label: 'locked', width: 1.4, dash: [7, 4] },
   vertical: { label: 'vertical', width: 1.4, dash: [2, 3] },
 };
@@ -43,6 +46,27 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
   reachable(place, chart);
   new ResizeObserver(() => resize(chart, place, height)).observe(place);
   return chart;
+}
+
+// The axis of a transmissibility.
+const FREQUENCY = {
+  label: 'frequency, Hz',
+  log: true,
+  ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
+};
+
+// The axes of an acceleration over time.
+const SECONDS = { label: 'time, s' };
+const ACCELERATION = { label: 'acceleration, m/s²' };
+
+// The place of such a plot.
+function traceColumn(trace, kind) {
+  return h(
+    'div',
+    { class: 'column' },
+    h('h4', {}, `${words(trace.mass)}, ${trace.axis}`),
+    figure(kind, null, h('div', { class: 'canvas' })),
+  );
 }
 
 function seriesOf({ role, label, values, hidden }, digits) {

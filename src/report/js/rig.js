@@ -66,12 +66,6 @@ function ratioFigure(ratio) {
   );
 }
 
-const FREQUENCY = {
-  label: 'frequency, Hz',
-  log: true,
-  ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
-};
-
 function ratioPlots(ratio, column) {
   const [magnitude, phase, coherence] = column.querySelectorAll('.canvas');
   const common = { x: FREQUENCY, at: ratio.frequency, sync: 'rig' };

@@ -67,9 +67,6 @@ function track({ track: own, simulate }) {
   };
 }
 
-const SECONDS = { label: 'time, s' };
-const ACCELERATION = { label: 'acceleration, m/s²' };
-
 function drawTraces(run, place) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
   place.replaceChildren(...traces.map((trace) => traceColumn(trace, 'trace')));
@@ -85,15 +82,6 @@ function drawTraces(run, place) {
         ...(trace.after ? [{ role: 'after', values: trace.after }] : []),
       ],
     }),
-  );
-}
-
-function traceColumn(trace, kind) {
-  return h(
-    'div',
-    { class: 'column' },
-    h('h4', {}, `${words(trace.mass)}, ${trace.axis}`),
-    figure(kind, null, h('div', { class: 'canvas' })),
   );
 }
 

@@ -44,10 +44,6 @@ function consequence(discover, { verdict: kind }) {
   }
 }
 
-function answer(title, ...lines) {
-  return h('div', { class: 'answer' }, h('h3', {}, title), lines);
-}
-
 // A value before and after in the colours of both.
 function step(what, before, after) {
   return h(

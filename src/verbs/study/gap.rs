@@ -7,7 +7,7 @@ use qcar_runtime::discover::{Kappa, Place, kappa_map, refit};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::rounded::{curve, rounded};
+use crate::report::rounded::{curve, rounded};
 
 /// A part of the gap.
 #[derive(Serialize)]

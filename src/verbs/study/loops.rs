@@ -4,7 +4,7 @@ use qcar_runtime::campaign::{Campaign, Run, Test};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::rounded::curve;
+use crate::report::rounded::curve;
 
 /// A cycle of force over displacement.
 #[derive(Serialize)]

@@ -12,7 +12,7 @@ use qcar_runtime::response::ratio::ratio;
 use serde::Serialize;
 
 use super::gather::{After, Study};
-use super::rounded::curve;
+use crate::report::rounded::curve;
 use crate::verbs::fit::files::{Compared, compare};
 
 /// A channel in a run.
@@ -41,11 +41,11 @@ pub struct Ratio {
 
 /// Magnitude and phase.
 #[derive(Serialize)]
-struct Polar {
+pub struct Polar {
     /// dB.
-    magnitude: Vec<f64>,
+    pub magnitude: Vec<f64>,
     /// Degrees.
-    phase: Vec<f64>,
+    pub phase: Vec<f64>,
 }
 
 /// All ratios that were measured.
@@ -82,7 +82,8 @@ fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
 }
 
 impl Polar {
-    fn new(values: &[Complex<f64>], phase: &[f64]) -> Self {
+    /// Values, with their phases (rad) on the turn that is to be shown.
+    pub fn new(values: &[Complex<f64>], phase: &[f64]) -> Self {
         Polar {
             magnitude: curve(values.iter().map(|value| 20.0 * value.norm().log10())),
             phase: curve(phase.iter().map(|phase| phase.to_degrees())),
@@ -98,7 +99,8 @@ fn known(of: &Observation, values: &[Complex<f64>]) -> Quality {
     quality(&frequency, &at(values), &at(&of.value))
 }
 
-fn band(of: &Observation) -> Polar {
+/// What the measurement may be off by, to either side.
+pub fn band(of: &Observation) -> Polar {
     let spread = of.spread();
     Polar {
         magnitude: curve(spread.iter().map(|spread| 20.0 * spread.re / std::f64::consts::LN_10)),
@@ -107,7 +109,7 @@ fn band(of: &Observation) -> Polar {
 }
 
 /// Phases without jumps from line to line, rad.
-fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
+pub fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
     let mut last = 0.0;
     let phases = values.iter().map(|value| {
         last = close(value.arg(), last);
@@ -117,7 +119,7 @@ fn unwrapped(values: &[Complex<f64>]) -> Vec<f64> {
 }
 
 /// Phases on the turn of others.
-fn nearest(values: &[Complex<f64>], others: &[f64]) -> Vec<f64> {
+pub fn nearest(values: &[Complex<f64>], others: &[f64]) -> Vec<f64> {
     values
         .iter()
         .zip(others)
@@ -185,7 +187,7 @@ impl<'a> Changed<'a> {
 }
 
 /// On the straight line between two neighbours; NaN outside.
-fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
+pub fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
     let right = at.partition_point(|&f| f < wanted);
     match (right.checked_sub(1), at.get(right)) {
         (_, Some(&f)) if f == wanted => values[right],

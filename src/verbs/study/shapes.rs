@@ -4,7 +4,7 @@ use qcar_runtime::modes::{Mode, Part, modes};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::rounded::rounded;
+use crate::report::rounded::rounded;
 
 /// Before and after.
 #[derive(Serialize)]
@@ -15,11 +15,11 @@ pub struct Shapes {
 
 /// A natural vibration.
 #[derive(Serialize)]
-struct Shape {
+pub struct Shape {
     /// Hz.
-    frequency: f64,
+    pub frequency: f64,
     /// Damping ratio.
-    damping: f64,
+    pub damping: f64,
     parts: Vec<Moving>,
 }
 
@@ -43,7 +43,8 @@ pub fn shapes(of: &Study) -> Shapes {
     }
 }
 
-fn shape(of: &Mode) -> Shape {
+/// A vibration as a page needs it.
+pub fn shape(of: &Mode) -> Shape {
     let moving = |part: &Part| Moving {
         point: part.location.clone(),
         axis: part.axis.clone(),

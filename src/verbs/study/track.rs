@@ -9,7 +9,7 @@ use qcar_runtime::simulate::{Cleat, Ride};
 use serde::Serialize;
 
 use super::gather::{self, Study};
-use super::rounded::curve;
+use crate::report::rounded::curve;
 use crate::verbs::simulate::Driven;
 use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
 

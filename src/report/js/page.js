@@ -1,25 +1,14 @@
-// The report from top to bottom.
+// The frame of every report: its head, its list of sections, and what holds for all of it.
 
-function build() {
-  const data = JSON.parse(document.getElementById('data').textContent);
-  const parts = [
-    verdict(data),
-    axles(data),
-    curves(data),
-    rig(data),
-    parameters(data),
-    modes(data),
-    track(data),
-    discovery(data),
-    record(data),
-    limits(data),
-  ].filter((part) => part !== null);
+// A section is `{element, draw?}`; the first one stands above the list.
+function assemble(head, sections) {
+  const parts = sections.filter((part) => part !== null);
   const links = parts
     .filter((part) => part.element.id)
     .map(({ element }) => h('li', {}, h('a', { href: `#${element.id}` }, element.querySelector('h2').textContent)));
   const page = document.getElementById('report');
   page.replaceChildren(
-    heading(data),
+    head,
     parts[0].element,
     h('nav', { 'aria-label': 'Contents' }, h('ol', {}, links.slice(1))),
     ...parts.slice(1).map((part) => part.element),
@@ -27,13 +16,17 @@ function build() {
   parts.forEach((part) => part.draw && part.draw());
 }
 
-function heading(data) {
+function reported() {
+  return JSON.parse(document.getElementById('data').textContent);
+}
+
+function heading(kind, title, ...subject) {
   return h(
     'header',
     {},
-    h('p', { class: 'kind' }, 'Campaign study'),
-    h('h1', {}, data.campaign),
-    h('p', { class: 'subject' }, `Model ${data.model}: ${lowered(data.record.model_doc)}`),
+    h('p', { class: 'kind' }, kind),
+    h('h1', {}, title),
+    h('p', { class: 'subject' }, subject),
     themeButton(),
   );
 }
@@ -73,4 +66,3 @@ addEventListener('beforeprint', () =>
     part.open = true;
   }),
 );
-build();

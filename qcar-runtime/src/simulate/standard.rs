@@ -1,0 +1,83 @@
+//! The cleat runs of thesis table 3.3, for an axle of which none was measured.
+
+use super::ride::Drive;
+use crate::road::{Road, RoadError, Shape};
+
+/// A run over a cleat that nobody has measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Standard {
+    /// m/s.
+    pub speed: f64,
+    /// Of the cleat, m.
+    pub height: f64,
+    /// What is driven over.
+    pub road: Road,
+}
+
+/// m/s.
+const SPEEDS: [f64; 3] = [20.0 / 3.6, 30.0 / 3.6, 40.0 / 3.6];
+/// m.
+const HEIGHTS: [f64; 4] = [0.01, 0.02, 0.03, 0.04];
+/// The straight part of the descent behind the step, and its return to the flat, m: those of a common test track.
+const DESCENT: f64 = 0.4;
+const BLEND: f64 = 0.17;
+/// Flat road before the cleat, m.
+const RUN_IN: f64 = 1.5;
+
+const SAMPLE_RATE: f64 = 1000.0;
+/// s: the run-in at the lowest speed, the impact of 0.1 s and an after-shake of a second.
+const DURATION: f64 = 1.5;
+
+impl Standard {
+    /// All twelve, each speed with its heights.
+    ///
+    /// # Errors
+    /// None, as long as the shape of the cleat is a road.
+    pub fn all() -> Result<Vec<Self>, RoadError> {
+        let conditions = SPEEDS
+            .iter()
+            .flat_map(|&speed| HEIGHTS.iter().map(move |&height| (speed, height)));
+        let run = |(speed, height)| {
+            let road = road(height, speed * DURATION)?;
+            Ok(Self { speed, height, road })
+        };
+        conditions.map(run).collect()
+    }
+
+    /// The whole run.
+    pub fn drive(&self) -> Drive<'_> {
+        Drive {
+            road: &self.road,
+            speed: self.speed,
+            sample_rate: SAMPLE_RATE,
+            samples: (DURATION * SAMPLE_RATE) as usize,
+        }
+    }
+}
+
+/// A cleat on a road of a length (m).
+fn road(height: f64, length: f64) -> Result<Road, RoadError> {
+    let (descent, blend) = (DESCENT, BLEND);
+    let cleat = Road::from_shape(&Shape::Cleat { height, descent, blend }, RUN_IN)?;
+    let end = cleat.extent()[1].max(length);
+    let points = cleat.vertices().iter().copied().chain([[end, 0.0]]);
+    Road::from_points(&points.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Standard;
+
+    #[test]
+    fn every_road_is_long_enough_for_its_run() {
+        let all = Standard::all().unwrap();
+        assert_eq!(all.len(), 12);
+        for run in all {
+            let drive = run.drive();
+            let travelled = drive.speed * drive.samples as f64 / drive.sample_rate;
+            assert!(run.road.check_reaches(travelled).is_ok());
+            let highest = run.road.vertices().iter().map(|point| point[1]).fold(0.0, f64::max);
+            assert_eq!(highest, run.height);
+        }
+    }
+}

@@ -1,0 +1,68 @@
+//! What `qcar fit` has written: `fit.json`, which has standard errors beside the values. `study.json` holds one, too.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use qcar_runtime::error::{InputError, Place, Problem};
+use serde::Deserialize;
+use serde_json::Value;
+
+use super::file::{ParameterFile, Stated};
+use crate::files::read_text;
+
+/// What of it is of interest here.
+#[derive(Deserialize)]
+pub(super) struct Answer {
+    /// The name of the model.
+    pub model: String,
+    parameters: BTreeMap<String, Parameter>,
+}
+
+#[derive(Deserialize)]
+struct Parameter {
+    value: f64,
+    unit: String,
+    stderr: Option<f64>,
+    tied_to: Option<String>,
+}
+
+impl Answer {
+    /// Reads a file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is not JSON, or is not the answer of a fit.
+    pub fn read(path: &Path) -> Result<Self, InputError> {
+        let text = read_text(path)?;
+        let json: Value = serde_json::from_str(&text).map_err(|error| {
+            let place = Place::Key(error.line(), error.column(), String::new());
+            let remedy = "write the file again with `qcar fit --out`";
+            Problem::new(path, place, error.to_string(), "JSON", remedy)
+        })?;
+        let fit = json.get("fit").unwrap_or(&json);
+        Answer::deserialize(fit).map_err(|error| {
+            let remedy = "give the fit.json of `qcar fit --out`, or a TOML file with [parameters]";
+            let expected = "the answer of a fit, with its model and parameters";
+            Problem::new(path, Place::File, error.to_string(), expected, remedy).into()
+        })
+    }
+
+    /// The values; what takes the value of another parameter is left to do so.
+    pub fn parameters(&self, path: &Path) -> ParameterFile {
+        let own = self.parameters.iter().filter(|(_, own)| own.tied_to.is_none());
+        let stated = own.map(|(name, own)| {
+            let stated = Stated {
+                value: own.value,
+                unit: Some(own.unit.clone()),
+                stderr: own.stderr,
+                file: path.into(),
+                place: Place::Name(format!("parameters.{name}")),
+            };
+            (name.clone(), stated)
+        });
+        ParameterFile {
+            path: path.into(),
+            parameters: stated.collect(),
+            vehicle: BTreeMap::new(),
+        }
+    }
+}

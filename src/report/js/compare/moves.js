@@ -1,0 +1,78 @@
+// The parameters side by side, those that moved most first.
+
+function moves({ parameters: all, a, b }) {
+  const differing = all.filter((own) => own.moved || own.a === null || own.b === null);
+  const equal = all.filter((own) => !differing.includes(own) && own.tied_to === null);
+  const size = (own) => (own.relative === null ? Infinity : Math.abs(own.relative));
+  differing.sort((first, second) => size(second) - size(first));
+  const known = differing.some((own) => own.standard_errors !== null);
+  const most = Math.max(...differing.map((own) => (own.relative === null ? 0 : Math.abs(own.relative))));
+  const element = section(
+    'moves',
+    'Parameters',
+    h(
+      'p',
+      {},
+      bothKeys((own, letter) => `${letter}, ${(own === 'a' ? a : b).name}`),
+      known
+        ? '. The last column is the difference over the combined standard error of both: beyond 2 it is more than the errors of the fits.'
+        : '.',
+    ),
+    differing.length ? moveTable('What differs', differing, known, most) : null,
+    equal.length
+      ? details(
+          `${equal.length} that ${equal.length === 1 ? 'is' : 'are'} equal`,
+          table(
+            'Equal parameters',
+            [
+              ['parameter', 'text'],
+              ['value', 'number'],
+              ['what it is', 'text'],
+            ],
+            equal.map((own) => [own.name, given(own.a, own.unit), own.doc]),
+            { class: 'table prose' },
+          ),
+        )
+      : null,
+  );
+  return { element };
+}
+
+function moveTable(title, rows, known, most) {
+  const side = (value, error, unit) => (value === null ? '–' : error === null ? given(value, unit) : measured(value, error, unit));
+  return table(
+    title,
+    [
+      ['parameter', 'text'],
+      ['A', 'number'],
+      ['B', 'number'],
+      ['difference', 'number'],
+      ['change', 'number'],
+      ['', 'text'],
+      ...(known ? [['standard errors', 'number']] : []),
+      ['what it is', 'text'],
+    ],
+    rows.map((own) => [
+      own.name,
+      h('span', { class: 'before' }, side(own.a, own.stderr_a, own.unit)),
+      h('span', { class: 'after' }, side(own.b, own.stderr_b, own.unit)),
+      own.difference === null ? '–' : quantity(own.difference, own.unit),
+      signed(own.relative, 3),
+      changeBar(own.relative, most),
+      ...(known ? [own.standard_errors === null ? '–' : number(own.standard_errors, 2)] : []),
+      own.doc,
+    ]),
+    { class: 'table prose' },
+  );
+}
+
+// A change as a bar to the right of zero, or to its left.
+function changeBar(share, most) {
+  if (share === null || !(most > 0)) return '';
+  const length = (50 * Math.abs(share)) / most;
+  return h(
+    'span',
+    { class: 'delta', 'aria-hidden': 'true' },
+    h('span', { style: `left:${share < 0 ? 50 - length : 50}%;width:${length}%` }),
+  );
+}

@@ -1,0 +1,139 @@
+// Transmissibilities of both sides over each other, and what was measured.
+
+function ratios(data) {
+  const { ratios: all } = data;
+  if (!all.length) return null;
+  const runs = [...new Map(all.map((own) => [own.run || '', own.role])).entries()];
+  const place = h('div', { class: 'columns' });
+  let [charts, shown] = [[], runs[0][0]];
+  const show = (run) => {
+    charts.forEach(forget);
+    shown = run;
+    const own = all.filter((ratio) => (ratio.run || '') === run);
+    place.replaceChildren(...own.map(ratioColumn));
+    charts = own.flatMap((ratio, at) => comparedPlots(ratio, place.children[at]));
+  };
+  const count = Math.max(...all.map((own) => own.measured.length));
+  const element = section(
+    'ratios',
+    'Transmissibility',
+    h(
+      'p',
+      {},
+      'The models of ',
+      bothKeys(),
+      [
+        null,
+        [', and ', key('measured', 'what was measured')],
+        [', and what was measured of ', key('measured-a', 'A'), ' and ', key('measured-b', 'B')],
+      ][count],
+      count ? [' with a ', key('band', 'band'), ' of two standard deviations'] : null,
+      '. The lower plots show B over A. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve.',
+    ),
+    runs.length > 1
+      ? choice(
+          'Run',
+          runs.map(([run, role]) => [run, `${runName(run)}${role ? ` (${roleName(role)})` : ''}`]),
+          runs[0][0],
+          show,
+        )
+      : null,
+    place,
+    ratioTable(data),
+  );
+  return { element, draw: () => show(shown) };
+}
+
+function ratioColumn(ratio) {
+  const of = (letter, own) => `${letter} ${number(own.fit_magnitude)} % and ${number(own.fit_phase)} %`;
+  const [a, b] = ratio.quality;
+  return h(
+    'div',
+    { class: 'column' },
+    h('h3', {}, channelName(ratio.channel)),
+    a && b
+      ? h(
+          'p',
+          { class: 'note' },
+          'fit of magnitude and phase: ',
+          h('span', { class: 'before' }, of('A', a)),
+          ', ',
+          h('span', { class: 'after' }, of('B', b)),
+        )
+      : null,
+    ['magnitude', 'phase', 'change'].map((part) => figure(`ratio-${part}`, null, h('div', { class: 'canvas' }))),
+  );
+}
+
+function comparedPlots(ratio, column) {
+  const [magnitude, phase, change] = column.querySelectorAll('.canvas');
+  const common = { x: FREQUENCY, at: ratio.frequency, sync: 'ratios' };
+  return [
+    plot(magnitude, { ...common, y: { label: 'magnitude, dB' }, curves: sideCurves(ratio, 'magnitude') }),
+    plot(phase, { ...common, y: { label: 'phase, °' }, height: 190, curves: sideCurves(ratio, 'phase') }),
+    plot(change, {
+      ...common,
+      y: { label: 'B over A, dB', range: aroundZero },
+      height: 150,
+      curves: [
+        ...(ratio.measured_change
+          ? [{ role: 'measured', label: 'measured', values: ratio.measured_change.magnitude }]
+          : []),
+        { role: 'change', values: ratio.change.magnitude },
+      ],
+    }),
+  ];
+}
+
+// Zero stays in sight.
+function aroundZero(u, low, high) {
+  return padded(u, Math.min(0, low === null ? 0 : low), Math.max(0.1, high === null ? 0 : high));
+}
+
+function sideCurves(ratio, part) {
+  const roles = ratio.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
+  const observed = ratio.measured.flatMap(({ value, band }, at) => {
+    const edge = (sign) => value[part].map((own, line) => (own === null ? null : own + sign * band[part][line]));
+    return [
+      { role: 'band', values: edge(-1) },
+      { role: 'band', values: edge(1) },
+      { role: roles[at], values: value[part] },
+    ];
+  });
+  return [
+    ...observed,
+    ...SIDES.map(([own, letter, role]) => ({ role, label: letter, values: ratio[own][part] })),
+  ];
+}
+
+function ratioTable({ transmissibility: all }) {
+  const [runs, observed, fits] = [(own) => own.run, (own) => own.measured, (own) => own.fit].map((of) => all.some(of));
+  const change = (own) => (own ? [decibels(own.magnitude), `${number(own.frequency)} Hz`, `${number(own.rms, 2)} dB`] : ['–', '–', '–']);
+  const three = (name) => [
+    [`${name}largest change`, 'number'],
+    ['at', 'number'],
+    ['root mean square', 'number'],
+  ];
+  return table(
+    'Where B differs most from A',
+    [
+      ['channel', 'text'],
+      ...(runs ? [['run', 'text']] : []),
+      ...three(observed ? 'models: ' : ''),
+      ...(observed ? three('measured: ') : []),
+      ...(fits
+        ? [
+            ['fit of A', 'number'],
+            ['of B', 'number'],
+          ]
+        : []),
+    ],
+    all.map((own) => [
+      channelName(own.channel),
+      ...(runs ? [own.run === null ? '' : runName(own.run)] : []),
+      ...change(own.change),
+      ...(observed ? change(own.measured) : []),
+      ...(fits ? (own.fit || [null, null]).map((fit) => `${number(fit)} %`) : []),
+    ]),
+  );
+}

@@ -1,0 +1,44 @@
+// Natural vibrations of both sides, each beside the one that is most like it.
+
+function vibrations({ modes: pairs }) {
+  if (!pairs.length) return null;
+  const rows = pairs.map(({ a, b }) => [
+    a ? number(a.frequency) : '–',
+    b ? number(b.frequency) : '–',
+    signed(frequencyShift({ a, b }), 3),
+    a ? percent(a.damping, 3) : '–',
+    b ? percent(b.damping, 3) : '–',
+    a ? h('span', { class: 'modes of-before' }, shapeDrawing(a.parts)) : '',
+    b ? h('span', { class: 'modes of-after' }, shapeDrawing(b.parts)) : '',
+  ]);
+  const element = section(
+    'modes',
+    'Modes',
+    h(
+      'p',
+      {},
+      'Undamped natural frequency, damping ratio and shape of ',
+      bothKeys(),
+      '. Bars to the right move with the mass that moves most, bars to the left against it; a pale bar moves out of phase. Vibrations stand side by side where their shapes are alike.',
+    ),
+    figure(
+      'modes',
+      null,
+      table(
+        'Natural vibrations',
+        [
+          ['A, Hz', 'number'],
+          ['B, Hz', 'number'],
+          ['change', 'number'],
+          ['damping of A', 'number'],
+          ['of B', 'number'],
+          ['shape of A', 'text'],
+          ['shape of B', 'text'],
+        ],
+        rows,
+        { class: 'table modes' },
+      ),
+    ),
+  );
+  return { element, draw: () => element.querySelectorAll('figure').forEach((own) => drawn(own)) };
+}

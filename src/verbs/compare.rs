@@ -1,0 +1,97 @@
+//! `qcar compare`: two parameter sets, two models or two campaigns side by side.
+
+use std::path::PathBuf;
+
+use clap::Args;
+
+use crate::failure::Failure;
+use crate::files::put;
+use crate::json;
+use crate::parameters::Setting;
+use crate::report::{Report, page};
+use crate::verbs::Format;
+use crate::verbs::frf::Frequencies;
+
+// What A and B are.
+mod subject;
+// A model with values, and what was measured of it.
+mod sides;
+// The values that differ.
+mod moved;
+// Natural vibrations.
+mod modes;
+// Transmissibilities.
+mod ratios;
+// Records of a passage, aligned.
+mod records;
+// Cleat runs.
+mod passages;
+// Gradients of K&C curves.
+mod gradients;
+// All of it.
+mod gather;
+// For the page, and without the curves for programs.
+mod contents;
+// For people and spreadsheets.
+mod render;
+
+use subject::Subject;
+
+/// Compare two parameter sets, two models or two campaigns, and write a report of it
+///
+/// A and B are two of a kind: parameter files (.toml, the fit.json of a fit, or its folder), models (by name or path),
+/// or campaign folders, each fitted with its own model. What moved, and what that does to modes, transmissibilities and
+/// peaks over cleats: those of --campaign, those that both campaigns drove, else 20, 30 and 40 km/h over 10 to 40 mm.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  qcar compare axle_c axle_c_rigid_tm --params models/campaigns/axle_c_study --out compared\n  qcar compare models/campaigns/axle_a_rig models/campaigns/axle_c_study --format json\n  qcar compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig"
+)]
+pub struct Arguments {
+    /// Parameter file, model or campaign folder
+    #[arg(value_name = "A")]
+    first: String,
+    /// The same kind of thing, to compare with it
+    #[arg(value_name = "B")]
+    second: String,
+    /// The model of both parameter sets or campaigns, by name or path, in place of their own
+    #[arg(long)]
+    model: Option<String>,
+    /// Hold both against the runs of this campaign; its values lie below all others
+    #[arg(long, value_name = "DIR")]
+    campaign: Option<PathBuf>,
+    /// Parameter values of both, below those of A and B: a TOML file with [parameters], fit.json or a campaign folder
+    #[arg(long, value_name = "FILE")]
+    params: Option<PathBuf>,
+    /// One value for both, above those of all files; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Setting>,
+    /// Frequencies where no run gives them: first and last in Hz and the number of lines, spaced logarithmically
+    #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:50:300")]
+    frequencies: Frequencies,
+    /// Write report.html, compare.json and the tables as CSV into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let subject = Subject::of(&arguments.first, &arguments.second)?;
+    let comparison = gather::gather(&subject, arguments)?;
+    let contents = contents::Contents::of(&comparison);
+    let json = json::line(&contents.result);
+    if let Some(folder) = &arguments.out {
+        put(folder, "compare.json", &json)?;
+        put(folder, "parameters.csv", &render::parameters_csv(&comparison))?;
+        put(folder, "transmissibility.csv", &render::ratios_csv(&comparison))?;
+        put(folder, "cleat.csv", &render::passages_csv(&comparison))?;
+        let title = format!("{} beside {}", contents.result.a.name, contents.result.b.name);
+        put(folder, "report.html", &page(Report::Comparison, &title, &contents))?;
+    }
+    Ok(match arguments.format {
+        Format::Text => render::text(&comparison, &contents.result, arguments.out.as_deref()),
+        Format::Json => json,
+    })
+}

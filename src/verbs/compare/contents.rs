@@ -1,0 +1,205 @@
+//! A comparison as JSON: what programs read, and with it the curves that the page draws.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use super::gather::Comparison;
+use super::gradients::Gradient;
+use super::modes::Pair;
+use super::moved::Parameter;
+use super::passages::Passage;
+use super::ratios::{Ratio, Summary};
+use super::records::{Metric, Metrics, Trace};
+use super::sides::Side;
+use crate::json::Ordered;
+use crate::verbs::diff::{Change, parts};
+use crate::verbs::study::axle::Axle;
+
+/// What the page is made of.
+#[derive(Serialize)]
+pub(super) struct Contents<'a> {
+    #[serde(flatten)]
+    pub result: Result<'a>,
+    axles: Axles,
+    ratios: &'a [Ratio],
+    traces: Vec<Traces<'a>>,
+    version: &'static str,
+}
+
+/// What programs read.
+#[derive(Serialize)]
+pub(super) struct Result<'a> {
+    pub kind: &'static str,
+    pub a: Named<'a>,
+    pub b: Named<'a>,
+    parameters: &'a [Parameter],
+    modes: &'a [Pair],
+    changes: Ordered<Vec<Change<'a>>>,
+    pub transmissibility: Vec<Summary<'a>>,
+    pub cleat: Cleat<'a>,
+    kc: &'a [Gradient],
+    pub notices: &'a [String],
+}
+
+/// A side.
+#[derive(Serialize)]
+pub(super) struct Named<'a> {
+    /// As the user has named it.
+    pub name: &'a str,
+    pub model: &'a str,
+    /// The model's sentence.
+    doc: &'a str,
+    campaign: Option<&'a str>,
+}
+
+/// Peaks and after-shakes.
+#[derive(Serialize)]
+pub(super) struct Cleat<'a> {
+    /// Which runs these are.
+    conditions: &'static str,
+    runs: Vec<Run<'a>>,
+    /// Changes over all runs, by `mass_axis`.
+    pub summary: BTreeMap<String, Changes>,
+}
+
+/// A mass along an axis in a run.
+#[derive(Serialize)]
+struct Run<'a> {
+    run: &'a str,
+    role: Option<&'static str>,
+    /// m/s.
+    speed: f64,
+    /// m.
+    height: f64,
+    #[serde(flatten)]
+    metrics: &'a Metrics,
+}
+
+/// Over all runs.
+#[derive(Serialize)]
+pub(super) struct Changes {
+    pub peak: Option<Spread>,
+    pub after_shake: Option<Spread>,
+}
+
+/// Of relative changes.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct Spread {
+    pub least: f64,
+    pub median: f64,
+    pub greatest: f64,
+}
+
+#[derive(Serialize)]
+struct Axles {
+    a: Axle,
+    b: Axle,
+}
+
+#[derive(Serialize)]
+struct Traces<'a> {
+    run: &'a str,
+    role: Option<&'static str>,
+    speed: f64,
+    height: f64,
+    time: &'a [f64],
+    traces: &'a [Trace],
+}
+
+impl<'a> Contents<'a> {
+    /// Those of a comparison.
+    pub fn of(comparison: &'a Comparison) -> Self {
+        let [a, b] = &comparison.sides;
+        let axle = |side: &Side| Axle::of(&side.compiled, side.values.as_slice());
+        Contents {
+            result: Result::of(comparison),
+            axles: Axles { a: axle(a), b: axle(b) },
+            ratios: &comparison.ratios,
+            traces: comparison.passages.iter().map(traces).collect(),
+            version: env!("CARGO_PKG_VERSION"),
+        }
+    }
+}
+
+impl<'a> Result<'a> {
+    fn of(comparison: &'a Comparison) -> Self {
+        let [a, b] = comparison.sides.each_ref().map(named);
+        Result {
+            kind: comparison.kind,
+            a,
+            b,
+            parameters: &comparison.parameters,
+            modes: &comparison.modes,
+            changes: parts(&comparison.difference),
+            transmissibility: comparison.ratios.iter().map(Ratio::summary).collect(),
+            cleat: Cleat {
+                conditions: comparison.conditions,
+                runs: comparison.passages.iter().flat_map(runs).collect(),
+                summary: summary(&comparison.passages),
+            },
+            kc: &comparison.gradients,
+            notices: &comparison.notices,
+        }
+    }
+}
+
+fn named(of: &Side) -> Named<'_> {
+    let about = of.model.about();
+    Named {
+        name: &of.name,
+        model: &about.name,
+        doc: &about.doc,
+        campaign: of.measured.as_ref().map(|own| own.campaign.name.as_str()),
+    }
+}
+
+fn runs(of: &Passage) -> impl Iterator<Item = Run<'_>> {
+    of.compared.metrics.iter().map(|metrics| Run {
+        run: &of.name,
+        role: of.role,
+        speed: of.speed,
+        height: of.height,
+        metrics,
+    })
+}
+
+fn traces(of: &Passage) -> Traces<'_> {
+    Traces {
+        run: &of.name,
+        role: of.role,
+        speed: of.speed,
+        height: of.height,
+        time: &of.compared.time,
+        traces: &of.compared.traces,
+    }
+}
+
+fn summary(of: &[Passage]) -> BTreeMap<String, Changes> {
+    let mut groups: BTreeMap<String, Vec<&Metrics>> = BTreeMap::new();
+    for metrics in of.iter().flat_map(|passage| &passage.compared.metrics) {
+        groups
+            .entry(format!("{}_{}", metrics.mass, metrics.axis))
+            .or_default()
+            .push(metrics);
+    }
+    let changes = |group: &[&Metrics]| Changes {
+        peak: spread(group.iter().map(|own| &own.peak)),
+        after_shake: spread(group.iter().map(|own| &own.after_shake)),
+    };
+    groups
+        .iter()
+        .map(|(name, group)| (name.clone(), changes(group)))
+        .collect()
+}
+
+fn spread<'a>(of: impl Iterator<Item = &'a Metric>) -> Option<Spread> {
+    let mut changes: Vec<f64> = of.filter_map(|metric| metric.change).collect();
+    changes.sort_by(f64::total_cmp);
+    let last = changes.len().checked_sub(1)?;
+    Some(Spread {
+        least: changes[0],
+        median: (changes[last / 2] + changes[changes.len() / 2]) / 2.0,
+        greatest: changes[last],
+    })
+}

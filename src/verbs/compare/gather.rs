@@ -1,0 +1,134 @@
+//! Everything in which two sides differ.
+
+use qcar_dsl::difference::{Difference, difference};
+use qcar_runtime::campaign::{Campaign, Test};
+
+use super::Arguments;
+use super::gradients::{Gradient, gradients};
+use super::modes::{self, Pair};
+use super::moved::{self, Parameter};
+use super::passages::{self, Passage};
+use super::ratios::{self, Ratio};
+use super::sides::{Measured, Side, sides};
+use super::subject::Subject;
+use crate::failure::Failure;
+
+/// A and B, and in what they differ.
+pub(super) struct Comparison {
+    /// `parameters`, `models` or `campaigns`.
+    pub kind: &'static str,
+    pub sides: [Side; 2],
+    pub parameters: Vec<Parameter>,
+    pub modes: Vec<Pair>,
+    /// In what the models differ.
+    pub difference: Difference,
+    pub ratios: Vec<Ratio>,
+    /// What the cleat runs are.
+    pub conditions: &'static str,
+    pub passages: Vec<Passage>,
+    pub gradients: Vec<Gradient>,
+    /// What could not be compared, and why.
+    pub notices: Vec<String>,
+}
+
+/// Compares.
+///
+/// # Errors
+/// What A, B or the campaign beside them has wrong.
+pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Comparison, Failure> {
+    let sides = sides(subject, arguments)?;
+    let beside = arguments.campaign.as_ref().map(Campaign::open).transpose()?;
+    let both = match &sides {
+        [Side { measured: Some(a), .. }, Side { measured: Some(b), .. }] => Some([a, b]),
+        _ => None,
+    };
+    let mut notices = Vec::new();
+    let ratios = all_ratios(&sides, both, beside.as_ref(), arguments, &mut notices)?;
+    let (conditions, passages) = all_passages(&sides, both, beside.as_ref(), &mut notices)?;
+    Ok(Comparison {
+        kind: match subject {
+            Subject::Parameters(_) => "parameters",
+            Subject::Models(_) => "models",
+            Subject::Campaigns(_) => "campaigns",
+        },
+        parameters: moved::parameters(&sides),
+        modes: modes::pairs(&sides),
+        difference: difference(&sides[0].compiled.model, &sides[1].compiled.model),
+        ratios,
+        conditions,
+        passages,
+        gradients: both.map(gradients).unwrap_or_default(),
+        notices,
+        sides,
+    })
+}
+
+fn all_ratios(
+    sides: &[Side; 2],
+    both: Option<[&Measured; 2]>,
+    beside: Option<&Campaign>,
+    arguments: &Arguments,
+    notices: &mut Vec<String>,
+) -> Result<Vec<Ratio>, Failure> {
+    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory { .. });
+    let found = match (both, beside) {
+        (Some(both), _) => ratios::of_campaigns(sides, both),
+        (None, Some(campaign)) if campaign.runs.iter().any(|run| is_rig(&run.test)) => {
+            ratios::of_campaign(sides, campaign)?
+        }
+        _ => Vec::new(),
+    };
+    if both.is_some() && found.is_empty() {
+        notices.push("The campaigns have no rig run of one level in common: models alone are compared.".into());
+    }
+    let modelled = || ratios::modelled(sides, &arguments.frequencies.values());
+    let ratios = if found.is_empty() { modelled() } else { found };
+    if ratios.is_empty() {
+        notices.push("The models have no channel in common: no transmissibility is compared.".into());
+    }
+    let nonlinear = sides.iter().find(|side| !side.model.about().linear);
+    notices.extend(nonlinear.map(|side| {
+        let name = &side.model.about().name;
+        format!("{name} is nonlinear: its modes and transmissibilities are those of small motions about rest.")
+    }));
+    Ok(ratios)
+}
+
+/// Facts that a rolling tyre needs.
+const TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
+
+fn all_passages(
+    sides: &[Side; 2],
+    both: Option<[&Measured; 2]>,
+    beside: Option<&Campaign>,
+    notices: &mut Vec<String>,
+) -> Result<(&'static str, Vec<Passage>), Failure> {
+    if let Some(side) = sides.iter().find(|side| side.model.about().contact.is_none()) {
+        let name = &side.model.about().name;
+        notices.push(format!("{name} has no tyre that rolls: no cleat run is compared."));
+        return Ok(("", Vec::new()));
+    }
+    let lacks = |side: &Side| TYRE.into_iter().find(|fact| !side.vehicle.facts.contains_key(*fact));
+    if let Some(fact) = sides.iter().find_map(lacks) {
+        notices.push(format!(
+            "Nothing says `{fact}`, so no cleat run is compared: name a campaign with --campaign, or add {} to [vehicle] \
+             of the parameter file.",
+            TYRE.join(", ")
+        ));
+        return Ok(("", Vec::new()));
+    }
+    let is_cleat = |campaign: &Campaign| campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. }));
+    if let Some([a, b]) = both {
+        let passages = passages::of_campaigns(sides, [&a.campaign, &b.campaign])?;
+        if !passages.is_empty() {
+            return Ok(("runs that both campaigns drove", passages));
+        }
+        notices.push(
+            "The campaigns have no cleat run of one speed and height in common: the standard runs are driven.".into(),
+        );
+    }
+    if let Some(campaign) = beside.filter(|campaign| is_cleat(campaign)) {
+        return Ok(("runs of the campaign", passages::of_campaign(sides, campaign)?));
+    }
+    Ok(("standard runs", passages::standard(sides)?))
+}

@@ -1,0 +1,65 @@
+//! What the K&C curves of two campaigns say.
+
+use serde::Serialize;
+
+use super::sides::Measured;
+use crate::verbs::kc;
+
+/// A gradient of both campaigns; of one where the other has no such curve.
+#[derive(Serialize)]
+pub(super) struct Gradient {
+    pub test: &'static str,
+    pub quantity: &'static str,
+    unit: &'static str,
+    pub a: Option<Value>,
+    pub b: Option<Value>,
+    /// B less A, over A.
+    pub relative: Option<f64>,
+    /// The difference over the root of the sum of both squared uncertainties.
+    pub standard_errors: Option<f64>,
+}
+
+/// One standard deviation beside a value.
+#[derive(Clone, Copy, Serialize)]
+pub(super) struct Value {
+    pub value: f64,
+    uncertainty: f64,
+}
+
+/// Those of A, and then what B has beside them.
+pub(super) fn gradients([a, b]: [&Measured; 2]) -> Vec<Gradient> {
+    let find = |among: &[kc::Gradient], own: &kc::Gradient| {
+        let mut all = among.iter();
+        let found = all.find(|other| (other.test, other.quantity) == (own.test, own.quantity));
+        found.map(value)
+    };
+    let first = a
+        .gradients
+        .iter()
+        .map(|own| gradient(own, Some(value(own)), find(&b.gradients, own)));
+    let added = b.gradients.iter().filter(|own| find(&a.gradients, own).is_none());
+    first
+        .chain(added.map(|own| gradient(own, None, Some(value(own)))))
+        .collect()
+}
+
+fn value(of: &kc::Gradient) -> Value {
+    Value {
+        value: of.value,
+        uncertainty: of.uncertainty,
+    }
+}
+
+fn gradient(of: &kc::Gradient, a: Option<Value>, b: Option<Value>) -> Gradient {
+    let both = a.zip(b);
+    let difference = |a: Value, b: Value| b.value - a.value;
+    Gradient {
+        test: of.test,
+        quantity: of.quantity,
+        unit: of.unit,
+        relative: both.map(|(a, b)| difference(a, b) / a.value),
+        standard_errors: both.map(|(a, b)| difference(a, b) / a.uncertainty.hypot(b.uncertainty)),
+        a,
+        b,
+    }
+}

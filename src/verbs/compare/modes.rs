@@ -1,0 +1,35 @@
+//! Natural vibrations of both sides, each beside the one of the other side that it is most like.
+
+use qcar_runtime::modes;
+use serde::Serialize;
+
+use super::sides::Side;
+use crate::verbs::study::shapes::{Shape, shape};
+
+/// A vibration of both sides; of one where the other has none like it.
+#[derive(Serialize)]
+pub(super) struct Pair {
+    pub a: Option<Shape>,
+    pub b: Option<Shape>,
+}
+
+/// Those of A by frequency, and then what B has beside them.
+pub(super) fn pairs([a, b]: &[Side; 2]) -> Vec<Pair> {
+    let (first, second) = (of(a), of(b));
+    let same = modes::pairs(&first, &second);
+    let partner = |place: usize| same.iter().find(|pair| pair.0 == place).map(|pair| pair.1);
+    let own = first.iter().enumerate().map(|(place, mode)| Pair {
+        a: Some(shape(mode)),
+        b: partner(place).map(|place| shape(&second[place])),
+    });
+    let alone = (0..second.len()).filter(|place| same.iter().all(|pair| pair.1 != *place));
+    let added = alone.map(|place| Pair {
+        a: None,
+        b: Some(shape(&second[place])),
+    });
+    own.chain(added).collect()
+}
+
+fn of(side: &Side) -> Vec<modes::Mode> {
+    modes::modes(&*side.model, &side.values)
+}

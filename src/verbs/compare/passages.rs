@@ -1,0 +1,195 @@
+//! Both sides over the same cleats, and what was measured there: peaks, after-shakes and traces.
+
+use qcar_runtime::campaign::{Campaign, Quantity, Role};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::model::{self, SignalKind};
+use qcar_runtime::progress::Told;
+use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
+
+use super::records::{Compared, Key, Record, compared};
+use super::sides::Side;
+use crate::progress::while_counting;
+
+/// A run over a cleat that both sides are driven over.
+pub(super) struct Passage {
+    /// The file of the run, or what is driven.
+    pub name: String,
+    /// m/s.
+    pub speed: f64,
+    /// Of the cleat, m.
+    pub height: f64,
+    /// `fit` or `held_out`, of a campaign's run.
+    pub role: Option<&'static str>,
+    /// Peaks, after-shakes and traces.
+    pub compared: Compared,
+}
+
+/// A run before it is driven.
+enum Run {
+    Standard(Standard),
+    /// Of the campaign, or of A; and of B, where that is a campaign too.
+    Measured(Box<Cleat>, Option<Box<Cleat>>),
+}
+
+impl Run {
+    fn drive(&self) -> Drive<'_> {
+        match self {
+            Run::Standard(own) => own.drive(),
+            Run::Measured(own, _) => own.drive(),
+        }
+    }
+
+    fn height(&self) -> f64 {
+        match self {
+            Run::Standard(own) => own.height,
+            Run::Measured(own, _) => height(own),
+        }
+    }
+
+    fn name(&self) -> String {
+        match self {
+            Run::Standard(own) => format!("{:.0} km/h over {:.0} mm", 3.6 * own.speed, 1e3 * own.height),
+            Run::Measured(own, _) => own.run.file.clone(),
+        }
+    }
+
+    fn measured(&self) -> Vec<&Cleat> {
+        match self {
+            Run::Standard(_) => Vec::new(),
+            Run::Measured(own, other) => std::iter::once(&**own).chain(other.as_deref()).collect(),
+        }
+    }
+}
+
+/// The thesis's twelve runs.
+///
+/// # Errors
+/// As [`driven`].
+pub(super) fn standard(sides: &[Side; 2]) -> Result<Vec<Passage>, InputError> {
+    let runs = Standard::all().expect("the standard cleats are roads");
+    driven(sides, runs.into_iter().map(Run::Standard).collect())
+}
+
+/// The runs of a campaign.
+///
+/// # Errors
+/// A run or road that cannot be read, and as [`driven`].
+pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Passage>, InputError> {
+    let runs = cleats(campaign)?
+        .into_iter()
+        .map(|own| Run::Measured(Box::new(own), None));
+    driven(sides, runs.collect())
+}
+
+/// The runs that two campaigns have in common: the same speed over a cleat of the same height.
+///
+/// # Errors
+/// A run or road that cannot be read, and as [`driven`].
+pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Campaign; 2]) -> Result<Vec<Passage>, InputError> {
+    let mut others = cleats(b)?;
+    let mut runs = Vec::new();
+    for own in cleats(a)? {
+        if let Some(place) = others.iter().position(|other| alike(&own, other)) {
+            runs.push(Run::Measured(Box::new(own), Some(Box::new(others.remove(place)))));
+        }
+    }
+    driven(sides, runs)
+}
+
+fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
+    let all = campaign.runs.iter().map(|run| Cleat::read(campaign, run));
+    Ok(all.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+fn alike(a: &Cleat, b: &Cleat) -> bool {
+    let near = |a: f64, b: f64, share: f64| (a - b).abs() <= share * a.abs().max(b.abs());
+    near(a.speed, b.speed, 0.02) && near(height(a), height(b), 0.02) && a.measured.sample_rate == b.measured.sample_rate
+}
+
+fn height(of: &Cleat) -> f64 {
+    let heights = of.road.vertices().iter().map(|point| point[1]);
+    heights.fold(f64::NEG_INFINITY, f64::max) - of.road.vertices()[0][1]
+}
+
+/// Drives both sides and holds them against each other.
+///
+/// # Errors
+/// A vehicle without a tyre, and rides that cannot be simulated or compared.
+fn driven(sides: &[Side; 2], runs: Vec<Run>) -> Result<Vec<Passage>, InputError> {
+    let [a, b] = [rides_of(&sides[0], &runs)?, rides_of(&sides[1], &runs)?];
+    let passages = runs.iter().zip(a.iter().zip(&b));
+    passages.map(|(run, rides)| passage(sides, run, rides)).collect()
+}
+
+fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
+    let (tyre, load) = tyre_of(&|name| side.vehicle.facts.get(name).copied(), &side.vehicle.file)?;
+    let car = Car {
+        model: &*side.model,
+        parameters: side.values.as_slice(),
+        tyre,
+        load,
+        variant: Variant::Complete,
+    };
+    let drives: Vec<Drive> = runs.iter().map(Run::drive).collect();
+    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let all = while_counting(format!("{}: ride", side.name), simulate);
+    let checked = runs
+        .iter()
+        .zip(all)
+        .map(|(run, ride)| ride.map_err(|error| refused(run, &error.to_string())));
+    checked.collect()
+}
+
+fn refused(run: &Run, error: &str) -> InputError {
+    let remedy = "correct the run, the vehicle or the parameters";
+    Problem::new(
+        run.name(),
+        Place::File,
+        error,
+        "a run that both sides can be driven over",
+        remedy,
+    )
+    .into()
+}
+
+fn passage(sides: &[Side; 2], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passage, InputError> {
+    let simulated = [simulated(&sides[0], a), simulated(&sides[1], b)];
+    let cleats = run.measured();
+    let measured: Vec<Record> = cleats.iter().map(|cleat| recorded(cleat)).collect();
+    let rate = run.drive().sample_rate;
+    let compared = compared(&simulated, &measured, rate).map_err(|error| refused(run, &error.to_string()))?;
+    let role = |cleat: &&Cleat| if cleat.run.role == Role::Fit { "fit" } else { "held_out" };
+    Ok(Passage {
+        name: run.name(),
+        speed: run.drive().speed,
+        height: run.height(),
+        role: cleats.first().map(role),
+        compared,
+    })
+}
+
+/// The accelerations of a ride.
+fn simulated<'a>(side: &'a Side, ride: &'a Ride) -> Record<'a> {
+    let outputs = side.model.about().outputs.iter().zip(&ride.outputs);
+    let accelerations =
+        outputs.filter(|(output, _)| output.signal.kind == SignalKind::Motion(model::Quantity::Acceleration));
+    let keyed = accelerations.map(|(output, values)| {
+        let key: Key = (output.signal.location.to_string(), output.signal.axis.to_string());
+        (key, values.as_slice())
+    });
+    keyed.collect()
+}
+
+/// Those of a measured run.
+fn recorded(cleat: &Cleat) -> Record<'_> {
+    let accelerations = cleat
+        .measured
+        .signals
+        .iter()
+        .filter(|(sensor, _)| sensor.quantity == Quantity::Acceleration);
+    let keyed = accelerations.map(|(sensor, values)| {
+        let key: Key = (sensor.location.clone(), sensor.axis.name().to_string());
+        (key, values.as_slice())
+    });
+    keyed.collect()
+}

@@ -1,0 +1,287 @@
+//! Transmissibilities of both sides, and of what was measured.
+
+use std::f64::consts::PI;
+
+use nalgebra::Complex;
+use qcar_runtime::campaign::{Campaign, Role, Test};
+use qcar_runtime::fit::Level;
+use qcar_runtime::fit::measure::levels;
+use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::fit::quality::{Quality, quality};
+use qcar_runtime::model::Channel;
+use qcar_runtime::progress::Told;
+use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::transmissibility::Options;
+use serde::Serialize;
+
+use super::sides::{Measured, Side};
+use crate::failure::Failure;
+use crate::progress::while_counting;
+use crate::report::rounded::{curve, rounded};
+use crate::verbs::frf;
+use crate::verbs::study::rig::{Polar, band, between, nearest, unwrapped};
+
+/// A channel of both models, in a run where one was measured.
+#[derive(Serialize)]
+pub(super) struct Ratio {
+    pub channel: String,
+    /// The file of the run; of two campaigns, that of A.
+    pub run: Option<String>,
+    /// `fit` or `held_out`.
+    role: Option<&'static str>,
+    /// Hz.
+    pub frequency: Vec<f64>,
+    /// The models.
+    pub a: Polar,
+    pub b: Polar,
+    /// B over A.
+    pub change: Polar,
+    /// One of the campaign, or one of each of two campaigns.
+    pub measured: Vec<Curve>,
+    /// Of two campaigns, what was measured of B over that of A.
+    measured_change: Option<Polar>,
+    /// How well each model meets the measurement.
+    quality: Vec<Quality>,
+}
+
+/// A measured ratio.
+#[derive(Serialize)]
+pub(super) struct Curve {
+    pub value: Polar,
+    /// To either side.
+    pub band: Polar,
+}
+
+/// A channel in a few numbers.
+#[derive(Serialize)]
+pub(super) struct Summary<'a> {
+    pub channel: &'a str,
+    pub run: Option<&'a str>,
+    pub role: Option<&'static str>,
+    /// Of the models.
+    pub change: Option<Largest>,
+    /// Of what was measured of two campaigns.
+    pub measured: Option<Largest>,
+    /// How well the magnitude of each model meets the measurement, percent.
+    pub fit: Option<[f64; 2]>,
+}
+
+/// Where B is most above or below A.
+#[derive(Serialize)]
+pub(super) struct Largest {
+    /// dB.
+    pub magnitude: f64,
+    /// Hz.
+    pub frequency: f64,
+    /// Root mean square over the lines, dB.
+    pub rms: f64,
+}
+
+impl Ratio {
+    pub(super) fn summary(&self) -> Summary<'_> {
+        Summary {
+            channel: &self.channel,
+            run: self.run.as_deref(),
+            role: self.role,
+            change: self.largest(&self.change),
+            measured: self.measured_change.as_ref().and_then(|change| self.largest(change)),
+            fit: match self.quality.as_slice() {
+                [a, b] => Some([a.fit_magnitude, b.fit_magnitude]),
+                _ => None,
+            },
+        }
+    }
+
+    fn largest(&self, of: &Polar) -> Option<Largest> {
+        let lines = of.magnitude.iter().zip(&self.frequency);
+        let finite: Vec<_> = lines.filter(|(change, _)| change.is_finite()).collect();
+        let (&magnitude, &frequency) = *finite.iter().max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
+        let square = finite.iter().map(|(change, _)| *change * *change).sum::<f64>() / finite.len() as f64;
+        Some(Largest {
+            magnitude,
+            frequency,
+            rms: rounded(square.sqrt()),
+        })
+    }
+}
+
+/// Channels of the models alone, at these frequencies (Hz): those that both have.
+pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
+    let [a, b] = sides.each_ref().map(|side| side.model.about());
+    let shared = a
+        .channels
+        .iter()
+        .filter(|own| b.channels.iter().any(|other| other.name == own.name));
+    let ratio = |channel: &Channel| {
+        let excitations = [a, b].map(|about| frf::excitation(about, channel).ok());
+        let [Some(first), Some(second)] = excitations else {
+            return None;
+        };
+        let modelled = models(sides, channel, [first, second], frequency)?;
+        Some(together(channel, frequency, modelled, [None, None]))
+    };
+    shared.filter_map(ratio).collect()
+}
+
+/// Channels that a campaign has measured, beside both models.
+pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Ratio>, Failure> {
+    let about = sides[0].model.about();
+    let measure = |told: Told<'_>| levels(campaign, about, None, &Options::default(), told);
+    let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
+    let all = levels
+        .iter()
+        .flat_map(|level| level.observations.iter().map(move |own| (level, own)));
+    let [first, second] = sides.each_ref().map(|side| &side.model.about().excitations);
+    let ratio = |(level, own): (&Level, &Observation)| {
+        let driven = &first[level.excitation].name;
+        let same = second.iter().position(|excitation| excitation.name == *driven)?;
+        in_run(sides, level, same, own, None)
+    };
+    Ok(all.filter_map(ratio).collect())
+}
+
+/// Channels that both campaigns have measured in like runs.
+pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Vec<Ratio> {
+    let mut ratios = Vec::new();
+    for level in &a.levels {
+        let Some(other) = b
+            .levels
+            .iter()
+            .find(|other| alike(&a.campaign, level, &b.campaign, other))
+        else {
+            continue;
+        };
+        for own in &level.observations {
+            let mut others = other.observations.iter();
+            if let Some(second) = others.find(|second| second.channel.name == own.channel.name) {
+                ratios.extend(in_run(sides, level, other.excitation, own, Some(second)));
+            }
+        }
+    }
+    ratios
+}
+
+/// Two runs that were driven alike.
+fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
+    let test = |campaign: &Campaign, level: &Level| {
+        let run = campaign.runs.iter().find(|run| run.file == level.name);
+        run.map(|run| run.test.clone())
+    };
+    match (test(a, first), test(b, second)) {
+        (Some(Test::Sweep(a)), Some(Test::Sweep(b))) => (a.peak_velocity / b.peak_velocity - 1.0).abs() < 0.02,
+        (Some(Test::TimeHistory { .. }), Some(Test::TimeHistory { .. })) => first.name == second.name,
+        _ => false,
+    }
+}
+
+fn in_run(
+    sides: &[Side; 2],
+    level: &Level,
+    second_excitation: usize,
+    own: &Observation,
+    other: Option<&Observation>,
+) -> Option<Ratio> {
+    let modelled = models(
+        sides,
+        &own.channel,
+        [level.excitation, second_excitation],
+        &own.frequency,
+    )?;
+    let ratio = together(&own.channel, &own.frequency, modelled, [Some(own), other]);
+    Some(Ratio {
+        run: Some(level.name.clone()),
+        role: Some(if level.role == Role::Fit { "fit" } else { "held_out" }),
+        ..ratio
+    })
+}
+
+/// The ratio in both models; `None` where one of them cannot give it.
+fn models(sides: &[Side; 2], channel: &Channel, excitations: [usize; 2], f: &[f64]) -> Option<[Vec<Complex<f64>>; 2]> {
+    let of = |side: &Side, excitation| {
+        let found = ratio(
+            &*side.model,
+            &side.values,
+            excitation,
+            &channel.numerator,
+            &channel.denominator,
+            f,
+        );
+        found.ok().map(|ratio| ratio.value)
+    };
+    Some([of(&sides[0], excitations[0])?, of(&sides[1], excitations[1])?])
+}
+
+fn together(
+    channel: &Channel,
+    frequency: &[f64],
+    [a, b]: [Vec<Complex<f64>>; 2],
+    observed: [Option<&Observation>; 2],
+) -> Ratio {
+    let measured: Vec<Vec<Complex<f64>>> = observed.iter().flatten().map(|own| at(own, frequency)).collect();
+    let first = measured.first().map_or(unwrapped(&a), |own| unwrapped(own));
+    let beside = |values: &[Complex<f64>]| Polar::new(values, &nearest(values, &first));
+    let quality_of = |(model, place): (&Vec<Complex<f64>>, usize)| {
+        let own = measured.get(place).or(measured.first())?;
+        Some(met(frequency, model, own))
+    };
+    Ratio {
+        channel: channel.name.to_string(),
+        run: None,
+        role: None,
+        frequency: curve(frequency.iter().copied()),
+        change: over(&b, &a),
+        quality: [(&a, 0), (&b, 1)].into_iter().filter_map(quality_of).collect(),
+        measured_change: match measured.as_slice() {
+            [a, b] => Some(over(b, a)),
+            _ => None,
+        },
+        measured: measured
+            .iter()
+            .zip(observed.iter().flatten())
+            .map(|(values, own)| Curve {
+                value: beside(values),
+                band: band_at(own, frequency),
+            })
+            .collect(),
+        a: beside(&a),
+        b: beside(&b),
+    }
+}
+
+/// How well a model meets a measurement, at the lines where both are known.
+fn met(frequency: &[f64], model: &[Complex<f64>], measured: &[Complex<f64>]) -> Quality {
+    let known = |line: &usize| model[*line].is_finite() && measured[*line].is_finite();
+    let lines: Vec<usize> = (0..frequency.len()).filter(known).collect();
+    let at = |values: &[Complex<f64>]| lines.iter().map(|&line| values[line]).collect::<Vec<_>>();
+    let frequency: Vec<f64> = lines.iter().map(|&line| frequency[line]).collect();
+    quality(&frequency, &at(model), &at(measured))
+}
+
+/// One ratio over another, its phase within half a turn.
+fn over(above: &[Complex<f64>], below: &[Complex<f64>]) -> Polar {
+    let ratio: Vec<_> = above.iter().zip(below).map(|(above, below)| above / below).collect();
+    let phase: Vec<f64> = ratio.iter().map(|value| value.arg().clamp(-PI, PI)).collect();
+    Polar::new(&ratio, &phase)
+}
+
+/// What was measured, at the lines of another run.
+fn at(own: &Observation, frequency: &[f64]) -> Vec<Complex<f64>> {
+    frequency
+        .iter()
+        .map(|&f| between(&own.frequency, &own.value, f))
+        .collect()
+}
+
+fn band_at(own: &Observation, frequency: &[f64]) -> Polar {
+    let Polar { magnitude, phase } = band(own);
+    let lines: Vec<Complex<f64>> = magnitude
+        .iter()
+        .zip(&phase)
+        .map(|(&m, &p)| Complex::new(m, p))
+        .collect();
+    let values: Vec<_> = frequency.iter().map(|&f| between(&own.frequency, &lines, f)).collect();
+    Polar {
+        magnitude: curve(values.iter().map(|value| value.re)),
+        phase: curve(values.iter().map(|value| value.im)),
+    }
+}

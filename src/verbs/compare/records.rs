@@ -1,0 +1,151 @@
+//! Records of one passage held against each other from where the wheel feels the cleat: the peaks and after-shakes of
+//! thesis section 3.6.2, and traces.
+
+use std::collections::BTreeMap;
+
+use qcar_runtime::compare::{Alignment, CompareError, Errors, Windows};
+use serde::Serialize;
+
+use crate::report::rounded::curve;
+
+/// A mass and an axis.
+pub(super) type Key = (String, String);
+
+/// Accelerations of a passage, m/s².
+pub(super) type Record<'a> = BTreeMap<Key, &'a [f64]>;
+
+/// What the wheel is called that feels the cleat first, and the axis.
+const FEELING: (&str, &str) = ("wheel", "z");
+
+/// Shown before the wheel feels the cleat, s.
+const RUN_IN: f64 = 0.05;
+
+/// A passage of both sides.
+#[derive(Serialize)]
+pub(super) struct Compared {
+    /// One for each mass and axis that both have.
+    pub metrics: Vec<Metrics>,
+    /// s after the wheel of A has felt the cleat.
+    pub time: Vec<f64>,
+    pub traces: Vec<Trace>,
+}
+
+/// A mass along an axis.
+#[derive(Serialize)]
+pub(super) struct Metrics {
+    pub mass: String,
+    pub axis: String,
+    pub peak: Metric,
+    pub after_shake: Metric,
+}
+
+/// A number of both sides, m/s².
+#[derive(Serialize)]
+pub(super) struct Metric {
+    pub a: f64,
+    pub b: f64,
+    /// B less A, over A.
+    pub change: Option<f64>,
+    /// The same of the measurement, or of both.
+    pub measured: Vec<f64>,
+}
+
+/// Accelerations over the time of the passage, m/s².
+#[derive(Serialize)]
+pub(super) struct Trace {
+    pub mass: String,
+    pub axis: String,
+    pub a: Vec<f64>,
+    pub b: Vec<f64>,
+    pub measured: Vec<Vec<f64>>,
+}
+
+/// Compares simulated records of both sides, and measured ones with them; all have one sample rate (Hz).
+///
+/// # Errors
+/// A wheel that does not feel the cleat, or a record that ends too early.
+pub(super) fn compared(sides: &[Record; 2], measured: &[Record], rate: f64) -> Result<Compared, CompareError> {
+    let [a, b] = sides;
+    let felt = onset(a)?.unwrap_or(0);
+    let onsets: Vec<usize> = measured
+        .iter()
+        .map(|own| Ok(onset(own)?.unwrap_or(felt)))
+        .collect::<Result<_, CompareError>>()?;
+    let shared: Vec<&Key> = a.keys().filter(|key| b.contains_key(*key)).collect();
+    let window = Windows::default();
+    let samples = |seconds: f64| (seconds * rate).round() as isize;
+    let places = -samples(RUN_IN)..samples(window.impact + window.after_shake);
+    let cut = |record: &Record, key: &Key, onset: usize| {
+        curve(
+            places
+                .clone()
+                .map(|place| sample(record.get(key).copied(), place + onset as isize)),
+        )
+    };
+    let trace = |key: &&Key| Trace {
+        mass: key.0.clone(),
+        axis: key.1.clone(),
+        a: cut(a, key, felt),
+        b: cut(b, key, felt),
+        measured: measured
+            .iter()
+            .zip(&onsets)
+            .map(|(own, &onset)| cut(own, key, onset))
+            .collect(),
+    };
+    let metrics = shared.iter().map(|key| metrics(key, sides, measured, rate));
+    Ok(Compared {
+        metrics: metrics.collect::<Result<_, _>>()?,
+        time: curve(places.clone().map(|place| place as f64 / rate)),
+        traces: shared.iter().map(trace).collect(),
+    })
+}
+
+/// Where the wheel feels the cleat; `None` without a wheel.
+fn onset(of: &Record) -> Result<Option<usize>, CompareError> {
+    let wheel = of.get(&(FEELING.0.to_string(), FEELING.1.to_string()));
+    wheel
+        .map(|wheel| Ok(Alignment::at_peak(wheel, wheel)?.onset))
+        .transpose()
+}
+
+fn metrics(key: &Key, [a, b]: &[Record; 2], measured: &[Record], rate: f64) -> Result<Metrics, CompareError> {
+    let (first, second) = (sizes(a, key, rate)?, sizes(b, key, rate)?);
+    let observed = measured.iter().map(|own| sizes(own, key, rate));
+    let observed = observed.collect::<Result<Vec<_>, _>>()?;
+    let metric = |at: usize| {
+        let (a, b) = (first[at], second[at]);
+        Metric {
+            a,
+            b,
+            change: Some((b - a) / a).filter(|change| change.is_finite()),
+            measured: observed.iter().map(|own| own[at]).collect(),
+        }
+    };
+    Ok(Metrics {
+        mass: key.0.clone(),
+        axis: key.1.clone(),
+        peak: metric(0),
+        after_shake: metric(1),
+    })
+}
+
+/// Peak and after-shake of a record, each from where its own wheel feels the cleat; NaN of what it has not.
+fn sizes(of: &Record, key: &Key, rate: f64) -> Result<[f64; 2], CompareError> {
+    let Some(own) = of.get(key) else {
+        return Ok([f64::NAN; 2]);
+    };
+    let alignment = Alignment {
+        onset: onset(of)?.unwrap_or(0),
+        delay: 0,
+    };
+    let errors = Errors::between(own, own, &alignment, rate, &Windows::default())?;
+    Ok([errors.peaks[0], errors.after_shakes[0]])
+}
+
+/// NaN beyond the ends, and where nothing was recorded.
+fn sample(record: Option<&[f64]>, place: isize) -> f64 {
+    let place = usize::try_from(place).ok();
+    let found = record.zip(place).and_then(|(record, place)| record.get(place));
+    found.copied().unwrap_or(f64::NAN)
+}

@@ -1,0 +1,253 @@
+//! A comparison as text and CSV.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use super::contents::{Result, Spread};
+use super::gather::Comparison;
+use super::modes::Pair;
+use super::moved::Parameter;
+use super::ratios::Largest;
+use crate::table::{Table, number};
+
+/// What the terminal gets.
+pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> String {
+    let [a, b] = [&result.a, &result.b];
+    let models = match a.model == b.model {
+        true => format!("model {}", a.model),
+        false => format!("models {} and {}", a.model, b.model),
+    };
+    let mut out = format!("{} (A) beside {} (B), {models}\n", a.name, b.name);
+    let sections = [
+        parameters(&of.parameters),
+        modes(&of.modes),
+        of.difference
+            .to_string()
+            .lines()
+            .next()
+            .map_or(String::new(), |_| changes(of)),
+        transmissibility(result),
+        gradients(of),
+        cleat(result),
+        of.notices.iter().map(|notice| format!("note: {notice}\n")).collect(),
+    ];
+    for section in sections.iter().filter(|section| !section.is_empty()) {
+        let _ = write!(out, "\n{section}");
+    }
+    if let Some(folder) = folder {
+        let _ = write!(out, "\nreport: {}\n", folder.join("report.html").display());
+    }
+    out
+}
+
+/// Those that moved, and how many did not.
+fn parameters(of: &[Parameter]) -> String {
+    let own: Vec<&Parameter> = of.iter().filter(|own| own.tied_to.is_none()).collect();
+    let shown: Vec<&&Parameter> = own.iter().filter(|own| own.differs()).collect();
+    if shown.is_empty() {
+        return "all parameters are equal\n".into();
+    }
+    let mut table = Table::new([
+        "parameter",
+        "unit",
+        "A",
+        "B",
+        "difference",
+        "change_%",
+        "standard_errors",
+    ]);
+    for own in &shown {
+        table.row(vec![
+            own.name.clone(),
+            own.unit.clone(),
+            or_dash(own.a, 5),
+            or_dash(own.b, 5),
+            or_dash(own.difference, 4),
+            percent(own.relative),
+            or_dash(own.standard_errors, 3),
+        ]);
+    }
+    let rest = match own.len() - shown.len() {
+        0 => String::new(),
+        equal => format!("equal: {equal} other parameters\n"),
+    };
+    table.text() + &rest
+}
+
+fn modes(of: &[Pair]) -> String {
+    if of.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(["mode", "A_Hz", "B_Hz", "change_%", "A_damping_%", "B_damping_%"]);
+    for (place, Pair { a, b }) in of.iter().enumerate() {
+        let [a, b] = [a, b].map(|mode| mode.as_ref().map(|mode| (mode.frequency, mode.damping)));
+        table.row(vec![
+            (place + 1).to_string(),
+            or_dash(a.map(|mode| mode.0), 4),
+            or_dash(b.map(|mode| mode.0), 4),
+            percent(a.zip(b).map(|(a, b)| b.0 / a.0 - 1.0)),
+            percent(a.map(|mode| mode.1)),
+            percent(b.map(|mode| mode.1)),
+        ]);
+    }
+    table.text()
+}
+
+/// How much of the models is another; `qcar diff` prints what.
+fn changes(of: &Comparison) -> String {
+    let line = |part: &qcar_dsl::difference::Part| format!("{} {}", part.changes.len(), part.heading);
+    let counts: Vec<String> = of.difference.parts.iter().map(line).collect();
+    match counts.as_slice() {
+        [] => String::new(),
+        counts => format!("the models differ in {} (see `qcar diff`)\n", counts.join(", ")),
+    }
+}
+
+/// How much B is above A, and how well each meets what was measured.
+fn transmissibility(of: &Result) -> String {
+    let all = &of.transmissibility;
+    let (measured, fits) = (
+        all.iter().any(|own| own.measured.is_some()),
+        all.iter().any(|own| own.fit.is_some()),
+    );
+    let mut headings = vec!["channel", "run", "change_dB", "at_Hz", "rms_dB"];
+    headings.extend(["measured_dB", "at_Hz", "rms_dB"].iter().filter(|_| measured));
+    headings.extend(["fit_A_%", "fit_B_%"].iter().filter(|_| fits));
+    let mut table = Table::with_headings(headings.into_iter().map(String::from).collect());
+    for own in all {
+        let mut cells = vec![own.channel.into(), own.run.unwrap_or("-").into()];
+        cells.extend(change(own.change.as_ref()));
+        cells.extend(change(own.measured.as_ref()).into_iter().filter(|_| measured));
+        let fits_of = own.fit.map_or([None; 2], |fit| fit.map(Some));
+        cells.extend(
+            fits_of
+                .map(|fit| fit.map_or("-".into(), |fit| format!("{fit:.1}")))
+                .into_iter()
+                .filter(|_| fits),
+        );
+        table.row(cells);
+    }
+    if all.is_empty() { String::new() } else { table.text() }
+}
+
+fn change(of: Option<&Largest>) -> [String; 3] {
+    let of = of.map(|own| [own.magnitude, own.frequency, own.rms]);
+    of.map_or(["-".into(), "-".into(), "-".into()], |own| {
+        own.map(|value| number(value, 3))
+    })
+}
+
+fn gradients(of: &Comparison) -> String {
+    if of.gradients.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(["curve", "quantity", "A", "B", "change_%", "standard_errors"]);
+    for own in &of.gradients {
+        table.row(vec![
+            own.test.into(),
+            own.quantity.into(),
+            or_dash(own.a.map(|own| own.value), 4),
+            or_dash(own.b.map(|own| own.value), 4),
+            percent(own.relative),
+            or_dash(own.standard_errors, 3),
+        ]);
+    }
+    table.text()
+}
+
+fn cleat(of: &Result) -> String {
+    if of.cleat.summary.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new([
+        "cleat_change_%",
+        "peak_least",
+        "peak_median",
+        "peak_greatest",
+        "shake_least",
+        "shake_median",
+        "shake_greatest",
+    ]);
+    for (name, changes) in &of.cleat.summary {
+        let cells = [changes.peak, changes.after_shake].into_iter().flat_map(three);
+        table.row(std::iter::once(name.clone()).chain(cells).collect());
+    }
+    table.text()
+}
+
+fn three(of: Option<Spread>) -> [String; 3] {
+    let own = |value: fn(&Spread) -> f64| percent(of.as_ref().map(value));
+    [own(|own| own.least), own(|own| own.median), own(|own| own.greatest)]
+}
+
+fn or_dash(value: Option<f64>, digits: usize) -> String {
+    value.map_or("-".into(), |value| number(value, digits))
+}
+
+fn percent(share: Option<f64>) -> String {
+    let finite = share.filter(|share| share.is_finite());
+    finite.map_or("-".into(), |share| format!("{:.1}", 100.0 * share))
+}
+
+/// A cell of a number that may be missing.
+fn cell(value: Option<f64>) -> String {
+    let finite = value.filter(|value| value.is_finite());
+    finite.map_or(String::new(), |value| value.to_string())
+}
+
+/// All parameters.
+pub(super) fn parameters_csv(of: &Comparison) -> String {
+    let mut out = "parameter,unit,a,b,difference,relative,stderr_a,stderr_b,standard_errors\n".to_string();
+    for own in &of.parameters {
+        let numbers = [
+            own.a,
+            own.b,
+            own.difference,
+            own.relative,
+            own.stderr_a,
+            own.stderr_b,
+            own.standard_errors,
+        ];
+        let _ = writeln!(out, "{},{},{}", own.name, own.unit, numbers.map(cell).join(","));
+    }
+    out
+}
+
+/// Every channel line by line: dB and degrees.
+pub(super) fn ratios_csv(of: &Comparison) -> String {
+    let mut out =
+        "run,channel,frequency,a_dB,a_deg,b_dB,b_deg,measured_a_dB,measured_a_deg,measured_b_dB,measured_b_deg\n"
+            .to_string();
+    for ratio in &of.ratios {
+        let run = ratio.run.as_deref().unwrap_or("");
+        let measured = |place: usize| ratio.measured.get(place).map(|own| &own.value);
+        let polars = [Some(&ratio.a), Some(&ratio.b), measured(0), measured(1)];
+        for (line, frequency) in ratio.frequency.iter().enumerate() {
+            let cells = polars
+                .iter()
+                .flat_map(|polar| [polar.map(|own| own.magnitude[line]), polar.map(|own| own.phase[line])]);
+            let cells: Vec<String> = cells.map(cell).collect();
+            let _ = writeln!(out, "{run},{},{frequency},{}", ratio.channel, cells.join(","));
+        }
+    }
+    out
+}
+
+/// Peaks and after-shakes, m/s²; speeds in m/s and heights in m.
+pub(super) fn passages_csv(of: &Comparison) -> String {
+    let mut out = "run,speed,height,mass,axis,peak_a,peak_b,peak_measured_a,peak_measured_b,\
+                   after_shake_a,after_shake_b,after_shake_measured_a,after_shake_measured_b\n"
+        .to_string();
+    for passage in &of.passages {
+        for own in &passage.compared.metrics {
+            let metric = |of: &super::records::Metric| {
+                let measured = |place: usize| of.measured.get(place).copied();
+                [Some(of.a), Some(of.b), measured(0), measured(1)].map(cell).join(",")
+            };
+            let (peak, shake) = (metric(&own.peak), metric(&own.after_shake));
+            let (name, speed, height) = (&passage.name, passage.speed, passage.height);
+            let _ = writeln!(out, "{name},{speed},{height},{},{},{peak},{shake}", own.mass, own.axis);
+        }
+    }
+    out
+}

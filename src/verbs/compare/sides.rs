@@ -1,0 +1,241 @@
+//! A and B as what is compared in the end: each a model with values, and what was measured of it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use qcar_dsl::schedule::Compiled;
+use qcar_runtime::campaign::{Campaign, Role, Test};
+use qcar_runtime::fit::Level;
+use qcar_runtime::response::parameters::Values;
+
+use super::Arguments;
+use super::subject::Subject;
+use crate::catalogue::{self, Loaded};
+use crate::failure::{Failure, flag};
+use crate::parameters::{self, Beside};
+use crate::verbs::fit::{self, Choices};
+use crate::verbs::kc::{self, Gradient};
+
+/// One of the two.
+pub(super) struct Side {
+    /// As the user has named it.
+    pub name: String,
+    /// As it runs.
+    pub model: Loaded,
+    /// As the compiler sees it.
+    pub compiled: Compiled,
+    /// Of all parameters.
+    pub values: Values,
+    /// Standard errors, by name.
+    pub errors: BTreeMap<String, f64>,
+    /// What it stands on.
+    pub vehicle: Vehicle,
+    /// Only of a campaign.
+    pub measured: Option<Measured>,
+}
+
+/// Facts of a vehicle.
+#[derive(Clone, Default)]
+pub(super) struct Vehicle {
+    /// By name, SI.
+    pub facts: BTreeMap<String, f64>,
+    /// Where they stand, or should.
+    pub file: PathBuf,
+}
+
+/// A campaign, and what its rigs say.
+pub(super) struct Measured {
+    /// As its file describes it.
+    pub campaign: Campaign,
+    /// Transmissibilities, run by run.
+    pub levels: Vec<Level>,
+    /// Of the K&C curves.
+    pub gradients: Vec<Gradient>,
+}
+
+/// Both sides of a subject.
+///
+/// # Errors
+/// What cannot be read, compiled, resolved or fitted, and a parameter set without a model.
+pub(super) fn sides(of: &Subject, arguments: &Arguments) -> Result<[Side; 2], Failure> {
+    let [a, b] = match of {
+        Subject::Parameters([a, b]) => sets([a, b], arguments)?,
+        Subject::Models([a, b]) => models([a, b], arguments)?,
+        Subject::Campaigns([a, b]) => {
+            refuse_what_a_fit_decides(arguments)?;
+            [campaign(a, arguments)?, campaign(b, arguments)?]
+        }
+    };
+    for side in [&a, &b] {
+        side.model.check_inertias(side.values.as_slice())?;
+    }
+    Ok([a, b])
+}
+
+/// What lies below the values of both sides: those of the campaign, and above them those of the file for both.
+fn common(arguments: &Arguments) -> Vec<PathBuf> {
+    let campaign = arguments.campaign.iter().map(|folder| folder.join("campaign.toml"));
+    campaign.chain(arguments.params.clone()).collect()
+}
+
+impl Vehicle {
+    /// What files say of it, a later one above an earlier one.
+    fn read(files: &[PathBuf]) -> Result<Self, Failure> {
+        let mut vehicle = Vehicle {
+            facts: BTreeMap::new(),
+            file: files.last().cloned().unwrap_or_default(),
+        };
+        for file in files {
+            vehicle.facts.extend(Beside::read(file)?.vehicle);
+        }
+        Ok(vehicle)
+    }
+}
+
+fn sets(files: [&PathBuf; 2], arguments: &Arguments) -> Result<[Side; 2], Failure> {
+    let beside = [Beside::read(files[0])?, Beside::read(files[1])?];
+    let model = model_of_sets(&beside, arguments)?;
+    let side = |file: &PathBuf, beside: &Beside| {
+        let loaded = catalogue::load(&model)?;
+        let files: Vec<PathBuf> = common(arguments).into_iter().chain([file.clone()]).collect();
+        let paths = files.iter().map(PathBuf::as_path);
+        Ok::<_, Failure>(Side {
+            name: file.display().to_string(),
+            values: parameters::resolve(loaded.about(), paths, &arguments.set)?,
+            model: loaded,
+            compiled: catalogue::compiled(&model)?,
+            errors: beside.errors.clone(),
+            vehicle: Vehicle::read(&files)?,
+            measured: None,
+        })
+    };
+    Ok([side(files[0], &beside[0])?, side(files[1], &beside[1])?])
+}
+
+/// The model that both sets are for: the user's, else that of the fits, else the campaign's.
+fn model_of_sets(beside: &[Beside; 2], arguments: &Arguments) -> Result<String, Failure> {
+    if let Some(model) = &arguments.model {
+        return Ok(model.clone());
+    }
+    match beside.each_ref().map(|own| own.model.as_deref()) {
+        [Some(a), Some(b)] if a == b && catalogue::is_shipped(a) => return Ok(a.into()),
+        [Some(a), Some(b)] if a != b => {
+            let found = format!("fits of `{a}` and of `{b}`");
+            let remedy = "name the model that both are for with --model, or compare the models";
+            return Err(flag("A and B", found, "parameters of one model", remedy).into());
+        }
+        _ => {}
+    }
+    let Some(folder) = &arguments.campaign else {
+        let remedy = "add --model NAME, or --campaign DIR to take its model";
+        return Err(flag("--model", "no model", "the model that the parameters are for", remedy).into());
+    };
+    catalogue::named_by(&Campaign::open(folder)?, None)
+}
+
+fn models(names: [&String; 2], arguments: &Arguments) -> Result<[Side; 2], Failure> {
+    if let Some(model) = &arguments.model {
+        let remedy = "leave --model out, or compare parameter files";
+        return Err(flag("--model", format!("`{model}`"), "no third model", remedy).into());
+    }
+    let [first, second] = [catalogue::load(names[0])?, catalogue::load(names[1])?];
+    let files = common(arguments);
+    let paths = files.iter().map(PathBuf::as_path);
+    let [a, b] = parameters::resolve_both([first.about(), second.about()], paths, &arguments.set)?;
+    let side = |name: &str, model: Loaded, values: Values| {
+        Ok::<_, Failure>(Side {
+            name: name.into(),
+            model,
+            compiled: catalogue::compiled(name)?,
+            values,
+            errors: BTreeMap::new(),
+            vehicle: Vehicle::read(&files)?,
+            measured: None,
+        })
+    };
+    Ok([side(names[0], first, a)?, side(names[1], second, b)?])
+}
+
+fn refuse_what_a_fit_decides(arguments: &Arguments) -> Result<(), Failure> {
+    let given = [
+        ("--params", arguments.params.is_some()),
+        ("--set", !arguments.set.is_empty()),
+        ("--campaign", arguments.campaign.is_some()),
+    ];
+    let Some((name, _)) = given.iter().find(|(_, given)| *given) else {
+        return Ok(());
+    };
+    let remedy = format!("leave {name} out, or compare parameter files");
+    Err(flag(
+        name,
+        "two campaigns",
+        "campaigns alone: each has its own runs and is fitted to them",
+        &remedy,
+    )
+    .into())
+}
+
+/// A campaign: its model fitted to its rig runs, or where it has none, with its start values.
+fn campaign(folder: &Path, arguments: &Arguments) -> Result<Side, Failure> {
+    let wanted = arguments.model.as_deref();
+    let campaign = Campaign::open(folder)?;
+    let Rig {
+        model,
+        values,
+        errors,
+        levels,
+    } = rig(&campaign, wanted)?;
+    let gradients = if kc::has_curves(&campaign) {
+        kc::gradients(&campaign)?
+    } else {
+        Vec::new()
+    };
+    Ok(Side {
+        name: folder.display().to_string(),
+        model,
+        compiled: catalogue::compiled_of_campaign(&campaign, wanted)?,
+        values,
+        errors,
+        vehicle: Vehicle {
+            facts: campaign.vehicle.iter().cloned().collect(),
+            file: campaign.manifest(),
+        },
+        measured: Some(Measured {
+            campaign,
+            levels,
+            gradients,
+        }),
+    })
+}
+
+/// What the rig runs of a campaign give.
+struct Rig {
+    model: Loaded,
+    values: Values,
+    errors: BTreeMap<String, f64>,
+    levels: Vec<Level>,
+}
+
+fn rig(campaign: &Campaign, wanted: Option<&str>) -> Result<Rig, Failure> {
+    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory { .. });
+    let mut runs = campaign.runs.iter();
+    if !runs.any(|run| run.role == Role::Fit && is_rig(&run.test)) {
+        let model = catalogue::of_campaign(campaign, wanted)?;
+        return Ok(Rig {
+            values: parameters::resolve(model.about(), [campaign.manifest().as_path()], &[])?,
+            model,
+            errors: BTreeMap::new(),
+            levels: Vec::new(),
+        });
+    }
+    let fitted = fit::fit(&campaign.folder, &Choices::of_model(wanted))?;
+    let own = fitted.fit.parameters.iter();
+    Ok(Rig {
+        values: fitted.values(),
+        errors: own
+            .filter_map(|parameter| Some((parameter.name.clone(), parameter.stderr?)))
+            .collect(),
+        model: fitted.model,
+        levels: fitted.levels,
+    })
+}

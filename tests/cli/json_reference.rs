@@ -1,0 +1,58 @@
+//! The reference of JSON: each verb prints the keys that it lists, and no other.
+
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::succeeds;
+
+const AXLE: &str = "models/campaigns/axle_a_rig";
+
+/// The keys in the first column of the table below `## qcar VERB`.
+fn documented(verb: &str) -> BTreeSet<String> {
+    let text = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/json.md")).unwrap();
+    let part = text.split(&format!("## qcar {verb}\n")).nth(1).unwrap();
+    let part = part.split("\n## ").next().unwrap();
+    let cells = part.lines().filter_map(|line| line.strip_prefix("| `")?.split('|').next());
+    let keys = cells.flat_map(|cell| cell.split(',').map(|key| key.trim().trim_matches('`').to_string()));
+    keys.collect()
+}
+
+fn printed(of: &Value) -> BTreeSet<String> {
+    of.as_object().unwrap().keys().cloned().collect()
+}
+
+fn agree(verb: &str, result: &Value) {
+    assert_eq!(documented(verb), printed(result), "qcar {verb}");
+}
+
+fn result(line: &str) -> Value {
+    let words: Vec<&str> = line.split_whitespace().chain(["--format", "json"]).collect();
+    serde_json::from_str(&succeeds(&words)).unwrap()
+}
+
+#[test]
+fn verbs_print_the_keys_that_are_documented() {
+    agree("matrices", &result("matrices quarter_car"));
+    agree("fit", &result(&format!("fit {AXLE} --starts 1")));
+    agree("kc", &result(&format!("kc {AXLE}"))[0]);
+    agree("simulate", &result(&format!("simulate {AXLE}")));
+    agree("compare", &result(&format!("compare axle_c axle_c_rigid_tm --params {AXLE}/campaign.toml --set m_wheel=40")));
+    let response = result("frf quarter_car --frequencies 1:2:2");
+    agree("frf", &response["channels"]["pad_to_body"]);
+}
+
+#[test]
+fn a_study_holds_the_results_of_the_verbs() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = result(&format!("study {AXLE} --out {}", folder.path().display()));
+    agree("study", &study);
+    agree("discover", &study["discover"]);
+    agree("fit", &study["fit"]);
+    agree("kc", &study["kc"][0]);
+    for (name, driven) in study["simulate"].as_object().unwrap() {
+        assert!(printed(driven).is_subset(&documented("simulate")), "{name}");
+    }
+}
