@@ -21,6 +21,9 @@
       (part) => !part.getAttribute('aria-label'),
     ).length;
     found.bad_numbers = (document.body.innerText.match(/\b(NaN|undefined|Infinity|null)\b/g) || []).length;
+    found.cut = [...document.querySelectorAll('.table')]
+      .filter((table) => table.scrollWidth > table.clientWidth + 1)
+      .map((table) => table.getAttribute('aria-label'));
     found.keyboard = keyboard();
     found.themes = themes();
     parent.postMessage(JSON.stringify(found), '*');
@@ -43,13 +46,11 @@
     const map = document.querySelector('svg.heat');
     plot.focus();
     press(plot, 'ArrowRight');
+    const said = [...plot.querySelectorAll('.u-value')].map((value) => value.textContent).filter((text) => text).length;
+    if (!map) return { focused: document.activeElement === plot, plot: said };
     map.focus();
     press(map, 'ArrowRight');
-    return {
-      focused: document.activeElement === map,
-      plot: [...plot.querySelectorAll('.u-value')].map((value) => value.textContent).filter((text) => text).length,
-      map: document.querySelector('.readout').textContent,
-    };
+    return { focused: document.activeElement === map, plot: said, map: document.querySelector('.readout').textContent };
   }
 
   function themes() {

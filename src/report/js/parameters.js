@@ -6,10 +6,10 @@ function parameters({ fit, refitted }) {
   const rows = own.map((parameter) => {
     const row = [
       parameter.name,
-      inUnit(0, parameter.unit).unit,
-      scaledNumber(parameter.start, parameter.unit),
-      scaledNumber(parameter.value, parameter.unit),
-      parameter.stderr === null ? '' : scaledNumber(parameter.stderr, parameter.unit, 2),
+      given(parameter.start, parameter.unit),
+      parameter.stderr === null
+        ? quantity(parameter.value, parameter.unit, 4)
+        : measured(parameter.value, parameter.stderr, parameter.unit),
       parameter.relative_stderr === null ? '' : percent(parameter.relative_stderr),
       rangeBar(parameter, found(refitted, parameter.name)),
       remark(parameter),
@@ -34,13 +34,11 @@ function parameters({ fit, refitted }) {
       'Fitted parameters',
       [
         ['parameter', 'text'],
-        ['unit', 'text'],
         ['start', 'number'],
-        ['value', 'number'],
-        ['standard error', 'number'],
+        ['value ± standard error', 'number'],
         ['relative', 'number'],
         ['in its range', 'text'],
-        ['remark', 'text'],
+        ['remark', 'text sentence'],
         ...(changed ? [['with the effect', 'number']] : []),
       ],
       rows,
@@ -48,10 +46,6 @@ function parameters({ fit, refitted }) {
     correlations(fit.correlations),
   );
   return { element };
-}
-
-function scaledNumber(value, unit, digits = 4) {
-  return number(inUnit(value, unit).value, digits);
 }
 
 function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_stderr: relative, curve }) {

@@ -20,10 +20,13 @@ const ROLES = {
   vertical: { label: 'vertical', width: 1.4, dash: [2, 3] },
 };
 
-// `curves` are `{role, label?, values, hidden?}`; `x` and `y` are `{label, log?, range?}`.
-// A curve of role `band` is one edge of a band; edges come in pairs.
-function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
-  const series = curves.map((curve) => seriesOf(curve, digits));
+// `curves` are `{role, label?, values, hidden?, beside?}`; `x` and `y` are
+// `{label, log?, range?, say?, whole?}`.
+// A curve of role `band` is one edge of a band; edges come in pairs. `beside` makes bars of a curve: -1 to the left of
+// their places, 1 to the right, 0 upon them. `gaps` says whether lines end where a value is missing.
+function plot(place, { x, y, at, curves, height = 220, sync, digits = 3, gaps = true }) {
+  const series = curves.map((curve) => ({ ...seriesOf(curve, digits), spanGaps: !gaps }));
+  const say = x.say || ((v) => number(v, 4));
   const options = {
     width: Math.max(200, place.clientWidth),
     height,
@@ -33,7 +36,7 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3 }) {
       y: { range: y.range || padded },
     },
     axes: [axis(x, 26, x.log ? 30 : 50), axis(y, 46, 40)],
-    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : number(v, 4)) }, ...series],
+    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : say(v)) }, ...series],
     bands: bands(curves),
     cursor: { sync: sync && { key: sync, setSeries: false }, points: { size: 6 }, drag: { x: true, y: false } },
     legend: { live: true },
@@ -69,22 +72,31 @@ function traceColumn(trace, kind) {
   );
 }
 
-function seriesOf({ role, label, values, hidden }, digits) {
+function seriesOf({ role, label, hidden, beside }, digits) {
   const { width, dash, label: usual } = ROLES[role];
+  const bars =
+    beside === undefined
+      ? {}
+      : {
+          paths: uPlot.paths.bars({ size: [beside ? 0.42 : 0.85, 60], align: beside }),
+          fill: () => colour(role),
+          dash: undefined,
+          width: 0,
+        };
   return {
     label: label || usual,
     class: role,
     width,
     dash,
     show: !hidden,
-    spanGaps: false,
     stroke: width > 0 ? () => colour(role) : undefined,
     points: { show: false },
     value: (u, v) => (v === null || v === undefined ? '' : number(v, digits)),
+    ...bars,
   };
 }
 
-function axis({ label, ticks }, size, space) {
+function axis({ label, ticks, whole }, size, space) {
   return {
     label,
     size,
@@ -96,6 +108,7 @@ function axis({ label, ticks }, size, space) {
     stroke: () => colour('muted'),
     grid: { stroke: () => colour('grid'), width: 1 },
     ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
+    incrs: whole ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] : undefined,
     filter: ticks ? (u, splits) => splits : undefined,
     values: ticks || ((u, splits) => splits.map((v) => (v === null ? '' : plain(v)))),
   };

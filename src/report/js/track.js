@@ -43,7 +43,7 @@ function track({ track: own, simulate }) {
       {},
       'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
     ),
-    h('div', { class: 'columns four' }, histograms),
+    h('div', { class: 'columns four' }, histograms.map((part) => part.element)),
     summaryTable(simulate),
     details('Every run', errorTable(simulate)),
     h('h3', {}, 'Variants of the model'),
@@ -62,7 +62,7 @@ function track({ track: own, simulate }) {
     element,
     draw: () => {
       show(first);
-      histograms.forEach((part) => drawn(part));
+      histograms.forEach(({ element: place, own }) => histogramPlot(own, place.querySelector('.canvas')));
     },
   };
 }
@@ -113,74 +113,41 @@ function errorFigures(histograms) {
     ['peak', 'peak'],
     ['after_shake', 'after-shake'],
   ].flatMap(([metric, text]) =>
-    wanted.map((name) =>
-      figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, histogramDrawing(histograms[name][metric])),
-    ),
+    wanted.map((name) => ({
+      element: figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, h('div', { class: 'canvas' })),
+      own: histograms[name][metric],
+    })),
   );
 }
 
 // Bars of both models side by side in each bin.
-function histogramDrawing({ before, after }) {
+function histogramPlot({ before, after }, place) {
   const sets = [
     ['before', before],
     ['after', after],
   ].filter(([, own]) => own && own.counts.length);
-  if (!sets.length) return h('p', { class: 'note' }, 'no run has this error');
-  const width = sets[0][1].width;
-  const bin = (own, at) => Math.round(own.start / width) + at;
+  if (!sets.length) {
+    place.replaceChildren(h('p', { class: 'note' }, 'no run has this error'));
+    drawn(place);
+    return;
+  }
+  const width = 100 * sets[0][1].width;
+  const bin = (own, at) => Math.round((100 * own.start) / width) + at;
   const low = Math.min(-1, ...sets.map(([, own]) => bin(own, 0)));
   const high = Math.max(1, ...sets.map(([, own]) => bin(own, own.counts.length)));
+  const bins = [...Array(high - low).keys()].map((at) => low + at);
   const most = Math.max(...sets.flatMap(([, own]) => own.counts));
-  const [left, top, w, tall] = [26, 8, 210, 92];
-  const x = (edge) => left + ((edge - low) / (high - low)) * w;
-  const y = (count) => top + tall * (1 - count / most);
-  const thin = w / (high - low) / sets.length;
-  const bars = sets.flatMap(([role, own], index) =>
-    own.counts.map((count, at) =>
-      count === 0
-        ? null
-        : svg(
-            'rect',
-            {
-              class: `bar ${role}`,
-              x: x(bin(own, at)) + index * thin + 0.5,
-              y: y(count),
-              width: Math.max(1, thin - 1),
-              height: top + tall - y(count),
-            },
-            svg(
-              'title',
-              {},
-              `${role}: ${count} of ${number(100 * width * bin(own, at))} to ${number(100 * width * (bin(own, at) + 1))} %`,
-            ),
-          ),
-    ),
-  );
-  const every = [1, 2, 4, 10, 20, 40].find((step) => (high - low) / step <= 5) || 100;
-  const ticks = [];
-  for (let edge = Math.ceil(low / every) * every; edge <= high; edge += every) ticks.push(edge);
-  return svg(
-    'svg',
-    {
-      class: 'histogram',
-      viewBox: '0 0 244 142',
-      role: 'img',
-      'aria-label': sets
-        .map(
-          ([role, own]) =>
-            `${role}: ${own.counts.join(', ')} runs in bins of 5 percent from ${number(100 * own.start)} percent`,
-        )
-        .join('; '),
-    },
-    svg('path', { class: 'frame', d: `M${left} ${top}V${top + tall}H${left + w}` }),
-    svg('path', { class: 'zero', d: `M${x(0)} ${top}V${top + tall}` }),
-    bars,
-    ticks.map((edge) =>
-      svg('text', { x: x(edge), y: top + tall + 14, 'text-anchor': 'middle' }, plain(100 * width * edge, 3)),
-    ),
-    [0, most].map((count) => svg('text', { x: left - 5, y: y(count) + 4, 'text-anchor': 'end' }, String(count))),
-    svg('text', { x: left + w / 2, y: 136, 'text-anchor': 'middle' }, 'error, %'),
-  );
+  plot(place, {
+    x: { label: 'error, %', range: () => [low * width, high * width], say: (v) => `${plain(v - width / 2, 3)} to ${plain(v + width / 2, 3)}` },
+    y: { label: 'runs', whole: true, range: () => [0, most * 1.05] },
+    at: bins.map((own) => (own + 0.5) * width),
+    height: 170,
+    curves: sets.map(([role, own], at) => ({
+      role,
+      beside: sets.length > 1 ? 2 * at - 1 : 0,
+      values: bins.map((place) => own.counts[place - bin(own, 0)] || 0),
+    })),
+  });
 }
 
 const MODELS = [

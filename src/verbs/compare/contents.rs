@@ -61,6 +61,8 @@ pub(super) struct Cleat<'a> {
     runs: Vec<Run<'a>>,
     /// Changes over all runs, by `mass_axis`.
     pub summary: BTreeMap<String, Changes>,
+    /// The same of what two campaigns measured.
+    pub measured: Option<BTreeMap<String, Changes>>,
 }
 
 /// A mass along an axis in a run.
@@ -136,7 +138,8 @@ impl<'a> Result<'a> {
             cleat: Cleat {
                 conditions: comparison.conditions,
                 runs: comparison.passages.iter().flat_map(runs).collect(),
-                summary: summary(&comparison.passages),
+                summary: summary(&comparison.passages, |metric| metric.change),
+                measured: Some(summary(&comparison.passages, Metric::measured_change)).filter(|own| !own.is_empty()),
             },
             kc: &comparison.gradients,
             notices: &comparison.notices,
@@ -175,26 +178,22 @@ fn traces(of: &Passage) -> Traces<'_> {
     }
 }
 
-fn summary(of: &[Passage]) -> BTreeMap<String, Changes> {
+/// Changes of every mass and axis that has any.
+fn summary(of: &[Passage], change: fn(&Metric) -> Option<f64>) -> BTreeMap<String, Changes> {
     let mut groups: BTreeMap<String, Vec<&Metrics>> = BTreeMap::new();
     for metrics in of.iter().flat_map(|passage| &passage.compared.metrics) {
-        groups
-            .entry(format!("{}_{}", metrics.mass, metrics.axis))
-            .or_default()
-            .push(metrics);
+        let name = format!("{}_{}", metrics.mass, metrics.axis);
+        groups.entry(name).or_default().push(metrics);
     }
-    let changes = |group: &[&Metrics]| Changes {
-        peak: spread(group.iter().map(|own| &own.peak)),
-        after_shake: spread(group.iter().map(|own| &own.after_shake)),
+    let changes = |(name, group): (String, Vec<&Metrics>)| {
+        let peak = spread(group.iter().filter_map(|own| change(&own.peak)).collect());
+        let after_shake = spread(group.iter().filter_map(|own| change(&own.after_shake)).collect());
+        (peak.is_some() || after_shake.is_some()).then_some((name, Changes { peak, after_shake }))
     };
-    groups
-        .iter()
-        .map(|(name, group)| (name.clone(), changes(group)))
-        .collect()
+    groups.into_iter().filter_map(changes).collect()
 }
 
-fn spread<'a>(of: impl Iterator<Item = &'a Metric>) -> Option<Spread> {
-    let mut changes: Vec<f64> = of.filter_map(|metric| metric.change).collect();
+fn spread(mut changes: Vec<f64>) -> Option<Spread> {
     changes.sort_by(f64::total_cmp);
     let last = changes.len().checked_sub(1)?;
     Some(Spread {

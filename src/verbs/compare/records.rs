@@ -50,6 +50,16 @@ pub(super) struct Metric {
     pub measured: Vec<f64>,
 }
 
+impl Metric {
+    /// That of what was measured of both.
+    pub(super) fn measured_change(&self) -> Option<f64> {
+        match self.measured[..] {
+            [a, b] => Some((b - a) / a).filter(|change| change.is_finite()),
+            _ => None,
+        }
+    }
+}
+
 /// Accelerations over the time of the passage, m/s².
 #[derive(Serialize)]
 pub(super) struct Trace {

@@ -1,9 +1,10 @@
 //! A comparison as text and CSV.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use super::contents::{Result, Spread};
+use super::contents::{Changes, Result, Spread};
 use super::gather::Comparison;
 use super::modes::Pair;
 use super::moved::Parameter;
@@ -28,7 +29,8 @@ pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> S
             .map_or(String::new(), |_| changes(of)),
         transmissibility(result),
         gradients(of),
-        cleat(result),
+        cleat("cleat_change_%", Some(&result.cleat.summary)),
+        cleat("measured_change_%", result.cleat.measured.as_ref()),
         of.notices.iter().map(|notice| format!("note: {notice}\n")).collect(),
     ];
     for section in sections.iter().filter(|section| !section.is_empty()) {
@@ -155,12 +157,12 @@ fn gradients(of: &Comparison) -> String {
     table.text()
 }
 
-fn cleat(of: &Result) -> String {
-    if of.cleat.summary.is_empty() {
+fn cleat(heading: &str, of: Option<&BTreeMap<String, Changes>>) -> String {
+    let Some(summary) = of.filter(|summary| !summary.is_empty()) else {
         return String::new();
-    }
+    };
     let mut table = Table::new([
-        "cleat_change_%",
+        heading,
         "peak_least",
         "peak_median",
         "peak_greatest",
@@ -168,7 +170,7 @@ fn cleat(of: &Result) -> String {
         "shake_median",
         "shake_greatest",
     ]);
-    for (name, changes) in &of.cleat.summary {
+    for (name, changes) in summary {
         let cells = [changes.peak, changes.after_shake].into_iter().flat_map(three);
         table.row(std::iter::once(name.clone()).chain(cells).collect());
     }

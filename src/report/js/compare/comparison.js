@@ -9,7 +9,7 @@ function comparison(data) {
     kinds[data.kind],
     `${names[0]} beside ${names[1]}`,
     key('before', `A, ${data.a.name}`),
-    ' ',
+    h('br'),
     key('after', `B, ${data.b.name}`),
     h('br'),
     models,

@@ -1,9 +1,9 @@
 // The parameters side by side, those that moved most first.
 
-function moves({ parameters: all, a, b }) {
+function moves({ parameters: all }) {
   const differing = all.filter((own) => own.moved || own.a === null || own.b === null);
   const equal = all.filter((own) => !differing.includes(own) && own.tied_to === null);
-  const size = (own) => (own.relative === null ? Infinity : Math.abs(own.relative));
+  const size = (own) => (own.relative === null ? -1 : Math.abs(own.relative));
   differing.sort((first, second) => size(second) - size(first));
   const known = differing.some((own) => own.standard_errors !== null);
   const most = Math.max(...differing.map((own) => (own.relative === null ? 0 : Math.abs(own.relative))));
@@ -13,10 +13,12 @@ function moves({ parameters: all, a, b }) {
     h(
       'p',
       {},
-      bothKeys((own, letter) => `${letter}, ${(own === 'a' ? a : b).name}`),
+      'Of ',
+      bothKeys(),
+      ', what moved most comes first, what only one of them has comes last.',
       known
-        ? '. The last column is the difference over the combined standard error of both: beyond 2 it is more than the errors of the fits.'
-        : '.',
+        ? ' The last column is the difference over the combined standard error of both fits: beyond 2 it is hardly chance.'
+        : null,
     ),
     differing.length ? moveTable('What differs', differing, known, most) : null,
     equal.length
@@ -27,10 +29,8 @@ function moves({ parameters: all, a, b }) {
             [
               ['parameter', 'text'],
               ['value', 'number'],
-              ['what it is', 'text'],
             ],
-            equal.map((own) => [own.name, given(own.a, own.unit), own.doc]),
-            { class: 'table prose' },
+            equal.map((own) => [described(own), given(own.a, own.unit)]),
           ),
         )
       : null,
@@ -50,20 +50,22 @@ function moveTable(title, rows, known, most) {
       ['change', 'number'],
       ['', 'text'],
       ...(known ? [['standard errors', 'number']] : []),
-      ['what it is', 'text'],
     ],
     rows.map((own) => [
-      own.name,
+      described(own),
       h('span', { class: 'before' }, side(own.a, own.stderr_a, own.unit)),
       h('span', { class: 'after' }, side(own.b, own.stderr_b, own.unit)),
       own.difference === null ? '–' : quantity(own.difference, own.unit),
       signed(own.relative, 3),
       changeBar(own.relative, most),
       ...(known ? [own.standard_errors === null ? '–' : number(own.standard_errors, 2)] : []),
-      own.doc,
     ]),
-    { class: 'table prose' },
   );
+}
+
+// A parameter's name above its sentence.
+function described({ name, doc }) {
+  return [name, h('span', { class: 'doc' }, doc)];
 }
 
 // A change as a bar to the right of zero, or to its left.

@@ -43,7 +43,8 @@ function passages({ cleat, traces }) {
       showPlace,
     ),
     rows,
-    spreadTable(cleat.summary),
+    spreadTable('B against A over all runs, simulated', cleat.summary),
+    cleat.measured ? spreadTable('B against A over all runs, measured', cleat.measured) : null,
   );
   return {
     element,
@@ -95,10 +96,10 @@ function passageTable(all, place) {
   );
 }
 
-function spreadTable(summary) {
+function spreadTable(caption, summary) {
   const cells = (own) => (own ? [own.least, own.median, own.greatest].map((share) => signed(share, 3)) : ['–', '–', '–']);
   return table(
-    'B against A over all runs',
+    caption,
     [
       ['mass', 'text'],
       ['peak, least', 'number'],

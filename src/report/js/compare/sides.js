@@ -24,7 +24,7 @@ function sides(data) {
       {},
       differ
         ? ['What only one of the models has, or has otherwise, stands out in the colour of ', bothKeys(), '.']
-        : `Both sides are of the model ${a.model}: ${lowered(a.doc)} The drawing holds the values of B.`,
+        : `Both sides are of the model ${a.model}: ${lowered(a.doc)}. The drawing holds the values of B.`,
     ),
     differ ? [h('h3', {}, `A, ${a.model}`), h('div', { class: 'drawings of-a' }, first)] : null,
     differ ? h('h3', {}, `B, ${b.model}`) : null,

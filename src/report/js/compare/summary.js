@@ -9,7 +9,7 @@ function summary(data) {
       largestMoves(data.parameters),
       largestShifts(data.modes),
       largestRatios(data.transmissibility),
-      cleatChanges(data.cleat.summary),
+      cleatChanges(data.cleat),
     ]),
     data.notices.length ? data.notices.map((notice) => h('p', { class: 'caution' }, notice)) : null,
   );
@@ -50,22 +50,27 @@ function frequencyShift({ a, b }) {
   return a && b ? b.frequency / a.frequency - 1 : null;
 }
 
+// Of what hardly vibrates, a frequency says little.
 function largestShifts(pairs) {
-  return largest('Natural frequencies', pairs, frequencyShift, (own) => [
+  const lively = pairs.filter(({ a, b }) => a && b && Math.max(a.damping, b.damping) < 0.5);
+  return largest('Natural frequencies', lively, frequencyShift, (own) => [
     `${number(own.a.frequency)} Hz`,
     signed(frequencyShift(own), 3),
   ]);
 }
 
+// Of what was measured, where both sides were.
 function largestRatios(channels) {
   const byChannel = new Map();
-  channels
-    .filter((own) => own.change)
-    .sort(bySize((own) => own.change.magnitude))
+  const known = channels.map(({ channel, change, measured: own }) => ({ channel, ...(own || change) }));
+  known
+    .filter((own) => own.magnitude !== undefined)
+    .sort(bySize((own) => own.magnitude))
     .forEach((own) => byChannel.has(own.channel) || byChannel.set(own.channel, own));
-  return largest('Transmissibility', [...byChannel.values()], (own) => own.change.magnitude, (own) => [
-    `${channelName(own.channel)} at ${number(own.change.frequency)} Hz`,
-    decibels(own.change.magnitude),
+  const title = channels.some((own) => own.measured) ? 'Transmissibility, measured' : 'Transmissibility';
+  return largest(title, [...byChannel.values()], (own) => own.magnitude, (own) => [
+    `${channelName(own.channel)} at ${number(own.frequency)} Hz`,
+    decibels(own.magnitude),
   ]);
 }
 
@@ -73,15 +78,15 @@ function decibels(value) {
   return `${value > 0 ? '+' : ''}${number(value, 2)} dB`;
 }
 
-function cleatChanges(summary) {
-  const own = summary.body_z || Object.values(summary)[0];
-  if (!own) return null;
+function cleatChanges({ summary: simulated, measured: observed }) {
+  const summary = observed || simulated;
   const name = summary.body_z ? 'body_z' : Object.keys(summary)[0];
+  if (!name) return null;
   const line = (what, spread) =>
     spread && h('p', {}, h('span', { class: 'what' }, what), ' ', signed(spread.median, 3));
   return answer(
-    `Cleat, ${words(name)}, median change`,
-    line('peak', own.peak),
-    line('after-shake', own.after_shake),
+    `Cleat, ${words(name)}, median change${observed ? ', measured' : ''}`,
+    line('peak', summary[name].peak),
+    line('after-shake', summary[name].after_shake),
   );
 }
