@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 use qcar_runtime::model::Model;
-use qcar_runtime::modes::{Mode, modes};
+use qcar_runtime::modes::{Mode, Part, modes, pairs};
 use qcar_runtime::response::parameters::Values;
 use support::{CHAIN, chain};
 
@@ -71,4 +71,37 @@ fn frequencies_without_damping_are_the_roots_of_the_determinant() {
 fn an_overdamped_wheel_leaves_its_mode() {
     let (_, modes) = of_chain(&[("c_tire", 50e3)]);
     assert_eq!(modes.len(), 2);
+}
+
+/// Two vibrations of one point each, whose frequencies cross as a spring is changed, keep their partners.
+#[test]
+fn vibrations_are_paired_by_their_shapes() {
+    let mode = |frequency: f64, shape: &[(&str, f64)]| Mode {
+        frequency,
+        damping: 0.1,
+        shape: shape
+            .iter()
+            .map(|&(location, amplitude)| Part {
+                location: location.into(),
+                axis: "z".into(),
+                amplitude: Complex::from(amplitude),
+            })
+            .collect(),
+    };
+    let first = [
+        mode(1.0, &[("body", 1.0)]),
+        mode(9.0, &[("wheel", 1.0)]),
+        mode(10.0, &[("pwt", 1.0), ("body", -0.1)]),
+    ];
+    let second = [
+        mode(1.1, &[("body", -1.0), ("seat", 0.9)]),
+        mode(9.5, &[("pwt", 1.0), ("wheel", 0.2)]),
+        mode(11.0, &[("wheel", 1.0)]),
+    ];
+    assert_eq!(pairs(&first, &second), [(0, 0), (1, 2), (2, 1)]);
+    // What a model without a powertrain has is like no vibration of the powertrain.
+    assert_eq!(pairs(&first[2..], &second[..1]), []);
+    let (_, chain) = of_chain(&[]);
+    let (_, stiffer) = of_chain(&[("k_tire", 1.2 * CHAIN[3].2)]);
+    assert_eq!(pairs(&chain, &stiffer), [(0, 0), (1, 1), (2, 2)]);
 }

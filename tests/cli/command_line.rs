@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 14] = [
+const VERBS: [&str; 15] = [
     "new",
     "check",
     "show",
@@ -23,6 +23,7 @@ const VERBS: [&str; 14] = [
     "diff",
     "completions",
     "study",
+    "compare",
 ];
 
 #[test]
