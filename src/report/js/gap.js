@@ -34,7 +34,7 @@ function heatMaps({ before, after }, changed) {
   return [{ element, draw: () => show(kinds[0][0]) }];
 }
 
-const KINDS = ['harmonic1', 'harmonic2', 'harmonic3', 'time', 'passage', 'travel'];
+const KINDS = ['harmonic1', 'harmonic2', 'harmonic3', 'time', 'passage', 'travel', 'width', 'cycle1', 'cycle2', 'cycle3'];
 
 // What runs along the bands of each kind.
 const ALONG = {
@@ -42,15 +42,30 @@ const ALONG = {
   time: ['time', 's', 1],
   passage: ['time', 's', 1],
   travel: ['travel', 'mm', 1e3],
+  width: ['travel', 'mm', 1e3],
+  cycle: ['frequency', 'Hz', 1],
 };
+
+// Harmonics have bands of a sixth of an octave.
+function overFrequency({ kind }) {
+  return ALONG[kind][1] === 'Hz';
+}
 
 function kindOf(tile) {
   return `${tile.kind}${tile.harmonic || ''}`;
 }
 
 function kindName({ kind, harmonic }) {
-  const names = { time: 'time histories', passage: 'cleat runs', travel: 'K&C curves' };
-  return names[kind] || `${['first', 'second', 'third'][harmonic - 1] || harmonic} harmonic`;
+  const order = `${['first', 'second', 'third'][harmonic - 1] || harmonic} harmonic`;
+  const names = {
+    harmonic: order,
+    time: 'time histories',
+    passage: 'cleat runs',
+    travel: 'K&C curves',
+    width: 'width of K&C loops',
+    cycle: `${order} of K&C sines`,
+  };
+  return names[kind];
 }
 
 const HEAT = [1.5, 3, 10, 30, 100, 300];
@@ -146,7 +161,7 @@ function heatMap(role, tiles, readout) {
 function scale(tiles) {
   const low = Math.min(...tiles.map((tile) => tile.span[0]));
   const high = Math.max(...tiles.map((tile) => tile.span[1]));
-  const log = tiles.length && tiles[0].kind === 'harmonic';
+  const log = tiles.length && overFrequency(tiles[0]);
   return (v) => (log ? Math.log(v / low) / Math.log(high / low) : (v - low) / (high - low));
 }
 
@@ -158,14 +173,14 @@ function mapTicks(tiles) {
   const step =
     [0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50].find((own) => (high - low) / own <= 8) || high - low;
   const values =
-    tiles[0].kind === 'harmonic'
+    overFrequency(tiles[0])
       ? [0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200]
       : [...Array(10).keys()].map((n) => (Math.ceil(low / step) + n) * step);
   return values.filter((v) => v >= low && v <= high);
 }
 
 function levelText(level, tile) {
-  const units = { harmonic: 'mm/s', passage: 'mm', travel: 'mm' };
+  const units = { harmonic: 'mm/s', passage: 'mm', travel: 'mm', width: 'mm', cycle: 'mm' };
   return units[tile.kind] ? `${plain(1e3 * level, 3)} ${units[tile.kind]}` : plain(level, 2);
 }
 
