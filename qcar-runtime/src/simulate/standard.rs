@@ -74,7 +74,7 @@ mod tests {
         assert_eq!(all.len(), 12);
         for run in all {
             let drive = run.drive();
-            let travelled = drive.speed * drive.samples as f64 / drive.sample_rate;
+            let travelled = drive.speed * (drive.samples - 1) as f64 / drive.sample_rate;
             assert!(run.road.check_reaches(travelled).is_ok());
             let highest = run.road.vertices().iter().map(|point| point[1]).fold(0.0, f64::max);
             assert_eq!(highest, run.height);
