@@ -131,6 +131,16 @@ fn dampers_take_energy() {
 }
 
 #[test]
+fn inner_states_take_more_than_they_give() {
+    let law = |law: &str| format!("road p; mass a = m; link l: a - p {{ spring k; state f: N; {law} force = f; }}");
+    earns(&law("rate f = k*v - k/c*f;"), &[]);
+    earns(&law("rate f = k*v + k/c*f;"), &[LawGivesEnergy]);
+    earns(&law("rate f = -k*v - k/c*f;"), &[LawGivesEnergy]);
+    earns(&law("rate f = k*v - k*abs(v)*f/10 N;"), &[]);
+    earns(&law("damper 2*c; rate f = -k*v - k/c*f;"), &[]);
+}
+
+#[test]
 fn a_spring_beside_a_spring_is_one_spring() {
     let second = |link: &str| format!("road p; mass a = m; link l: a - p {{ spring k; }} link n: {link}");
     earns(&second("a - p { damper c; }"), &[]);

@@ -2,9 +2,11 @@
 //! outweigh it.
 
 use super::Scratch;
+use super::dual::{Complex, Dual};
 use super::extremes::extreme;
 use super::kinetic;
-use super::sample::{bounds, uniform};
+use super::sample::{Values, bounds, uniform};
+use super::stiffness::dynamic_stiffness;
 use crate::diagnostic::{Diagnostic, structure};
 use crate::expr::{Expr, LinkId, Symbol};
 use crate::model::{Link, Term};
@@ -15,6 +17,9 @@ const TRIALS: u64 = 64;
 /// Travel, m or rad, and speed, m/s or rad/s, that a suspension sees.
 const TRAVEL: f64 = 0.1;
 const SPEED: f64 = 2.0;
+
+/// Angular frequencies of small vibrations, rad/s, from those of a car's body to those of sound.
+const FREQUENCIES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4];
 
 /// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion.
 pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
@@ -31,7 +36,10 @@ pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
             });
         }
         let id = LinkId(index as u16);
-        found.extend(pushes_along(scratch, link, id));
+        found.extend(match link.law.inner.as_slice() {
+            [] => pushes_along(scratch, link, id),
+            _ => feeds_vibrations(scratch, link, id),
+        });
     }
     found
 }
@@ -46,12 +54,11 @@ fn negative(scratch: &Scratch, link: &Link, coefficient: Expr, what: &str) -> Op
     (lowest.value < 0.0).then(|| structure::negative_damping(link.declared.span, &link.name, what, lowest.value, &at))
 }
 
-/// A law without inner states that a faster motion helps on. With inner states, what is stored cannot be told from
-/// what is taken.
+/// A law without inner states that a faster motion helps on.
 fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
     let force = scratch.slopes[usize::from(id.0)].force;
     let has_law = link.law.terms.iter().any(|term| matches!(term, Term::Force(_)));
-    if !has_law || !link.law.inner.is_empty() {
+    if !has_law {
         return None;
     }
     (0..TRIALS).find_map(|trial| {
@@ -64,25 +71,57 @@ fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic
     })
 }
 
+/// A law with inner states that gives energy to vibrations about rest. At any one moment, what is stored cannot be told
+/// from what is given; over a cycle it is the imaginary part of the dynamic stiffness that takes.
+fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
+    let slopes = &scratch.slopes[usize::from(id.0)];
+    let laws: Vec<Expr> = slopes.all();
+    (0..TRIALS).find_map(|trial| {
+        let parameters = drawn(scratch, &laws, trial)?;
+        let leaf = |symbol| parameters(symbol).unwrap_or(0.0);
+        let values = Values::new(&scratch.graph, &leaf);
+        let constant = |e| Dual::constant(Complex::real(values.of(e)), 0);
+        let feeds = |frequency: &&f64| {
+            let stiffness = dynamic_stiffness(slopes, &constant, **frequency).value;
+            stiffness.im < -1e-9 * stiffness.abs()
+        };
+        let frequency = FREQUENCIES.iter().find(feeds)?;
+        Some(structure::law_feeds_vibrations(
+            link.declared.span,
+            &link.name,
+            *frequency,
+        ))
+    })
+}
+
 fn centred(seed: u64, tag: u64) -> f64 {
     2.0 * uniform(seed, tag) - 1.0
 }
 
 /// The force at a point; `None` where a parameter has neither range nor default.
 fn force_at(scratch: &Scratch, force: Expr, trial: u64, s: f64, v: f64) -> Option<f64> {
-    let parameters = &scratch.model.parameters;
-    let value = |index: u16| {
-        let (low, high) = bounds(scratch.model, &parameters[usize::from(index)])?;
-        Some(low + (high - low) * uniform(trial, 100 + u64::from(index)))
+    let parameters = drawn(scratch, &[force], trial)?;
+    let motion = |symbol| if matches!(symbol, Symbol::Stretch(_)) { s } else { v };
+    let leaf = |symbol| parameters(symbol).unwrap_or_else(|| motion(symbol));
+    Some(scratch.graph.evaluate(force, &leaf))
+}
+
+/// Values within their ranges for the parameters of some expressions, and `None` for all else; `None` altogether where
+/// a parameter has neither range nor default.
+fn drawn<'a>(scratch: &'a Scratch, of: &[Expr], trial: u64) -> Option<impl Fn(Symbol) -> Option<f64> + use<'a>> {
+    let model = scratch.model;
+    let range = move |index: u16| bounds(model, &model.parameters[usize::from(index)]);
+    let decided = |symbol| !matches!(symbol, Symbol::Parameter(index) if range(index).is_none());
+    let value = move |symbol| match symbol {
+        Symbol::Parameter(index) => {
+            range(index).map(|(low, high)| low + (high - low) * uniform(trial, 100 + u64::from(index)))
+        }
+        _ => None,
     };
-    let decided = scratch.graph.symbols([force]).into_iter().all(|symbol| match symbol {
-        Symbol::Parameter(index) => value(index).is_some(),
-        _ => true,
-    });
-    let leaf = |symbol| match symbol {
-        Symbol::Parameter(index) => value(index).unwrap_or_default(),
-        Symbol::Stretch(_) => s,
-        _ => v,
-    };
-    decided.then(|| scratch.graph.evaluate(force, &leaf))
+    scratch
+        .graph
+        .symbols(of.iter().copied())
+        .into_iter()
+        .all(decided)
+        .then_some(value)
 }

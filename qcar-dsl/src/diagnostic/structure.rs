@@ -135,6 +135,14 @@ pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
         .hint("write the force that resists, `force = c*v` with a positive `c`")
 }
 
+/// A law with inner states that pushes small vibrations on.
+pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnostic {
+    let message = format!("the law of link `{link}` gives energy to vibrations about rest at {frequency} rad/s");
+    Diagnostic::error(Code::LawGivesEnergy, message)
+        .label(span, "gives more in a cycle than it takes")
+        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`")
+}
+
 /// Two links that are one.
 pub fn duplicate_link((span, first_span): (Span, Span), name: &str, first: &str, kind: &str) -> Diagnostic {
     let message = format!("link `{name}` repeats the {kind} of link `{first}`");
