@@ -1,13 +1,32 @@
 //! Ctrl-C: what is done stays, nothing is left half-written, and the user is told which is which.
 
+use std::io::Write;
 use std::path::PathBuf;
 use std::process;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use crate::files;
 use crate::progress;
 
 /// What shells report of a program that Ctrl-C has ended: 128 and the number of the signal.
 const EXIT_STATUS: i32 = 130;
+
+/// What is known by now: whole parts of the answer, and sentences on the way to it.
+static KNOWN: Mutex<(String, String)> = Mutex::new((String::new(), String::new()));
+
+/// Keeps a whole part of the answer: it goes to standard output if the rest is never known.
+pub fn keep(part: &str) {
+    known().0.push_str(part);
+}
+
+/// Notes what is known on the way to an answer, for the user who does not wait for it.
+pub fn note(sentence: &str) {
+    known().1.push_str(&format!("so far: {sentence}\n"));
+}
+
+fn known() -> MutexGuard<'static, (String, String)> {
+    KNOWN.lock().unwrap_or_else(PoisonError::into_inner)
+}
 
 /// From here on, Ctrl-C ends the program in order.
 pub fn listen() {
@@ -19,7 +38,11 @@ fn end() {
     // No other file is begun while this is held.
     let written = files::close();
     let doing = progress::clear().map_or(String::new(), |what| format!(" at {what}"));
-    eprintln!("interrupted{doing}; {}", inventory(&written));
+    let known = known();
+    let (parts, sentences) = (known.0.as_bytes(), &known.1);
+    // Whoever has stopped reading has what was wanted.
+    let _ = std::io::stdout().write_all(parts);
+    eprint!("interrupted{doing}; {}\n{sentences}", inventory(&written));
     process::exit(EXIT_STATUS);
 }
 

@@ -144,6 +144,20 @@ fn is_answer(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension == "json")
 }
 
+/// A sentence for each value `p` that lies beyond what the model takes for plausible: most often a matter of its unit.
+pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
+    let all = about.parameters.iter().zip(p);
+    let beyond = all.filter_map(|(parameter, &value)| {
+        let (low, high) = parameter.range?;
+        let (name, unit, model) = (&parameter.name, &parameter.unit, &about.name);
+        let sentence = format!(
+            "{name} = {value} {unit} is outside {low} to {high} {unit}, which model {model} takes for plausible"
+        );
+        (!(low..=high).contains(&value)).then_some(sentence)
+    });
+    beyond.collect()
+}
+
 /// What is computed from parameter values is a number.
 ///
 /// # Errors

@@ -12,12 +12,13 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
-use qcar_runtime::discover::search::{Discovery, Verdict, discover};
+use qcar_runtime::discover::search::{Discovery, News, Verdict, discover};
 use qcar_runtime::model::{About, Default};
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::put;
+use crate::interruption::note;
 use crate::parameters::check_vehicle;
 use crate::progress::Showing;
 use crate::verbs::Format;
@@ -96,7 +97,11 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     check_vehicle(bench.model().about(), campaign)?;
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
-    let told = |what: &str| showing.tell(format!("{}: {what}", campaign.name));
+    let told = |news: News<'_>| match news {
+        News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
+        News::Far(done, of) => showing.far(done, of),
+        News::Known(what) => note(what),
+    };
     let found = discover(
         Box::new(bench.clone()),
         &setting(campaign, bench.model().about()),

@@ -16,11 +16,14 @@ use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
+use crate::parameters::out_of_range;
 use crate::progress::while_counting;
 use crate::verbs::Format;
 
 // What K&C curves say beside it.
 mod clamped;
+// What is odd, but no error.
+mod notices;
 // The result as text and JSON.
 pub(crate) mod render;
 // The result as files.
@@ -137,7 +140,7 @@ impl Fitted {
 /// Reads a campaign and fits a model to it.
 pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failure> {
     let begun = Instant::now();
-    let campaign = Campaign::open(folder)?;
+    let mut campaign = Campaign::open(folder)?;
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, choices)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
@@ -145,6 +148,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
+    campaign.notices.extend(notices::silent_runs(&campaign, &levels));
+    campaign.notices.extend(out_of_range(model.about(), setup.values()));
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
     let fit = while_counting(searches, |told| setup.fit_telling(told));
     let mut fitted = Fitted {

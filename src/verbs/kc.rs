@@ -6,6 +6,7 @@ use clap::Args;
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
+use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
 
@@ -13,6 +14,7 @@ use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::json;
 use crate::parameters;
+use crate::progress::while_counting;
 use crate::table::{Table, number};
 use crate::verbs::Format;
 
@@ -81,18 +83,9 @@ pub(crate) fn has_curves(campaign: &Campaign) -> bool {
 /// # Errors
 /// A campaign without K&C curves, and a curve without gradients.
 pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
-    let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test));
-    let mut found = Vec::new();
-    for run in of(|test| matches!(test, Test::Bounce)) {
-        found.extend(quasi_static(campaign, run, "bounce", "k_wheel_z")?);
-    }
-    let dynamic: Vec<&Run> = of(|test| matches!(test, Test::DynamicBounce { .. })).collect();
-    if !dynamic.is_empty() {
-        found.extend(vertical_sines(campaign, &dynamic)?);
-    }
-    for run in of(|test| matches!(test, Test::Longitudinal)) {
-        found.extend(quasi_static(campaign, run, "longitudinal", "k_wheel_x")?);
-    }
+    let mut found = while_counting(format!("{}: K&C curve", campaign.name), |told| {
+        of_curves(campaign, told)
+    })?;
     if found.is_empty() {
         let expected = "a run of kind bounce, dynamic_bounce or longitudinal";
         let remedy = "list the K&C curves as runs";
@@ -109,6 +102,29 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
         found
             .iter_mut()
             .for_each(|gradient| take_apart(gradient, &model, &values));
+    }
+    Ok(found)
+}
+
+/// Those of all curves, in the order of the tests.
+fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, InputError> {
+    let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test)).collect();
+    let bounce: Vec<&Run> = of(|test| matches!(test, Test::Bounce));
+    let dynamic: Vec<&Run> = of(|test| matches!(test, Test::DynamicBounce { .. }));
+    let longitudinal: Vec<&Run> = of(|test| matches!(test, Test::Longitudinal));
+    let all = bounce.len() + dynamic.len() + longitudinal.len();
+    let mut found = Vec::new();
+    for (done, run) in bounce.iter().enumerate() {
+        told(done, all);
+        found.extend(quasi_static(campaign, run, "bounce", "k_wheel_z")?);
+    }
+    told(bounce.len(), all);
+    if !dynamic.is_empty() {
+        found.extend(vertical_sines(campaign, &dynamic)?);
+    }
+    for (done, run) in longitudinal.iter().enumerate() {
+        told(bounce.len() + dynamic.len() + done, all);
+        found.extend(quasi_static(campaign, run, "longitudinal", "k_wheel_x")?);
     }
     Ok(found)
 }

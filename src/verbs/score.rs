@@ -9,6 +9,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 
 use crate::failure::Failure;
+use crate::interruption::keep;
 use crate::table::{Table, number};
 use crate::verbs::fit::{self, Choices, Fitted};
 
@@ -31,16 +32,18 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let mut reports = Vec::new();
+    let mut reports = String::new();
     let mut all_well = true;
     for folder in campaigns(&arguments.folders)? {
         let truth = Truth::read(&folder.join("truth.toml"))?;
         let fitted = fit::fit(&folder, &Choices::default())?;
         let (text, well) = compare(&fitted, &truth, arguments.within);
-        reports.push(text);
+        let text = if reports.is_empty() { text } else { format!("\n{text}") };
+        keep(&text);
+        reports += &text;
         all_well &= well;
     }
-    let text = reports.join("\n");
+    let text = reports;
     if all_well {
         Ok(text)
     } else {

@@ -174,3 +174,34 @@ fn wishes_that_cannot_be_met_are_refused() {
         );
     }
 }
+
+/// A run that only says how the axle was driven, and a mass given in grams: neither stops a fit, and both are said.
+#[test]
+fn what_is_odd_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), folder.path());
+    let pads = "time,pad_left_z,pad_right_z\n";
+    let sweep = (0..4096).map(|i| {
+        let t = f64::from(i) / 256.0;
+        let pad = (0.5 * t * t).sin();
+        format!("{t},{pad},{pad}\n")
+    });
+    fs::write(
+        folder.path().join("pads.csv"),
+        pads.to_string() + &sweep.collect::<String>(),
+    )
+    .unwrap();
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let run = "[[run]]\nkind = \"time_history\"\nfile = \"pads.csv\"\nrole = \"fit\"\nsample_rate = 256\nband_limited = true\n\n[[run]]";
+    let text = text
+        .replacen("[[run]]", run, 1)
+        .replacen("m_corner = 490.9", "m_corner = 4909.0", 1);
+    fs::write(&manifest, text).unwrap();
+    let said = fitted(&[folder.path().to_str().unwrap(), "--starts", "1"])["notices"].to_string();
+    assert!(
+        said.contains("pads.csv: records nothing that the model moves"),
+        "{said}"
+    );
+    assert!(said.contains("m_corner = 4909 kg is outside 50 to 2000 kg"), "{said}");
+}

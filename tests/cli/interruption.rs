@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::common::repository;
+use crate::common::{copy, repository};
 
 /// Starts `qcar` and returns once it listens to Ctrl-C.
 fn started(folder: &Path, line: &str) -> Child {
@@ -88,4 +88,24 @@ fn progress_is_for_terminals_alone() {
     let child = started(folder.path(), "fit models/campaigns/axle_a_rig --starts 2");
     let output = child.wait_with_output().unwrap();
     assert_eq!(String::from_utf8_lossy(&output.stderr), "");
+}
+
+#[test]
+fn campaigns_that_are_scored_by_then_are_left() {
+    let folder = repository();
+    let shipped = folder.path().join("models/campaigns/axle_a_rig");
+    let [first, second] = ["campaigns/1", "campaigns/2"].map(|name| folder.path().join(name));
+    copy(&shipped, &first);
+    copy(&shipped, &second);
+    // A sweep of the second is a pipe: whoever opens it waits for the other end, so the first is done by then.
+    let (sweep, pipe) = ("rig/sweep_025.csv.gz", second.join("pipe.csv"));
+    let manifest = fs::read_to_string(second.join("campaign.toml")).unwrap();
+    fs::write(second.join("campaign.toml"), manifest.replace(sweep, "pipe.csv")).unwrap();
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    let child = started(folder.path(), "score campaigns");
+    let _end = fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+    let (status, said, told) = interrupted(child);
+    assert_eq!(status, Some(130), "{told}");
+    assert!(said.starts_with("axle_a_rig: axle_a lacks nothing"), "{said}{told}");
+    assert!(said.ends_with('\n') && said.contains("fit_phase_%"), "{said}{told}");
 }

@@ -85,10 +85,21 @@ const MOST_EFFECTS: usize = 3;
 /// First effects from which a search goes on: of two effects the stronger need not be the one that shows first.
 const FIRST_PICKS: usize = 2;
 
-/// Told what is being done.
-pub type Progress<'a> = &'a (dyn Fn(&str) + Sync);
+/// What a search tells of itself meanwhile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum News<'a> {
+    /// What is being done.
+    Doing(&'a str),
+    /// How much of that is done, and of how much.
+    Far(usize, usize),
+    /// What is known by now, and stays so if the search is stopped.
+    Known(&'a str),
+}
 
-/// Searches for what is missing. `progress` is told what is being done.
+/// Told how the search goes, from any thread.
+pub type Progress<'a> = &'a (dyn Fn(News<'_>) + Sync);
+
+/// Searches for what is missing. `progress` is told how it goes.
 ///
 /// # Errors
 /// Where the model lacks what was measured, or a parameter has no value.
@@ -101,9 +112,13 @@ pub fn discover(
     if evidence.of_role(Role::Fit).next().is_none() {
         return Err(PredictError::NothingToFit);
     }
-    progress("fitting the base model");
+    progress(News::Doing("fitting the base model"));
     let base = State::base(workshop, setting, evidence, progress)?;
     let before = base.explanation.clone();
+    progress(News::Known(&format!(
+        "the model alone leaves a gap of {}",
+        told(&before)
+    )));
     let judge = Judge::new(evidence, &before);
     let verdict = |verdict, findings, after: &Explanation| Discovery {
         verdict,
@@ -121,7 +136,9 @@ pub fn discover(
         .filter(|&pick| judge.is_significant(&base, &first.contenders[pick]))
         .take(FIRST_PICKS)
     {
-        let path = Path::begin(&base, &first, pick, &judge).follow(&judge, evidence, progress)?;
+        let path = Path::begin(&base, &first, pick, &judge);
+        progress(News::Known(&path.told()));
+        let path = path.follow(&judge, evidence, progress)?;
         let enough = judge.is_enough(&path);
         if best.as_ref().is_none_or(|best| path.score() < best.score()) {
             best = Some(path);
@@ -151,6 +168,16 @@ pub fn discover(
         path.findings
     };
     Ok(verdict(named, findings, &after))
+}
+
+/// The gap of the runs that judge, in words.
+fn told(of: &Explanation) -> String {
+    let gap = if of.gap.held_out.is_finite() {
+        of.gap.held_out
+    } else {
+        of.gap.fit
+    };
+    format!("{gap:.2} times its uncertainty")
 }
 
 /// Effects that were taken one after the other.
@@ -195,8 +222,16 @@ impl Path {
                 break;
             }
             self = self.taking(&field, 0, judge);
+            progress(News::Known(&self.told()));
         }
         Ok(self)
+    }
+
+    /// How far it has come.
+    fn told(&self) -> String {
+        let names = self.findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
+        let left = told(&self.state.explanation);
+        format!("with {} it leaves {left}", names.collect::<Vec<_>>().join(" and "))
     }
 
     fn score(&self) -> f64 {
@@ -220,10 +255,10 @@ impl Path {
                 .filter(|(k, _)| *k != place)
                 .map(|(_, f)| f.clone())
                 .collect();
-            progress(&format!(
+            progress(News::Doing(&format!(
                 "trying without {} at {}",
                 self.findings[place].effect, self.findings[place].at
-            ));
+            )));
             let state = base.with_all(&others, &self.state, evidence, progress)?;
             match state {
                 Some(state) if !judge.is_missed(&self.state, &state) => {

@@ -12,6 +12,7 @@ use super::ratios::{self, Ratio};
 use super::sides::{Measured, Side, sides};
 use super::subject::Subject;
 use crate::failure::Failure;
+use crate::parameters::out_of_range;
 
 /// A and B, and in what they differ.
 pub(super) struct Comparison {
@@ -42,7 +43,7 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
         [Side { measured: Some(a), .. }, Side { measured: Some(b), .. }] => Some([a, b]),
         _ => None,
     };
-    let mut notices = Vec::new();
+    let mut notices: Vec<String> = sides.iter().flat_map(odd_values).collect();
     let ratios = all_ratios(&sides, both, beside.as_ref(), arguments, &mut notices)?;
     let (conditions, passages) = all_passages(&sides, both, beside.as_ref(), &mut notices)?;
     Ok(Comparison {
@@ -61,6 +62,14 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
         notices,
         sides,
     })
+}
+
+/// What the model of a side takes for implausible.
+fn odd_values(side: &Side) -> Vec<String> {
+    let sentences = out_of_range(side.model.about(), side.values.as_slice()).into_iter();
+    sentences
+        .map(|sentence| format!("{}: {sentence}.", side.name))
+        .collect()
 }
 
 fn all_ratios(

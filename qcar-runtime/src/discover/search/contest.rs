@@ -5,10 +5,11 @@
 //! which only the large features count. The best go on, sharply; all lines are kept for the last.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use rayon::prelude::*;
 
-use super::Progress;
+use super::{News, Progress};
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation};
 use crate::discover::predict::PredictError;
@@ -140,16 +141,20 @@ pub fn contest(
     }
     for stage in &STAGES {
         let seen = looks.at(stage);
-        let fitted = field
-            .into_par_iter()
-            .filter_map(|runner| runner.run(entrants, &seen, stage));
+        let (all, done) = (field.len(), AtomicUsize::new(0));
+        progress(News::Far(0, all));
+        let fitted = field.into_par_iter().filter_map(|runner| {
+            let fitted = runner.run(entrants, &seen, stage);
+            progress(News::Far(done.fetch_add(1, Ordering::Relaxed) + 1, all));
+            fitted
+        });
         let fitted: Vec<Runner> = fitted.collect();
         let before = distances(&fitted);
         field = best(fitted, entrants, stage);
         let stays = |entrant: usize| field.iter().any(|runner| runner.entrant == entrant);
         let left = before.into_iter().filter(|left| !stays(left.entrant));
         dropped.splice(0..0, left);
-        progress(&told(entrants, &field));
+        progress(News::Doing(&told(entrants, &field)));
     }
     let finalists = field.into_par_iter().map(|runner| {
         let entrant = &entrants[runner.entrant];

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
-use super::{Finding, Progress, Rival};
+use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::evidence::Evidence;
@@ -147,7 +147,8 @@ impl State {
     /// Where a parameter has no value.
     pub fn contenders(&self, evidence: &Evidence, progress: Progress<'_>) -> Result<Field, PredictError> {
         let candidates = self.workshop.candidates();
-        progress(&format!("trying {} effects at their places", candidates.len()));
+        let what = format!("trying {} effects at their places", candidates.len());
+        progress(News::Doing(&what));
         let known = self.known();
         let mut entrants = vec![Entrant {
             explanandum: self.unchanged(&known),
