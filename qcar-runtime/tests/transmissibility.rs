@@ -447,7 +447,7 @@ fn what_a_record_cannot_tell_is_refused() {
     assert!(refusal(&cut(30.0), &all).contains("expected a sweep to `end_frequency = 30`"));
     let late = record(pad[20_000..].to_vec(), pad[20_000..].to_vec());
     assert!(refusal(&late, &all).contains("expected a sweep from `start_frequency = 0.5`"));
-    assert!(refusal(&record(vec![0.0; 9000], vec![1.0; 9000]), &all).contains("found a signal that is zero"));
+    assert!(refusal(&record(vec![0.0; 11_000], vec![1.0; 11_000]), &all).contains("found a signal that is zero"));
     let in_g: Vec<f64> = pad.iter().map(|a| a / 9.81).collect();
     let said = refusal(&record(in_g, pad.clone()), &all);
     assert!(
