@@ -141,7 +141,7 @@ impl Swept {
 /// `Y (1 + a δ) = Σ_n (b_n0 + b_n1 δ) X_n + t`: value and variance of each `b_n0`.
 fn fit(references: &[&[Complex<f64>]], response: &[Complex<f64>], offsets: &[f64]) -> Vec<(Complex<f64>, f64)> {
     let unknowns = 2 * references.len() + 2;
-    let mut regressors = DMatrix::from_fn(offsets.len(), unknowns, |k, unknown| {
+    let regressors = DMatrix::from_fn(offsets.len(), unknowns, |k, unknown| {
         match (unknown < 2 * references.len(), unknown % 2) {
             (true, 0) => references[unknown / 2][k],
             (true, _) => references[unknown / 2][k] * offsets[k],
@@ -149,14 +149,6 @@ fn fit(references: &[&[Complex<f64>]], response: &[Complex<f64>], offsets: &[f64
             (false, _) => -response[k] * offsets[k],
         }
     });
-    let norms: Vec<f64> = regressors
-        .column_iter()
-        .map(|column| column.norm().max(f64::MIN_POSITIVE))
-        .collect();
-    regressors
-        .column_iter_mut()
-        .zip(&norms)
-        .for_each(|(mut column, norm)| column.unscale_mut(*norm));
     let response = DVector::from_column_slice(response);
     let inverse = pseudo_inverse(&regressors);
     let solution = &inverse * &response;
@@ -164,8 +156,8 @@ fn fit(references: &[&[Complex<f64>]], response: &[Complex<f64>], offsets: &[f64
     let noise = (&response - &regressors * &solution).norm_squared() / freedom;
     (0..references.len())
         .map(|n| {
-            let weight = inverse.row(2 * n).norm_squared() / norms[2 * n].powi(2);
-            (solution[2 * n] / norms[2 * n], noise * weight)
+            let weight = inverse.row(2 * n).norm_squared();
+            (solution[2 * n], noise * weight)
         })
         .collect()
 }

@@ -78,39 +78,39 @@ impl Fit {
 }
 
 fn fit(reference: &[Complex<f64>], response: &[Complex<f64>], offsets: &[f64]) -> Fit {
-    let mut regressors = DMatrix::from_fn(offsets.len(), UNKNOWNS, |k, unknown| match unknown {
+    let regressors = DMatrix::from_fn(offsets.len(), UNKNOWNS, |k, unknown| match unknown {
         0 => reference[k],
         1 => reference[k] * offsets[k],
         2 => Complex::ONE,
         _ => -response[k] * offsets[k],
     });
-    let norms: Vec<f64> = regressors
-        .column_iter()
-        .map(|column| column.norm().max(f64::MIN_POSITIVE))
-        .collect();
-    regressors
-        .column_iter_mut()
-        .zip(&norms)
-        .for_each(|(mut column, norm)| column.unscale_mut(*norm));
     let response = DVector::from_column_slice(response);
     let inverse = pseudo_inverse(&regressors);
     let solution = &inverse * &response;
     let residual = &response - &regressors * &solution;
-    let weights = inverse.row(0).transpose().unscale(norms[0]);
+    let weights = inverse.row(0).transpose();
     let explained = 1.0 - residual.norm_squared() / response.norm_squared().max(f64::MIN_POSITIVE);
     Fit {
-        value: solution[0] / norms[0],
+        value: solution[0],
         weights,
         residual,
         explained,
     }
 }
 
-/// Of unit columns; where the response is flat, b₁ and a₁ cannot be told apart and share the part that they explain.
+/// By way of unit columns; where the response is flat, b₁ and a₁ cannot be told apart and share the part that they explain.
 pub(super) fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     const SAME: f64 = 1e-10;
-    regressors
-        .clone()
-        .pseudo_inverse(SAME)
-        .expect("the tolerance is positive")
+    let norm = |column: usize| regressors.column(column).norm().max(f64::MIN_POSITIVE);
+    let norms: Vec<f64> = (0..regressors.ncols()).map(norm).collect();
+    let mut unit = regressors.clone();
+    unit.column_iter_mut()
+        .zip(&norms)
+        .for_each(|(mut column, norm)| column.unscale_mut(*norm));
+    let mut inverse = unit.pseudo_inverse(SAME).expect("the tolerance is positive");
+    inverse
+        .row_iter_mut()
+        .zip(&norms)
+        .for_each(|(mut row, norm)| row.unscale_mut(*norm));
+    inverse
 }
