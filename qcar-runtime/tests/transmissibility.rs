@@ -469,7 +469,7 @@ fn what_a_record_cannot_tell_is_refused() {
     };
     let said = refusal(&cut(0.2), &all);
     assert!(
-        said.contains("found a record of 0.200 s, which is too short, expected at least 10.0 s for 0.5 Hz"),
+        said.contains("found a record of 0.2 s, which is too short, expected at least 10.0 s for 0.5 Hz"),
         "{said}"
     );
     assert!(refusal(&cut(43.0), &asking(&[1.0, 600.0])).contains("half the sample rate"));

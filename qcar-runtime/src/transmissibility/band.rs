@@ -202,7 +202,7 @@ fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputErr
         return Ok(());
     }
     let (found, expected) = (
-        format!("a record of {recorded:.3} s, which is too short"),
+        format!("a record of {recorded:.1} s, which is too short"),
         format!("at least {seconds:.1} s for {frequency} Hz"),
     );
     let remedy = "export the whole record, record longer, or ask from a higher frequency";
