@@ -417,6 +417,18 @@ fn a_cut_or_false_gzip_file_is_refused() {
 }
 
 #[test]
+fn a_folder_is_no_file() {
+    let folder = campaign(&[]);
+    fs::remove_file(folder.path().join("bounce.csv")).unwrap();
+    fs::create_dir(folder.path().join("bounce.csv")).unwrap();
+    let error = read_all(folder.path()).unwrap_err().to_string();
+    assert!(
+        error.contains("bounce.csv: found a folder, expected a readable file"),
+        "{error}"
+    );
+}
+
+#[test]
 fn a_curve_is_no_time_history() {
     let folder = campaign(&[]);
     let campaign = Campaign::open(folder.path()).unwrap();

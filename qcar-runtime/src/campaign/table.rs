@@ -122,10 +122,10 @@ fn list<T: AsRef<str>>(names: &[T]) -> String {
 }
 
 fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
-    let opened = File::open(file).and_then(|f| f.metadata().map(|about| (f, about.is_file())));
+    let opened = File::open(file).and_then(|f| f.metadata().map(|about| (f, about.is_dir())));
     let plain = match opened {
-        Ok((plain, true)) => BufReader::new(plain),
-        Ok((_, false)) => return Err(missing(file, "a folder")),
+        Ok((plain, false)) => BufReader::new(plain),
+        Ok((_, true)) => return Err(missing(file, "a folder")),
         Err(error) => return Err(missing(file, &error.to_string())),
     };
     let bytes: Box<dyn Read> = if file.extension().is_some_and(|e| e == "gz") {
