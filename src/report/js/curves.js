@@ -47,7 +47,8 @@ function loopPlot({ test, displacement, force }, kc, place) {
   const branch = (out) => points.map((own) => (own.out === out ? own.force : null));
   const slope = kc.find((own) => own.test === test && own.quantity === 'stiffness');
   const most = 1.05 * Math.max(...force.map(Math.abs));
-  const line = points.map(({ x }) => (Math.abs(slope ? slope.value * 1e-3 * x : Infinity) > most ? null : slope.value * 1e-3 * x));
+  const gradient = slope ? 1e-3 * slope.value : 0;
+  const line = points.map(({ x }) => (Math.abs(gradient * x) > most ? null : gradient * x));
   return plot(place, {
     x: { label: 'displacement, mm' },
     y: { label: 'force, N' },

@@ -38,10 +38,11 @@ function percent(share, digits = 2) {
   return share === null || !Number.isFinite(share) ? '–' : `${number(100 * share, digits)} %`;
 }
 
-// A relative change with its sign.
-function signed(share, digits = 2) {
+// A relative change with its sign, in percent.
+function signed(share) {
   if (share === null || share === undefined || !Number.isFinite(share)) return '–';
-  return `${share > 0 ? '+' : ''}${percent(share, digits)}`;
+  const text = (100 * share).toFixed(Math.abs(share) < 1 ? 1 : 0);
+  return `${Number(text) > 0 ? '+' : ''}${minus(Number(text) === 0 ? '0' : text)}\u202f%`;
 }
 
 // In how many of a larger unit an SI value is best read.

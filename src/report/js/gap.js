@@ -34,7 +34,10 @@ function heatMaps({ before, after }, changed) {
   return [{ element, draw: () => show(kinds[0][0]) }];
 }
 
-const KINDS = ['harmonic1', 'harmonic2', 'harmonic3', 'time', 'passage', 'travel', 'width', 'cycle1', 'cycle2', 'cycle3'];
+const KINDS = [
+  ...['harmonic1', 'harmonic2', 'harmonic3', 'time', 'passage', 'travel', 'width'],
+  ...['cycle1', 'cycle2', 'cycle3'],
+];
 
 // What runs along the bands of each kind.
 const ALONG = {

@@ -138,7 +138,11 @@ function histogramPlot({ before, after }, place) {
   const bins = [...Array(high - low).keys()].map((at) => low + at);
   const most = Math.max(...sets.flatMap(([, own]) => own.counts));
   plot(place, {
-    x: { label: 'error, %', range: () => [low * width, high * width], say: (v) => `${plain(v - width / 2, 3)} to ${plain(v + width / 2, 3)}` },
+    x: {
+      label: 'error, %',
+      range: () => [low * width, high * width],
+      say: (v) => `${plain(v - width / 2, 3)} to ${plain(v + width / 2, 3)}`,
+    },
     y: { label: 'runs', whole: true, range: () => [0, most * 1.05] },
     at: bins.map((own) => (own + 0.5) * width),
     height: 170,

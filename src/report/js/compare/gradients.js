@@ -20,7 +20,7 @@ function gradients({ kc }) {
         `${words(own.test)}, ${own.quantity}`,
         h('span', { class: 'before' }, side(own.a, own.unit)),
         h('span', { class: 'after' }, side(own.b, own.unit)),
-        signed(own.relative, 3),
+        signed(own.relative),
         own.standard_errors === null ? '–' : number(own.standard_errors, 2),
       ]),
     ),

@@ -39,7 +39,10 @@ function moves({ parameters: all }) {
 }
 
 function moveTable(title, rows, known, most) {
-  const side = (value, error, unit) => (value === null ? '–' : error === null ? given(value, unit) : measured(value, error, unit));
+  const side = (value, error, unit) => {
+    if (value === null) return '–';
+    return error === null ? given(value, unit) : measured(value, error, unit);
+  };
   return table(
     title,
     [
@@ -56,7 +59,7 @@ function moveTable(title, rows, known, most) {
       h('span', { class: 'before' }, side(own.a, own.stderr_a, own.unit)),
       h('span', { class: 'after' }, side(own.b, own.stderr_b, own.unit)),
       own.difference === null ? '–' : quantity(own.difference, own.unit),
-      signed(own.relative, 3),
+      signed(own.relative),
       changeBar(own.relative, most),
       ...(known ? [own.standard_errors === null ? '–' : number(own.standard_errors, 2)] : []),
     ]),

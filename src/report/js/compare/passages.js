@@ -86,9 +86,10 @@ function passageTable(all, place) {
     ...headings.map((heading, at) => number(metric.measured[at])),
     h('span', { class: 'before' }, number(metric.a)),
     h('span', { class: 'after' }, number(metric.b)),
-    signed(metric.change, 3),
+    signed(metric.change),
   ];
-  const columns = (name) => [...headings, 'A', 'B', 'change'].map((text, at) => [at ? text : `${name}, ${text}`, 'number']);
+  const columns = (name) =>
+    [...headings, 'A', 'B', 'change'].map((text, at) => [at ? text : `${name}, ${text}`, 'number']);
   return table(
     `Peaks and after-shakes of ${words(place)}, m/s²`,
     [['run', 'text'], ...columns('peak'), ...columns('after-shake')],
@@ -97,7 +98,7 @@ function passageTable(all, place) {
 }
 
 function spreadTable(caption, summary) {
-  const cells = (own) => (own ? [own.least, own.median, own.greatest].map((share) => signed(share, 3)) : ['–', '–', '–']);
+  const cells = (own) => (own ? [own.least, own.median, own.greatest].map(signed) : ['–', '–', '–']);
   return table(
     caption,
     [

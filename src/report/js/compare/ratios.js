@@ -108,7 +108,8 @@ function sideCurves(ratio, part) {
 
 function ratioTable({ transmissibility: all }) {
   const [runs, observed, fits] = [(own) => own.run, (own) => own.measured, (own) => own.fit].map((of) => all.some(of));
-  const change = (own) => (own ? [decibels(own.magnitude), `${number(own.frequency)} Hz`, `${number(own.rms, 2)} dB`] : ['–', '–', '–']);
+  const change = (own) =>
+    own ? [decibels(own.magnitude), `${number(own.frequency)} Hz`, `${number(own.rms, 2)} dB`] : ['–', '–', '–'];
   const three = (name) => [
     [`${name}largest change`, 'number'],
     ['at', 'number'],

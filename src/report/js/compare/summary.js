@@ -43,7 +43,7 @@ function largest(title, all, value, line) {
 
 function largestMoves(parameters) {
   const moved = parameters.filter((own) => own.moved);
-  return largest('Parameters, B against A', moved, (own) => own.relative, (own) => [own.name, signed(own.relative, 3)]);
+  return largest('Parameters, B against A', moved, (own) => own.relative, (own) => [own.name, signed(own.relative)]);
 }
 
 function frequencyShift({ a, b }) {
@@ -55,7 +55,7 @@ function largestShifts(pairs) {
   const lively = pairs.filter(({ a, b }) => a && b && Math.max(a.damping, b.damping) < 0.5);
   return largest('Natural frequencies', lively, frequencyShift, (own) => [
     `${number(own.a.frequency)} Hz`,
-    signed(frequencyShift(own), 3),
+    signed(frequencyShift(own)),
   ]);
 }
 
@@ -83,7 +83,7 @@ function cleatChanges({ summary: simulated, measured: observed }) {
   const name = summary.body_z ? 'body_z' : Object.keys(summary)[0];
   if (!name) return null;
   const line = (what, spread) =>
-    spread && h('p', {}, h('span', { class: 'what' }, what), ' ', signed(spread.median, 3));
+    spread && h('p', {}, h('span', { class: 'what' }, what), ' ', signed(spread.median));
   return answer(
     `Cleat, ${words(name)}, median change${observed ? ', measured' : ''}`,
     line('peak', summary[name].peak),

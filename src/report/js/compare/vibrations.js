@@ -5,7 +5,7 @@ function vibrations({ modes: pairs }) {
   const rows = pairs.map(({ a, b }) => [
     a ? number(a.frequency) : '–',
     b ? number(b.frequency) : '–',
-    signed(frequencyShift({ a, b }), 3),
+    signed(frequencyShift({ a, b })),
     a ? percent(a.damping, 3) : '–',
     b ? percent(b.damping, 3) : '–',
     a ? h('span', { class: 'modes of-before' }, shapeDrawing(a.parts)) : '',
