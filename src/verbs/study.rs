@@ -16,6 +16,8 @@ mod gather;
 pub(crate) mod axle;
 // Cycles of the K&C rig.
 mod loops;
+// What a model shows in sweeps.
+pub(crate) mod swept;
 // Measured and modelled ratios.
 pub(crate) mod rig;
 // Natural vibrations.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{qcar, succeeds};
+use crate::common::{copy, qcar, qcar_in, succeeds};
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
 const STUDY: &str = "models/campaigns/axle_c_study";
@@ -122,6 +122,54 @@ fn transmissibilities_differ_by_what_their_responses_do() {
         .unwrap();
     let own = named(&found["transmissibility"], "channel", "pad_to_body");
     close(number(&own["change"]["magnitude"]), largest, 1e-4);
+}
+
+/// A spring whose rate does not grow is nonlinear in its file alone: in the sweep of a campaign it answers as the linear
+/// one does, but for the straight lines between the places where it is known.
+#[test]
+fn a_nonlinear_model_without_its_effect_answers_as_the_linear_one() {
+    let folder = tempfile::tempdir().unwrap();
+    let [campaign, patched] = ["rig", "patched.axle"].map(|name| folder.path().join(name).display().to_string());
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), Path::new(&campaign));
+    let (manifest, truth) = (format!("{campaign}/campaign.toml"), format!("{campaign}/truth.toml"));
+    let text = fs::read_to_string(&manifest).unwrap();
+    let is_kept = |part: &&str| {
+        !["sweep_050", "sweep_100", "v20_h30", "v30_h20"]
+            .iter()
+            .any(|name| part.contains(name))
+    };
+    let kept: Vec<&str> = text.split("[[run]]").filter(is_kept).collect();
+    fs::write(&manifest, kept.join("[[run]]")).unwrap();
+    succeeds(&[
+        "patch",
+        "axle_a",
+        "progressive_spring",
+        "--at",
+        "spring",
+        "--params",
+        AXLE,
+        "--out",
+        &patched,
+    ]);
+    let found = compared(&[
+        "axle_a",
+        &patched,
+        "--params",
+        &truth,
+        "--campaign",
+        &campaign,
+        "--set",
+        "rate_increase_at_40mm=0",
+    ]);
+    let channels = found["transmissibility"].as_array().unwrap();
+    assert_eq!(channels.len(), 5);
+    for own in channels {
+        assert!(number(&own["change"]["rms"]) < 0.2, "{own}");
+    }
+    for own in found["cleat"]["runs"].as_array().unwrap() {
+        assert!(number(&own["peak"]["change"]).abs() < 1e-3, "{own}");
+    }
+    assert!(found["notices"].to_string().contains("nonlinear"));
 }
 
 /// The values of the campaign that a model without a top mount has.
@@ -286,7 +334,7 @@ fn a_folder_called_like_a_model_is_no_guess() {
     let folder = tempfile::tempdir().unwrap();
     fs::create_dir(folder.path().join("axle_a")).unwrap();
     fs::write(folder.path().join("axle_a/campaign.toml"), "").unwrap();
-    let ran = crate::common::qcar_in(folder.path(), &["compare", "axle_a", "axle_a"]);
+    let ran = qcar_in(folder.path(), &["compare", "axle_a", "axle_a"]);
     assert_eq!(ran.status, 2);
     assert!(ran.stderr.contains("write ./axle_a"), "{}", ran.stderr);
 }

@@ -81,7 +81,7 @@ fn all_ratios(
 ) -> Result<Vec<Ratio>, Failure> {
     let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory { .. });
     let found = match (both, beside) {
-        (Some(both), _) => ratios::of_campaigns(sides, both),
+        (Some(both), _) => ratios::of_campaigns(sides, both)?,
         (None, Some(campaign)) if campaign.runs.iter().any(|run| is_rig(&run.test)) => {
             ratios::of_campaign(sides, campaign)?
         }
@@ -95,10 +95,17 @@ fn all_ratios(
     if ratios.is_empty() {
         notices.push("The models have no channel in common: no transmissibility is compared.".into());
     }
+    let at_rest = ratios.iter().all(|ratio| ratio.run.is_none());
     let nonlinear = sides.iter().find(|side| !side.model.about().linear);
     notices.extend(nonlinear.map(|side| {
         let name = &side.model.about().name;
-        format!("{name} is nonlinear: its modes and transmissibilities are those of small motions about rest.")
+        match at_rest {
+            true => format!(
+                "{name} is nonlinear: its modes and transmissibilities are those of small motions about rest. Name a \
+                 campaign with --campaign to see it at the levels of its runs."
+            ),
+            false => format!("{name} is nonlinear: its modes are those of small motions about rest."),
+        }
     }));
     Ok(ratios)
 }

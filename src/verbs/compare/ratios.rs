@@ -4,22 +4,23 @@ use std::f64::consts::PI;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Campaign, Role, Test};
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::error::InputError;
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::quality::{Quality, quality};
 use qcar_runtime::model::Channel;
 use qcar_runtime::progress::Told;
-use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::Options;
 use serde::Serialize;
 
 use super::sides::{Measured, Side};
-use crate::failure::Failure;
-use crate::progress::while_counting;
+use crate::progress::{Showing, while_counting};
 use crate::report::rounded::{curve, rounded};
 use crate::verbs::frf;
-use crate::verbs::study::rig::{Polar, band, between, nearest, unwrapped};
+use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
+use crate::verbs::study::swept::{Swept, between};
 
 /// A channel of both models, in a run where one was measured.
 #[derive(Serialize)]
@@ -105,60 +106,84 @@ impl Ratio {
     }
 }
 
+/// Both sides as they answer to small motions.
+fn at_rest(sides: &[Side; 2]) -> [Swept<'_>; 2] {
+    sides.each_ref().map(|side| Swept::at_rest(&*side.model, &side.values))
+}
+
+/// A side in the runs of a campaign.
+fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<Swept<'a>, InputError> {
+    if side.model.about().linear {
+        return Ok(Swept::at_rest(&*side.model, &side.values));
+    }
+    let showing = Showing::new();
+    showing.tell(format!("{}: sweeps of {}", campaign.name, side.model.about().name));
+    let evidence = Evidence::from_campaign(campaign, side.model.about())?;
+    Ok(Swept::new(&*side.model, &side.values, &evidence))
+}
+
 /// Channels of the models alone, at these frequencies (Hz): those that both have.
 pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
     let [a, b] = sides.each_ref().map(|side| side.model.about());
-    let shared = a
-        .channels
-        .iter()
-        .filter(|own| b.channels.iter().any(|other| other.name == own.name));
+    let models = at_rest(sides);
+    let is_of_b = |own: &&Channel| b.channels.iter().any(|other| other.name == own.name);
     let ratio = |channel: &Channel| {
-        let excitations = [a, b].map(|about| frf::excitation(about, channel).ok());
-        let [Some(first), Some(second)] = excitations else {
-            return None;
+        let value = |side: usize, about| {
+            let excitation = frf::excitation(about, channel).ok()?;
+            models[side].ratio("", excitation, channel, frequency)
         };
-        let modelled = models(sides, channel, [first, second], frequency)?;
-        Some(together(channel, frequency, modelled, [None, None]))
+        Some(together(channel, frequency, [value(0, a)?, value(1, b)?], [None, None]))
     };
-    shared.filter_map(ratio).collect()
+    a.channels.iter().filter(is_of_b).filter_map(ratio).collect()
 }
 
 /// Channels that a campaign has measured, beside both models.
-pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Ratio>, Failure> {
+///
+/// # Errors
+/// A run that cannot be read.
+pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Ratio>, InputError> {
     let about = sides[0].model.about();
     let measure = |told: Told<'_>| levels(campaign, about, None, &Options::default(), told);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
-    let all = levels
-        .iter()
-        .flat_map(|level| level.observations.iter().map(move |own| (level, own)));
+    let models = [swept(&sides[0], campaign)?, swept(&sides[1], campaign)?];
     let [first, second] = sides.each_ref().map(|side| &side.model.about().excitations);
-    let ratio = |(level, own): (&Level, &Observation)| {
+    let mut ratios = Vec::new();
+    for level in &levels {
         let driven = &first[level.excitation].name;
-        let same = second.iter().position(|excitation| excitation.name == *driven)?;
-        in_run(sides, level, same, own, None)
-    };
-    Ok(all.filter_map(ratio).collect())
+        let Some(same) = second.iter().position(|excitation| excitation.name == *driven) else {
+            continue;
+        };
+        let runs = [(level.name.as_str(), level.excitation), (level.name.as_str(), same)];
+        let ratio = |own: &Observation| in_run(&models, level, runs, own, None);
+        ratios.extend(level.observations.iter().filter_map(ratio));
+    }
+    Ok(ratios)
 }
 
 /// Channels that both campaigns have measured in like runs.
-pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Vec<Ratio> {
+///
+/// # Errors
+/// A run that cannot be read.
+pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<Vec<Ratio>, InputError> {
+    let models = [swept(&sides[0], &a.campaign)?, swept(&sides[1], &b.campaign)?];
     let mut ratios = Vec::new();
     for level in &a.levels {
-        let Some(other) = b
-            .levels
-            .iter()
-            .find(|other| alike(&a.campaign, level, &b.campaign, other))
-        else {
+        let mut others = b.levels.iter();
+        let Some(other) = others.find(|other| alike(&a.campaign, level, &b.campaign, other)) else {
             continue;
         };
+        let runs = [
+            (level.name.as_str(), level.excitation),
+            (other.name.as_str(), other.excitation),
+        ];
         for own in &level.observations {
             let mut others = other.observations.iter();
             if let Some(second) = others.find(|second| second.channel.name == own.channel.name) {
-                ratios.extend(in_run(sides, level, other.excitation, own, Some(second)));
+                ratios.extend(in_run(&models, level, runs, own, Some(second)));
             }
         }
     }
-    ratios
+    Ok(ratios)
 }
 
 /// Two runs that were driven alike.
@@ -174,41 +199,21 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
     }
 }
 
+/// A channel of a run of A, and of a run of B; each run with its excitation.
 fn in_run(
-    sides: &[Side; 2],
+    models: &[Swept; 2],
     level: &Level,
-    second_excitation: usize,
+    runs: [(&str, usize); 2],
     own: &Observation,
     other: Option<&Observation>,
 ) -> Option<Ratio> {
-    let modelled = models(
-        sides,
-        &own.channel,
-        [level.excitation, second_excitation],
-        &own.frequency,
-    )?;
-    let ratio = together(&own.channel, &own.frequency, modelled, [Some(own), other]);
+    let value = |side: usize| models[side].ratio(runs[side].0, runs[side].1, &own.channel, &own.frequency);
+    let ratio = together(&own.channel, &own.frequency, [value(0)?, value(1)?], [Some(own), other]);
     Some(Ratio {
         run: Some(level.name.clone()),
         role: Some(if level.role == Role::Fit { "fit" } else { "held_out" }),
         ..ratio
     })
-}
-
-/// The ratio in both models; `None` where one of them cannot give it.
-fn models(sides: &[Side; 2], channel: &Channel, excitations: [usize; 2], f: &[f64]) -> Option<[Vec<Complex<f64>>; 2]> {
-    let of = |side: &Side, excitation| {
-        let found = ratio(
-            &*side.model,
-            &side.values,
-            excitation,
-            &channel.numerator,
-            &channel.denominator,
-            f,
-        );
-        found.ok().map(|ratio| ratio.value)
-    };
-    Some([of(&sides[0], excitations[0])?, of(&sides[1], excitations[1])?])
 }
 
 fn together(

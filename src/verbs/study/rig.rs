@@ -2,16 +2,12 @@
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::Role;
-use qcar_runtime::discover::evidence::{Evidence, Kind};
-use qcar_runtime::discover::predict::{Prediction, predict};
-use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::quality::{Quality, quality};
-use qcar_runtime::model::Channel;
-use qcar_runtime::response::ratio::ratio;
 use serde::Serialize;
 
-use super::gather::{After, Study};
+use super::gather::Study;
+use super::swept::Swept;
 use crate::report::rounded::curve;
 use crate::verbs::fit::files::{Compared, compare};
 
@@ -50,7 +46,8 @@ pub struct Polar {
 
 /// All ratios that were measured.
 pub fn ratios(of: &Study) -> Vec<Ratio> {
-    let after = of.after.as_ref().map(|after| Changed::new(after, &of.answer.evidence));
+    let after = of.after.as_ref();
+    let after = after.map(|after| Swept::new(&*after.model, &after.values, &of.answer.evidence));
     let compared = compare(&of.fitted);
     compared
         .iter()
@@ -58,10 +55,17 @@ pub fn ratios(of: &Study) -> Vec<Ratio> {
         .collect()
 }
 
-fn together(of: &Compared, after: Option<&Changed>) -> Ratio {
+fn together(of: &Compared, after: Option<&Swept>) -> Ratio {
     let Compared { level, observation, .. } = of;
     let measured = unwrapped(&observation.value);
-    let after = after.and_then(|after| after.ratio(level, observation));
+    let after = after.and_then(|after| {
+        after.ratio(
+            &level.name,
+            level.excitation,
+            &observation.channel,
+            &observation.frequency,
+        )
+    });
     let quality = |values: &[Complex<f64>]| known(observation, values);
     let beside = |values: &[Complex<f64>]| Polar::new(values, &nearest(values, &measured));
     Ratio {
@@ -133,68 +137,5 @@ fn close(angle: f64, other: f64) -> f64 {
         angle + std::f64::consts::TAU * ((other - angle) / std::f64::consts::TAU).round()
     } else {
         angle
-    }
-}
-
-/// The model with what it lacked, before the evidence. A nonlinear one is known at the lines of the evidence only.
-struct Changed<'a> {
-    after: &'a After,
-    evidence: &'a Evidence,
-    predictions: Vec<Prediction>,
-}
-
-impl<'a> Changed<'a> {
-    fn new(after: &'a After, evidence: &'a Evidence) -> Self {
-        let predict = |role| predict(&*after.model, &after.values, &[], evidence, role).unwrap_or_default();
-        let predictions = if after.model.about().linear {
-            Vec::new()
-        } else {
-            [Role::Fit, Role::HeldOut].into_iter().flat_map(predict).collect()
-        };
-        Changed {
-            after,
-            evidence,
-            predictions,
-        }
-    }
-
-    fn ratio(&self, level: &Level, of: &Observation) -> Option<Vec<Complex<f64>>> {
-        let Channel {
-            numerator, denominator, ..
-        } = &of.channel;
-        if self.after.model.about().linear {
-            let (model, values) = (&*self.after.model, &self.after.values);
-            let ratio = ratio(model, values, level.excitation, numerator, denominator, &of.frequency);
-            return ratio.ok().map(|ratio| ratio.value);
-        }
-        let (frequency, above) = self.response(&level.name, &numerator.location)?;
-        let ratio = match self.response(&level.name, &denominator.location) {
-            None => above,
-            Some((_, below)) => above.iter().zip(&below).map(|(above, below)| above / below).collect(),
-        };
-        Some(of.frequency.iter().map(|&f| between(&frequency, &ratio, f)).collect())
-    }
-
-    /// The first harmonic of a sensor over the pad; `None` of the pad itself.
-    fn response(&self, run: &str, location: &str) -> Option<(Vec<f64>, Vec<Complex<f64>>)> {
-        let found = self.predictions.iter().find(|prediction| {
-            let series = &self.evidence.series[prediction.series];
-            let of_run = self.evidence.runs[series.run].name == run;
-            of_run && series.kind == Kind::Harmonic(1) && series.sensor.location == location
-        })?;
-        Some((self.evidence.series[found.series].at.clone(), found.value.clone()))
-    }
-}
-
-/// On the straight line between two neighbours; NaN outside.
-pub fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
-    let right = at.partition_point(|&f| f < wanted);
-    match (right.checked_sub(1), at.get(right)) {
-        (_, Some(&f)) if f == wanted => values[right],
-        (Some(left), Some(&f)) => {
-            let share = (wanted - at[left]) / (f - at[left]);
-            values[left] * (1.0 - share) + values[right] * share
-        }
-        _ => Complex::new(f64::NAN, f64::NAN),
     }
 }

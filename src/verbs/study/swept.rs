@@ -1,0 +1,83 @@
+//! What a model shows in the sweeps of a campaign: the ratios of its signals over frequency.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Complex;
+use qcar_runtime::campaign::Role;
+use qcar_runtime::discover::evidence::{Evidence, Kind};
+use qcar_runtime::discover::predict::predict;
+use qcar_runtime::model::{Channel, Model};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::ratio::ratio;
+
+/// A model with values. A nonlinear one answers at the level of each run, and is known at the lines of its evidence.
+pub struct Swept<'a> {
+    model: &'a dyn Model,
+    values: &'a Values,
+    /// By run and location: Hz, and the first harmonic over the pad; `None` of what is taken as linear.
+    responses: Option<BTreeMap<(String, String), Response>>,
+}
+
+type Response = (Vec<f64>, Vec<Complex<f64>>);
+
+impl<'a> Swept<'a> {
+    /// A model as it answers to small motions about rest, whatever the run.
+    pub fn at_rest(model: &'a dyn Model, values: &'a Values) -> Self {
+        Swept {
+            model,
+            values,
+            responses: None,
+        }
+    }
+
+    /// A model in the runs of a campaign.
+    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence) -> Self {
+        if model.about().linear {
+            return Swept::at_rest(model, values);
+        }
+        let predict = |role| predict(model, values, &[], evidence, role).unwrap_or_default();
+        let predictions = [Role::Fit, Role::HeldOut].into_iter().flat_map(predict);
+        let responses = predictions.filter_map(|prediction| {
+            let series = &evidence.series[prediction.series];
+            let key = (evidence.runs[series.run].name.clone(), series.sensor.location.clone());
+            (series.kind == Kind::Harmonic(1)).then(|| (key, (series.at.clone(), prediction.value)))
+        });
+        Swept {
+            model,
+            values,
+            responses: Some(responses.collect()),
+        }
+    }
+
+    /// A channel in a run with an excitation, at these frequencies (Hz); `None` where the model cannot give it.
+    pub fn ratio(&self, run: &str, excitation: usize, of: &Channel, frequency: &[f64]) -> Option<Vec<Complex<f64>>> {
+        let Channel {
+            numerator, denominator, ..
+        } = of;
+        let Some(responses) = &self.responses else {
+            let ratio = ratio(self.model, self.values, excitation, numerator, denominator, frequency);
+            return ratio.ok().map(|ratio| ratio.value);
+        };
+        let response = |location: &str| responses.get(&(run.to_string(), location.to_string()));
+        let (lines, above) = response(&numerator.location)?;
+        // The pad has no response of its own: all others are over it.
+        let ratio = match response(&denominator.location) {
+            None => above.clone(),
+            Some((_, below)) => above.iter().zip(below).map(|(above, below)| above / below).collect(),
+        };
+        Some(frequency.iter().map(|&f| between(lines, &ratio, f)).collect())
+    }
+}
+
+/// On the straight line between two neighbours; NaN outside.
+pub fn between(at: &[f64], values: &[Complex<f64>], wanted: f64) -> Complex<f64> {
+    let right = at.partition_point(|&f| f < wanted);
+    match (right.checked_sub(1), at.get(right)) {
+        (_, Some(&f)) if f == wanted => values[right],
+        (Some(left), Some(&f)) => {
+            let share = (wanted - at[left]) / (f - at[left]);
+            values[left] * (1.0 - share) + values[right] * share
+        }
+        _ => Complex::new(f64::NAN, f64::NAN),
+    }
+}
