@@ -10,10 +10,10 @@ use qcar::catalogue::compiled;
 use qcar::effects;
 use qcar::workshop::Bench;
 use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::predict::predict;
+use qcar_runtime::discover::{Evidence, Free};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 
@@ -220,4 +220,50 @@ fn loops_of_several_speeds_tell_friction_from_a_damper() {
     let both = bench.with("coulomb_friction", "damper", Some("in_damper")).unwrap();
     let with = newtons(both.model(), &[("f_coulomb", FRICTION), ("k_presliding", PRESLIDING)]);
     assert!(with.iter().all(|missing| *missing < 1.5), "{with:?}");
+}
+
+/// What a search is told of its way is what a changed parameter does.
+#[test]
+fn slopes_are_what_a_changed_parameter_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let campaign = with_sines(folder.path(), &cycle(0.08, |x| SPRING * x), &[0.2, 1.0], 1500.0);
+    let axle = bench("axle_c");
+    let evidence = Evidence::from_campaign(&campaign, axle.model().about()).unwrap();
+    let with = axle.with("coulomb_friction", "damper", Some("in_damper")).unwrap();
+    let (model, names) = (
+        with.model(),
+        ["k_wheel_z", "c_wheel_z", "k_tm", "f_coulomb", "k_presliding"],
+    );
+    let given = [("f_coulomb", 60.0), ("k_presliding", 1e5)];
+    let place = |name: &str| model.about().parameters.iter().position(|p| p.name == name).unwrap();
+    let here = values(model, &given);
+    let free = |name: &&str| Free {
+        parameter: place(name),
+        lower: 0.0,
+        upper: 2.0 * here.as_slice()[place(name)],
+    };
+    let free: Vec<Free> = names.iter().map(free).collect();
+    let all = predict(model, &here, &free, &evidence, Role::Fit).unwrap();
+    for (k, free) in free.iter().enumerate() {
+        let step = 1e-3 * here.as_slice()[free.parameter];
+        let moved = [1.0, -1.0].map(|sign| {
+            let mut moved = here.clone();
+            moved.set(free.parameter, here.as_slice()[free.parameter] + sign * step);
+            predict(model, &moved, &[], &evidence, Role::Fit).unwrap()
+        });
+        for (series, prediction) in all.iter().enumerate() {
+            for (value, slope) in prediction.slopes[k].iter().enumerate() {
+                let [more, less] = [0, 1].map(|way| moved[way][series].value[value]);
+                let expected = (more - less) / (2.0 * step);
+                let complex = evidence.series[prediction.series].kind.complex();
+                let scale = if complex { SPRING } else { SPRING * AMPLITUDE };
+                let error = (slope - expected).norm() * here.as_slice()[free.parameter];
+                assert!(
+                    error < 1e-4 * scale,
+                    "{} in {series}: {slope}, not {expected}",
+                    names[k]
+                );
+            }
+        }
+    }
 }

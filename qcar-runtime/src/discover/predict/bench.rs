@@ -4,7 +4,7 @@
 //! (dry friction, relaxing branches, dampers in series with springs) follows by implicit steps (backward Euler), which
 //! no stiffness upsets.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Dyn, LU, SVD};
 
 use crate::campaign::Axis;
 use crate::discover::evidence::travel::{HELD, MOVED};
@@ -97,10 +97,23 @@ impl Bench {
         })
     }
 
-    /// The force on the wheel (N) at each instant of a path that begins at rest.
-    pub fn forces(&self, model: &dyn Model, p: &[f64], path: &[Instant]) -> Vec<f64> {
-        let mut drive = Drive::new(self, model, p);
-        path.iter().map(|instant| drive.force(instant)).collect()
+    /// The force on the wheel (N) at each instant of a path that begins at rest: with these parameters, and with each of
+    /// some sets that are so near that one Newton step leads from the one to the other.
+    pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Vec<Vec<f64>> {
+        let mut first = Drive::new(self, model, p);
+        let mut near: Vec<Drive> = near.iter().map(|p| Drive::new(self, model, p)).collect();
+        let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
+        for instant in path {
+            first.hold(instant);
+            let factor = first.follow(instant.step);
+            forces[0].push(first.force());
+            for (drive, forces) in near.iter_mut().zip(&mut forces[1..]) {
+                drive.hold(instant);
+                drive.follow_near(&first.x, factor.as_ref(), instant.step);
+                forces.push(drive.force());
+            }
+        }
+        forces
     }
 }
 
@@ -137,6 +150,8 @@ struct Drive<'a> {
     model: &'a dyn Model,
     p: &'a [f64],
     constants: Vec<f64>,
+    /// Acceleration of the wheel for a force of one.
+    of_unit: f64,
     x: Vec<f64>,
     u: Vec<f64>,
     dx: Vec<f64>,
@@ -148,35 +163,40 @@ impl<'a> Drive<'a> {
         let about = model.about();
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
-        Self {
+        let mut drive = Self {
             bench,
             model,
             p,
             constants,
+            of_unit: 1.0,
             x: vec![0.0; about.states.len()],
             u: vec![0.0; about.inputs.len()],
             dx: vec![0.0; about.states.len()],
             nonzeros: vec![0.0; about.matrices.len()],
-        }
+        };
+        let alone = drive.pull();
+        drive.u[bench.handle] = 1.0;
+        drive.of_unit = drive.pull() - alone;
+        drive.u[bench.handle] = 0.0;
+        drive
     }
 
-    /// Goes to the next instant, and says what the rig pushes with.
-    fn force(&mut self, to: &Instant) -> f64 {
+    /// Puts the wheel where the rig has it.
+    fn hold(&mut self, at: &Instant) {
         let bench = self.bench;
-        (self.x[bench.wheel], self.x[bench.wheel_speed]) = (to.travel, to.speed);
+        (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
         for &(place, quantity) in &bench.ground {
             self.u[place] = match quantity {
-                Quantity::Position => to.travel,
-                Quantity::Velocity => to.speed,
+                Quantity::Position => at.travel,
+                Quantity::Velocity => at.speed,
                 Quantity::Acceleration => 0.0,
             };
         }
-        self.follow(to.step);
-        let pulled = self.pull();
-        self.u[bench.handle] = 1.0;
-        let of_unit = self.pull() - pulled;
-        self.u[bench.handle] = 0.0;
-        -pulled / of_unit
+    }
+
+    /// What the rig pushes with.
+    fn force(&mut self) -> f64 {
+        -self.pull() / self.of_unit
     }
 
     /// The acceleration of the wheel if it were let go.
@@ -189,37 +209,67 @@ impl<'a> Drive<'a> {
         self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
     }
 
-    /// Takes what is between to where it is after `h` s (Newton's method).
-    fn follow(&mut self, h: f64) {
-        let between = &self.bench.between;
-        if between.is_empty() {
-            return;
-        }
-        let last: Vec<f64> = between.iter().map(|b| self.x[b.place]).collect();
+    /// Takes what is between to where it is after `h` s (Newton's method); returns the last slope.
+    fn follow(&mut self, h: f64) -> Option<Factor> {
+        let last = self.between();
+        let mut factor = None;
         for _ in 0..STEPS {
-            for (b, last) in between.iter().zip(&last) {
-                if let Some(speed) = b.speed {
-                    self.x[speed] = (self.x[b.place] - last) / h;
-                }
-            }
-            self.move_on();
-            let missing = |(b, last): (&Between, &f64)| match b.speed {
-                Some(speed) => -self.dx[speed],
-                None => h * self.dx[b.place] + last - self.x[b.place],
-            };
-            let missing = DVector::from_iterator(last.len(), between.iter().zip(&last).map(missing));
-            let Some(step) = solve(self.slope(h), missing) else {
-                return;
-            };
-            let mut rests = true;
-            for (b, step) in between.iter().zip(&step) {
-                self.x[b.place] += step;
-                rests &= step.abs() <= RESTS * (self.x[b.place].abs() + SMALL);
-            }
-            if rests {
-                return;
+            let missing = self.missing(&last, h);
+            factor = Factor::of(self.slope(h));
+            let step = factor.as_ref().and_then(|factor| factor.solve(&missing));
+            let Some(step) = step else { return factor };
+            if self.step(&step, &last, h) {
+                break;
             }
         }
+        factor
+    }
+
+    /// The same in one step from where a drive next to this one has arrived.
+    fn follow_near(&mut self, arrived: &[f64], factor: Option<&Factor>, h: f64) {
+        let last = self.between();
+        for b in &self.bench.between {
+            self.x[b.place] = arrived[b.place];
+        }
+        let missing = self.missing(&last, h);
+        if let Some(step) = factor.and_then(|factor| factor.solve(&missing)) {
+            self.step(&step, &last, h);
+        }
+    }
+
+    /// Where what is between is.
+    fn between(&self) -> Vec<f64> {
+        self.bench.between.iter().map(|b| self.x[b.place]).collect()
+    }
+
+    /// Moves what is between, and says whether it rests.
+    fn step(&mut self, step: &DVector<f64>, last: &[f64], h: f64) -> bool {
+        let mut rests = true;
+        for (b, step) in self.bench.between.iter().zip(step) {
+            self.x[b.place] += step;
+            rests &= step.abs() <= RESTS * (self.x[b.place].abs() + SMALL);
+        }
+        self.set_speeds(last, h);
+        rests
+    }
+
+    fn set_speeds(&mut self, last: &[f64], h: f64) {
+        for (b, last) in self.bench.between.iter().zip(last) {
+            if let Some(speed) = b.speed {
+                self.x[speed] = (self.x[b.place] - last) / h;
+            }
+        }
+    }
+
+    /// What is missing until each of what is between has gone its step: no force on a mass is left then.
+    fn missing(&mut self, last: &[f64], h: f64) -> DVector<f64> {
+        self.set_speeds(last, h);
+        self.move_on();
+        let missing = |(b, last): (&Between, &f64)| match b.speed {
+            Some(speed) => -self.dx[speed],
+            None => h * self.dx[b.place] + last - self.x[b.place],
+        };
+        DVector::from_iterator(last.len(), self.bench.between.iter().zip(last).map(missing))
     }
 
     /// How what is missing changes with where the states are, with the opposite sign.
@@ -239,14 +289,33 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// `None` without a number. What nothing holds stays where it is: the smallest step of all.
-fn solve(slope: DMatrix<f64>, missing: DVector<f64>) -> Option<DVector<f64>> {
-    if !slope.iter().chain(&missing).all(|entry| entry.is_finite()) {
-        return None;
+/// A slope that is ready to be solved for.
+enum Factor {
+    Regular(LU<f64, Dyn, Dyn>),
+    /// What nothing holds stays where it is: the smallest step of all.
+    Singular(SVD<f64, Dyn, Dyn>),
+}
+
+impl Factor {
+    /// `None` where nothing is between, or without a number.
+    fn of(slope: DMatrix<f64>) -> Option<Self> {
+        if slope.is_empty() || !slope.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        let factor = slope.clone().lu();
+        Some(if factor.is_invertible() {
+            Factor::Regular(factor)
+        } else {
+            Factor::Singular(slope.svd(true, true))
+        })
     }
-    let regular = slope.clone().lu().solve(&missing);
-    let is_number = |step: &DVector<f64>| step.iter().all(|step| step.is_finite());
-    regular
-        .filter(is_number)
-        .or_else(|| slope.svd(true, true).solve(&missing, f64::EPSILON).ok())
+
+    /// `None` without a number.
+    fn solve(&self, missing: &DVector<f64>) -> Option<DVector<f64>> {
+        let step = match self {
+            Factor::Regular(factor) => factor.solve(missing),
+            Factor::Singular(factor) => factor.solve(missing, f64::EPSILON).ok(),
+        };
+        step.filter(|step| step.iter().all(|step| step.is_finite()))
+    }
 }

@@ -26,9 +26,6 @@ const PARTS: usize = 48;
 const TURNING: usize = 3;
 const FINER: usize = 8;
 
-/// The values of some series.
-type Said = Vec<Vec<Complex<f64>>>;
-
 pub(super) fn travel(
     model: &dyn Model,
     values: &Values,
@@ -37,133 +34,150 @@ pub(super) fn travel(
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
     let of_run = &evidence.runs[run];
-    let (Stimulus::Travel { axis, .. } | Stimulus::Sine { axis, .. }) = of_run.stimulus else {
-        return Ok(Vec::new());
+    let all = evidence.series.iter().enumerate();
+    let series: Vec<(usize, &Series)> = all.filter(|(_, series)| series.run == run).collect();
+    let (axis, course) = match of_run.stimulus {
+        Stimulus::Travel { axis, ends } => (axis, Course::cycle(ends, &series[0].1.at)),
+        Stimulus::Sine { axis, frequency } => (axis, Course::sine(of_run.level, frequency)),
+        _ => return Ok(Vec::new()),
     };
     let bench = Bench::new(model.about(), axis).ok_or_else(|| PredictError::NoInput {
         model: model.about().name.to_string(),
         location: MOVED.to_owned(),
         run: of_run.name.clone(),
     })?;
-    let all = evidence.series.iter().enumerate();
-    let series: Vec<(usize, &Series)> = all.filter(|(_, series)| series.run == run).collect();
-    let says = |p: &[f64]| match of_run.stimulus {
-        Stimulus::Sine { frequency, .. } => sine(&bench, model, p, (of_run.level, frequency), &series),
-        Stimulus::Travel { ends, .. } => cycle(&bench, model, p, ends, &series),
-        _ => Vec::new(),
-    };
-    Ok(differentiated(values, free, &series, &says))
-}
-
-/// What is said of some series with the parameters as they are, and its differences.
-fn differentiated(
-    values: &Values,
-    free: &[Free],
-    series: &[(usize, &Series)],
-    says: &dyn Fn(&[f64]) -> Said,
-) -> Vec<Prediction> {
-    let mut predictions: Vec<Prediction> = series
-        .iter()
-        .zip(says(values.as_slice()))
-        .map(|(&(series, _), value)| Prediction {
-            series,
+    let (moved, steps): (Vec<_>, Vec<_>) = free.iter().map(|free| moved(values, free)).unzip();
+    let forces = bench.forces(model, values.as_slice(), &moved, &course.path);
+    let predict = |&(place, series): &(usize, &Series)| {
+        let read = |forces: &[f64]| course.read(series.kind, forces);
+        let value = read(&forces[0]);
+        let slope = |(forces, step): (&Vec<f64>, &f64)| {
+            let pairs = read(forces).into_iter().zip(&value);
+            pairs.map(|(moved, value)| (moved - value) / step).collect()
+        };
+        Prediction {
+            series: place,
+            slopes: forces[1..].iter().zip(&steps).map(slope).collect(),
             value,
-            slopes: Vec::new(),
             delay: None,
-        })
-        .collect();
-    for free in free {
-        let at = values.as_slice()[free.parameter];
-        let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
-        let mut moved = values.clone();
-        moved.set(free.parameter, at + step);
-        for (prediction, moved) in predictions.iter_mut().zip(says(moved.as_slice())) {
-            let slopes = moved
-                .iter()
-                .zip(&prediction.value)
-                .map(|(moved, value)| (moved - value) / step);
-            prediction.slopes.push(slopes.collect());
         }
-    }
-    predictions
+    };
+    Ok(series.iter().map(predict).collect())
 }
 
-/// Middle and half width of a slow cycle, at the travels of the series; both are at the same.
-fn cycle(bench: &Bench, model: &dyn Model, p: &[f64], ends: [f64; 2], series: &[(usize, &Series)]) -> Said {
-    let travels = &series[0].1.at;
-    let there = way(0.0, ends[0]).chain(way(ends[0], travels[0]));
-    let back = way(ends[1], travels[travels.len() - 1]);
-    let stops: Vec<f64> = there
-        .chain(travels[1..].iter().copied())
-        .chain([ends[1]])
-        .chain(back)
-        .chain(travels.iter().rev().skip(1).copied())
-        .collect();
-    let mut last = 0.0;
-    let path: Vec<Instant> = stops
-        .iter()
-        .map(|&travel| {
-            let way: f64 = travel - std::mem::replace(&mut last, travel);
+/// The parameters with a free one moved, and by how much.
+fn moved(values: &Values, free: &Free) -> (Vec<f64>, f64) {
+    let at = values.as_slice()[free.parameter];
+    let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
+    let mut moved = values.clone();
+    moved.set(free.parameter, at + step);
+    (moved.as_slice().to_vec(), step)
+}
+
+/// What a rig does in a run, and what is read from its forces.
+struct Course {
+    path: Vec<Instant>,
+    reading: Reading,
+}
+
+enum Reading {
+    /// Where the way there and the way back are, each through so many travels.
+    Ways { there: usize, back: usize, count: usize },
+    /// Pieces of a sine of this amplitude (m), and where the path has the first of them.
+    Turns {
+        first: usize,
+        turns: Vec<Turn>,
+        amplitude: f64,
+    },
+}
+
+impl Course {
+    /// A slow cycle between two ends, there and back through some travels.
+    fn cycle([low, high]: [f64; 2], travels: &[f64]) -> Self {
+        let (count, last) = (travels.len(), travels[travels.len() - 1]);
+        let there = way(0.0, low)
+            .chain(way(low, travels[0]))
+            .chain(travels[1..].iter().copied());
+        let back = way(last, high)
+            .chain(way(high, last))
+            .chain(travels.iter().rev().skip(1).copied());
+        let mut before = 0.0;
+        let instant = |travel: f64| {
+            let way: f64 = travel - std::mem::replace(&mut before, travel);
             Instant {
                 travel,
                 speed: SLOW * way.signum(),
                 step: (way.abs() / SLOW).max(SHORTEST),
             }
-        })
-        .collect();
-    let forces = bench.forces(model, p, &path);
-    let back = &forces[forces.len() - travels.len()..];
-    let there = &forces[2 * APPROACH - 1..][..travels.len()];
-    let of = |series: &(usize, &Series)| {
-        let back_sign = if series.1.kind == Kind::Width { -0.5 } else { 0.5 };
-        let pairs = there.iter().zip(back.iter().rev());
-        pairs
-            .map(|(there, back)| Complex::from(0.5 * there + back_sign * back))
-            .collect()
-    };
-    series.iter().map(of).collect()
+        };
+        let path: Vec<Instant> = there.chain(back).map(instant).collect();
+        Self {
+            reading: Reading::Ways {
+                there: 2 * APPROACH - 1,
+                back: path.len() - count,
+                count,
+            },
+            path,
+        }
+    }
+
+    /// A sine that begins at its end of travel.
+    fn sine(amplitude: f64, frequency: f64) -> Self {
+        let omega = TAU * frequency;
+        let approach = way(0.0, amplitude).map(|travel| Instant {
+            travel,
+            speed: omega * amplitude,
+            step: 1.0 / (frequency * PARTS as f64),
+        });
+        let turns: Vec<Turn> = (0..PARTS + PARTS / 2).flat_map(Turn::of_part).collect();
+        let swing = turns.iter().map(|turn| Instant {
+            travel: amplitude * turn.angle.cos(),
+            speed: -omega * amplitude * turn.angle.sin(),
+            step: turn.width / omega,
+        });
+        Self {
+            path: approach.chain(swing).collect(),
+            reading: Reading::Turns {
+                first: APPROACH,
+                turns,
+                amplitude,
+            },
+        }
+    }
+
+    /// The values of a series: middle or half width of a cycle at its travels, or a harmonic over the amplitude.
+    fn read(&self, kind: Kind, forces: &[f64]) -> Vec<Complex<f64>> {
+        match (&self.reading, kind) {
+            (Reading::Ways { there, back, count }, _) => {
+                let sign = if kind == Kind::Width { -0.5 } else { 0.5 };
+                let back = forces[*back..][..*count].iter().rev();
+                let pairs = forces[*there..][..*count].iter().zip(back);
+                pairs
+                    .map(|(there, back)| Complex::from(0.5 * there + sign * back))
+                    .collect()
+            }
+            (
+                Reading::Turns {
+                    first,
+                    turns,
+                    amplitude,
+                },
+                Kind::Cycle(order),
+            ) => {
+                let settled = turns.iter().zip(&forces[*first..]).filter(|(turn, _)| turn.settled);
+                let part = |(turn, force): (&Turn, &f64)| {
+                    Complex::from_polar(turn.width / PI, -(order as f64) * turn.angle) * force / amplitude
+                };
+                vec![settled.map(part).sum()]
+            }
+            _ => Vec::new(),
+        }
+    }
 }
 
 /// Equal steps to the end of a way.
 fn way(from: f64, to: f64) -> impl Iterator<Item = f64> {
     (1..=APPROACH).map(move |i| from + (to - from) * i as f64 / APPROACH as f64)
-}
-
-/// Harmonics of the force over the amplitude of a sine that begins at its end of travel.
-fn sine(
-    bench: &Bench,
-    model: &dyn Model,
-    p: &[f64],
-    (amplitude, frequency): (f64, f64),
-    series: &[(usize, &Series)],
-) -> Said {
-    let omega = TAU * frequency;
-    let approach = way(0.0, amplitude).map(|travel| Instant {
-        travel,
-        speed: omega * amplitude,
-        step: 1.0 / (frequency * PARTS as f64),
-    });
-    let turns: Vec<Turn> = (0..PARTS + PARTS / 2).flat_map(Turn::of_part).collect();
-    let swing = turns.iter().map(|turn| Instant {
-        travel: amplitude * turn.angle.cos(),
-        speed: -omega * amplitude * turn.angle.sin(),
-        step: turn.width / omega,
-    });
-    let path: Vec<Instant> = approach.chain(swing).collect();
-    let forces = bench.forces(model, p, &path);
-    let harmonic = |order: usize| {
-        let settled = turns.iter().zip(&forces[APPROACH..]);
-        let settled = settled.filter(|(turn, _)| turn.settled);
-        let part = |(turn, force): (&Turn, &f64)| {
-            Complex::from_polar(turn.width / PI, -(order as f64) * turn.angle) * force / amplitude
-        };
-        vec![settled.map(part).sum()]
-    };
-    let of = |series: &(usize, &Series)| match series.1.kind {
-        Kind::Cycle(order) => harmonic(order),
-        _ => Vec::new(),
-    };
-    series.iter().map(of).collect()
 }
 
 /// A piece of a sine.
