@@ -25,6 +25,7 @@ fn what_is_left_of_a_clean_campaign_is_noise() {
     let answer = discover(&campaign, None);
     assert_eq!(answer["verdict"], "none");
     assert_eq!(answer["effects"], Value::Array(Vec::new()));
+    assert_eq!(answer["places"], Value::Array(Vec::new()));
 }
 
 /// Published for the drive: Fc 20.39 N (Janot, Gautier and Brunot 2019). The damper's friction is not known, but its loops
@@ -62,6 +63,12 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "top_mount");
     assert_eq!(answer["effects"][0]["at"], "damper");
+    let of_ceiling = answer["effects"][0]["evidence"]["of_ceiling"].as_f64();
+    assert!(of_ceiling.is_some_and(|share| share > 0.8), "{answer}");
+    // Bolted on, the damper stands where the spring does.
+    let best = &answer["places"][0];
+    assert!(best["at"] == "damper" || best["at"] == "spring", "{best}");
+    assert!(best["explains"].as_f64().is_some_and(|share| share > 0.8), "{best}");
     for (name, value) in truth {
         let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
         assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");

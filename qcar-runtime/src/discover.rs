@@ -26,6 +26,6 @@ pub mod search;
 
 pub use evidence::Evidence;
 pub use gap::Gap;
-pub use kappa::{Kappa, Place, kappa_map};
+pub use kappa::{Kappa, Place, Sweeps, kappa_map};
 pub use predict::Free;
 pub use refit::{Refit, refit};

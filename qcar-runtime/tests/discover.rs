@@ -6,7 +6,8 @@ mod strut;
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::evidence::{Evidence, Kind, Run, Series, Stimulus};
-use qcar_runtime::discover::{Free, Gap, Place, Refit, kappa_map, refit};
+use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
+use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
@@ -169,7 +170,8 @@ fn a_missing_mass_leaves_a_gap_around_its_mode() {
     );
     // A powertrain of 70 kg on mounts with a mode at 9.5 Hz.
     let p: Vec<f64> = TRUTH.iter().copied().chain([70.0, 250e3, 600.0]).collect();
-    let (_, gap) = fitted(&model, &evidence(&real, &p, |_, _| 1.0));
+    let evidence = evidence(&real, &p, |_, _| 1.0);
+    let (refit, gap) = fitted(&model, &evidence);
     assert!(gap.fit > 5.0 && gap.held_out > 5.0, "{} {}", gap.fit, gap.held_out);
     let strongest = &gap.tiles[0];
     assert!(
@@ -177,6 +179,59 @@ fn a_missing_mass_leaves_a_gap_around_its_mode() {
         "{:?}",
         strongest.span
     );
+    let sweeps = Sweeps::new(&model, &refit, &evidence).expect("the model has the sensors");
+    let nothing_better = sweeps.explained_by(&gap, &evidence).expect("there is a gap");
+    let best = sweeps.places[0].ceiling;
+    assert!(
+        nothing_better < best && best < 1.0,
+        "a refit explains {nothing_better}, a place {best}"
+    );
+}
+
+/// Laws in closed form, each at two levels with some noise of one percent.
+#[test]
+fn laws_are_told_by_their_shape() {
+    type Law = fn(Complex<f64>, f64) -> Complex<f64>;
+    let laws: [(Law, Shape); 6] = [
+        (|s, _| 2e4 + 300.0 * s, Shape::SpringDamper),
+        (|s, _| 7.0 * s * s, Shape::Mass),
+        // On a mount with a mode at 9.5 Hz.
+        (
+            |s, _| {
+                let mount = 250e3 + 600.0 * s;
+                70.0 * s * s * mount / (70.0 * s * s + mount)
+            },
+            Shape::Mass,
+        ),
+        (|s, _| 1e5 * s / (s + 60.0), Shape::Relaxation),
+        (|_, level| Complex::I * 400.0 / level, Shape::FrictionLike),
+        (|s, level| 1e4 * level * s, Shape::Other),
+    ];
+    for (k, (law, expected)) in laws.into_iter().enumerate() {
+        let mut random = Random(3);
+        let mut run = |level: f64| {
+            let frequency = logarithmic(0.6, 28.0, 60);
+            let at = |f: &f64| {
+                let exact = law(Complex::I * std::f64::consts::TAU * f, level);
+                exact * (1.0 + 0.01 * Complex::new(random.normal(), random.normal()))
+            };
+            let value: Vec<Complex<f64>> = frequency.iter().map(at).collect();
+            KappaRun {
+                run: 0,
+                level,
+                sigma: value.iter().map(|kappa| 0.014 * kappa.norm()).collect(),
+                frequency,
+                value,
+            }
+        };
+        let kappa = Kappa {
+            place: Place::Parameter(0),
+            ceiling: 1.0,
+            common: 1.0,
+            runs: vec![run(0.025), run(0.1)],
+        };
+        assert_eq!(shape(&kappa), expected, "law {k}");
+    }
 }
 
 #[test]
@@ -214,6 +269,7 @@ fn kappa_is_the_stiffness_that_was_taken_away() {
         "{}",
         spring.ceiling
     );
+    assert_eq!(shape(spring), Shape::SpringDamper);
     let run = &spring.runs[0];
     for ((f, kappa), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
         assert!(

@@ -6,13 +6,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use clap::Args;
+use qcar_dsl::check::Checked;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::search::{Discovery, News, Verdict, discover};
+use qcar_runtime::discover::{Evidence, Sweeps};
 use qcar_runtime::model::{About, Default};
 
 use crate::catalogue;
@@ -24,6 +25,8 @@ use crate::progress::Showing;
 use crate::verbs::Format;
 use crate::workshop::Bench;
 
+// Where something would explain the gap.
+mod places;
 // The answer as text and JSON.
 pub(crate) mod render;
 // The gap as a figure.
@@ -58,6 +61,10 @@ pub(crate) struct Answer {
     pub evidence: Evidence,
     /// What was found.
     pub discovery: Discovery,
+    /// The model that was looked at.
+    base: Checked,
+    /// Where something would explain what it leaves of the sweeps.
+    pub sweeps: Sweeps,
     /// The model with it; `None` where nothing of the model is missing.
     pub model: Option<Written>,
     /// Time for all of it.
@@ -110,7 +117,11 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     );
     drop(showing);
     let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    // A model that cannot be held against the sweeps has no places.
+    let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
+        base: bench.checked().clone(),
+        sweeps,
         model: patched(bench, &discovery),
         campaign: campaign.name.clone(),
         evidence,

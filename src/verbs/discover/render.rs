@@ -9,6 +9,7 @@ use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
 use super::Answer;
+use super::places::{self, Missing};
 use crate::json::{self, Ordered};
 use crate::table::{Table, number};
 
@@ -18,6 +19,7 @@ pub(crate) struct Result<'a> {
     verdict: Verdict,
     effects: Vec<Effect<'a>>,
     r#where: Vec<Where>,
+    places: Vec<Missing>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
     model_file: Option<String>,
@@ -42,6 +44,8 @@ struct Evidence {
     chi2_lowered_by: f64,
     /// Share of the excess of the held-out gap.
     gap_closed: f64,
+    /// Of what any effect at this place could explain of the sweeps, the share that is explained; `null` of several effects.
+    of_ceiling: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -91,8 +95,14 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
     Result {
         verdict: of.discovery.verdict,
-        effects: of.discovery.findings.iter().map(effect).collect(),
+        effects: of
+            .discovery
+            .findings
+            .iter()
+            .map(|finding| effect(of, finding))
+            .collect(),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
+        places: missing(of),
         gap: Gaps {
             fit: BeforeAfter::new(before.fit, after.fit),
             held_out: BeforeAfter::new(before.held_out, after.held_out),
@@ -108,8 +118,17 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
     }
 }
 
-fn effect(finding: &Finding) -> Effect<'_> {
-    let of = |value: fn(&(String, f64, f64)) -> f64| {
+/// The places at which something is missing; none where nothing is.
+fn missing(of: &Answer) -> Vec<Missing> {
+    match of.discovery.verdict {
+        Verdict::None => Vec::new(),
+        _ => places::places(of),
+    }
+}
+
+fn effect<'a>(of: &'a Answer, finding: &'a Finding) -> Effect<'a> {
+    let alone = of.discovery.findings.len() == 1;
+    let each = |value: fn(&(String, f64, f64)) -> f64| {
         let named = finding.parameters.iter().map(move |p| (p.0.clone(), value(p)));
         named.collect::<Vec<_>>()
     };
@@ -117,14 +136,15 @@ fn effect(finding: &Finding) -> Effect<'_> {
         name: &finding.effect,
         at: &finding.at,
         form: finding.form.as_deref(),
-        parameters: of(|p| p.1).into_iter().collect(),
-        stderr: of(|p| p.2)
+        parameters: each(|p| p.1).into_iter().collect(),
+        stderr: each(|p| p.2)
             .into_iter()
             .map(|(name, e)| (name, e.is_finite().then_some(e)))
             .collect(),
         evidence: Evidence {
             chi2_lowered_by: finding.evidence,
             gap_closed: finding.closed,
+            of_ceiling: places::of_ceiling(of, &finding.at).filter(|_| alone),
         },
         rivals: &finding.rivals,
     }
@@ -193,7 +213,8 @@ pub(super) fn text(of: &Answer) -> String {
         out += &format!("\n{}", described(finding));
     }
     if of.discovery.verdict != Verdict::None {
-        out += &format!("\nwhere the model of the campaign is wrong\n{}", places(of));
+        out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
+        out += &missing(of).first().map_or_else(String::new, acts);
     }
     if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
         let _ = writeln!(out, "\nthe model with it: {}", file.display());
@@ -251,7 +272,14 @@ fn described(finding: &Finding) -> String {
     out
 }
 
-fn places(of: &Answer) -> String {
+/// The place that explains most.
+fn acts(best: &Missing) -> String {
+    let share = 100.0 * best.explains;
+    let (at, like) = (best.name(), best.shape.name());
+    format!("something at {at} could explain {share:.1} % of what it leaves of the sweeps; it would be {like}\n")
+}
+
+fn tiles(of: &Answer) -> String {
     let mut table = Table::new([
         "channel",
         "harmonic",

@@ -1,9 +1,9 @@
 //! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
-use qcar_runtime::discover::evidence::{Kind, Stimulus};
+use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::gap::Tile;
-use qcar_runtime::discover::{Kappa, Place, kappa_map, refit};
+use qcar_runtime::discover::{Kappa, Place};
 use serde::Serialize;
 
 use super::gather::Study;
@@ -95,24 +95,12 @@ pub fn refitted(of: &Study) -> Vec<Refitted> {
     refitted.collect()
 }
 
-/// Uncertainty added to every value, as its share: a wrong model that is pressed to fit hides its fault.
-const TOLERANCE: f64 = 0.1;
-
 /// Places whose κ is shown.
 const SHOWN: usize = 8;
 
 /// The places that explain the gap of the sweeps best; none without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
-    let (model, before) = (&*of.fitted.model, &of.answer.discovery.before);
-    let evidence = &of.answer.evidence;
-    let sweeps = evidence.only(|run| matches!(evidence.runs[run].stimulus, Stimulus::Sweep { .. }));
-    if sweeps.series.is_empty() {
-        return Vec::new();
-    }
-    let tolerant = sweeps.tolerant(TOLERANCE);
-    let eased = refit(model, &before.refit.values, &before.refit.free, &tolerant);
-    let map = eased.and_then(|eased| kappa_map(model, &eased, &sweeps));
-    let about = model.about();
+    let about = of.fitted.model.about();
     let explanation = |kappa: &Kappa| {
         let (place, sensor) = match &kappa.place {
             Place::Parameter(place) => (about.parameters[*place].name.to_string(), false),
@@ -126,8 +114,7 @@ pub fn explanations(of: &Study) -> Vec<Explanation> {
             runs: kappa.runs.iter().map(stiffness).collect(),
         }
     };
-    // A model that cannot be held against the evidence has no map of it.
-    map.map_or(Vec::new(), |map| map.iter().take(SHOWN).map(explanation).collect())
+    of.answer.sweeps.places.iter().take(SHOWN).map(explanation).collect()
 }
 
 fn stiffness(of: &qcar_runtime::discover::kappa::KappaRun) -> Stiffness {

@@ -71,6 +71,17 @@ impl Lines {
         Self { runs }
     }
 
+    /// Sum of the squared gap.
+    pub fn left(&self) -> f64 {
+        let of_sensor = |sensor: &SensorLines| {
+            let lines = sensor.residual.iter().zip(&sensor.sigma);
+            lines
+                .map(|(residual, sigma)| residual.norm_sqr() / (sigma * sigma))
+                .sum::<f64>()
+        };
+        self.runs.iter().flat_map(|run| &run.sensors).map(of_sensor).sum()
+    }
+
     /// Every sensor once.
     pub fn sensors(&self) -> Vec<Point> {
         let all = self.runs.iter().flat_map(|run| &run.sensors);

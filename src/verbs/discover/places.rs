@@ -1,0 +1,131 @@
+//! The places of a model at which something would explain the gap of the sweeps, and what it would have to be.
+
+use qcar_dsl::expr::{Expr, Symbol};
+use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
+use qcar_runtime::discover::kappa::{Shape, shape};
+use qcar_runtime::discover::{Kappa, Place};
+use serde::Serialize;
+
+use super::Answer;
+
+/// Places that are listed.
+const LISTED: usize = 5;
+
+/// A place, with what is missing if it is missing there.
+#[derive(Serialize)]
+pub(crate) struct Missing {
+    /// The link, mass or sensor location, as effects call it.
+    pub at: String,
+    /// The axis of a sensor: its signal, not the model, would be wrong.
+    sensor: Option<&'static str>,
+    /// Share of the squared gap that the best κ there explains: what no effect there can exceed.
+    pub explains: f64,
+    /// The dynamic stiffness that would have to be added, run by run.
+    kappa: Vec<Stiffness>,
+    /// The coarse law behind it.
+    pub shape: Shape,
+}
+
+impl Missing {
+    /// The place in words.
+    pub fn name(&self) -> String {
+        match self.sensor {
+            Some(axis) => format!("the sensor of {} along {axis}", self.at),
+            None => self.at.clone(),
+        }
+    }
+}
+
+/// κ at a frequency: N/m; of a sensor the factor on its signal, less 1.
+#[derive(Serialize)]
+struct Stiffness {
+    hz: f64,
+    re: f64,
+    im: f64,
+    /// Standard deviation of both parts together.
+    sigma: f64,
+    /// Of the run.
+    level: f64,
+}
+
+/// The places that explain most, the best first.
+pub(crate) fn places(of: &Answer) -> Vec<Missing> {
+    let mut found: Vec<Missing> = Vec::new();
+    for kappa in &of.sweeps.places {
+        let (at, sensor) = at(&of.base, &kappa.place);
+        if !found.iter().any(|other| other.at == at && other.sensor == sensor) {
+            found.push(Missing {
+                at,
+                sensor,
+                explains: kappa.ceiling,
+                kappa: stiffness(kappa),
+                shape: shape(kappa),
+            });
+        }
+    }
+    found.truncate(LISTED);
+    found
+}
+
+/// Of what any effect at a place could explain of the sweeps, the share that all that was found explains; `None` where
+/// nothing says so.
+pub(crate) fn of_ceiling(of: &Answer, place: &str) -> Option<f64> {
+    let there = of
+        .sweeps
+        .places
+        .iter()
+        .find(|kappa| at(&of.base, &kappa.place).0 == place)?;
+    let explained = of.sweeps.explained_by(&of.discovery.after.gap, &of.evidence)?;
+    Some(explained / there.ceiling)
+}
+
+fn stiffness(kappa: &Kappa) -> Vec<Stiffness> {
+    let mut all = Vec::new();
+    for run in &kappa.runs {
+        for ((hz, value), sigma) in run.frequency.iter().zip(&run.value).zip(&run.sigma) {
+            all.push(Stiffness {
+                hz: *hz,
+                re: value.re,
+                im: value.im,
+                sigma: *sigma,
+                level: run.level,
+            });
+        }
+    }
+    all
+}
+
+/// What effects call a place, and the axis of a sensor.
+fn at(model: &Model, place: &Place) -> (String, Option<&'static str>) {
+    match place {
+        Place::Sensor(point) => (point.location.clone(), Some(point.axis.name())),
+        Place::Parameter(parameter) => (owner(model, *parameter), None),
+    }
+}
+
+/// The link or mass that a parameter belongs to: the one that depends on the fewest others.
+fn owner(model: &Model, parameter: usize) -> String {
+    let links = model.links.iter().map(|link| (&link.name, law(link)));
+    let masses = model.coordinates.iter().filter_map(|own| match own.kind {
+        CoordinateKind::Mass(inertia) => Some((&own.name, vec![inertia])),
+        _ => None,
+    });
+    let depends = |(name, law): (&String, Vec<Expr>)| {
+        let symbols = model.graph.symbols(law);
+        let wanted = |symbol: &Symbol| matches!(symbol, Symbol::Parameter(place) if usize::from(*place) == parameter);
+        let parameters = symbols.iter().filter(|symbol| matches!(symbol, Symbol::Parameter(_)));
+        symbols.iter().any(wanted).then(|| (parameters.count(), name.clone()))
+    };
+    let owner = links
+        .chain(masses)
+        .filter_map(depends)
+        .min_by_key(|(others, _)| *others);
+    owner.map_or_else(|| model.parameters[parameter].name.clone(), |(_, name)| name)
+}
+
+fn law(link: &Link) -> Vec<Expr> {
+    let of = |term: &Term| match *term {
+        Term::Spring(law) | Term::Damper(law) | Term::Inerter(law) | Term::Force(law) => law,
+    };
+    link.law.terms.iter().map(of).collect()
+}
