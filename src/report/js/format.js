@@ -72,11 +72,14 @@ function pretty(unit) {
   return unit.replace('^2', '²').replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
 }
 
-// `value ± error` with as many digits as the error allows.
+// `value ± error` with as many digits as the error allows; both with one power of ten where a plain number is long.
 function measured(value, error, unit) {
   const scaled = inUnit(value, unit);
   if (error === null || !Number.isFinite(error) || error <= 0) return quantity(value, unit, 4);
-  const places = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(error * scaled.factor))));
+  const size = Math.abs(scaled.value);
+  const power = size !== 0 && (size < 1e-4 || size >= 1e7) ? Math.floor(Math.log10(size)) : 0;
+  const [own, off] = [scaled.value, error * scaled.factor].map((x) => x / 10 ** power);
+  const places = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(off))));
   const fixed = (x) =>
     minus(
       Number(x.toFixed(places))
@@ -86,7 +89,9 @@ function measured(value, error, unit) {
         })
         .replace(/,/g, '\u2009'),
     );
-  return `${fixed(scaled.value)} ± ${fixed(error * scaled.factor)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
+  const both = `${fixed(own)} ± ${fixed(off)}`;
+  const text = power ? `(${both})·10${superscript(power)}` : both;
+  return `${text}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
 }
 
 // `coulomb_friction` as people say it.

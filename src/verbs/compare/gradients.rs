@@ -13,7 +13,7 @@ pub(super) struct Gradient {
     unit: &'static str,
     pub a: Option<Value>,
     pub b: Option<Value>,
-    /// B less A, over A.
+    /// B less A, over A; `None` where A is hardly more than its uncertainty.
     pub relative: Option<f64>,
     /// The difference over the root of the sum of both squared uncertainties.
     pub standard_errors: Option<f64>,
@@ -43,6 +43,13 @@ pub(super) fn gradients([a, b]: [&Measured; 2]) -> Vec<Gradient> {
         .collect()
 }
 
+impl Value {
+    /// More than what scatter alone would give.
+    fn is_known(&self) -> bool {
+        self.value.abs() > 2.0 * self.uncertainty
+    }
+}
+
 fn value(of: &kc::Gradient) -> Value {
     Value {
         value: of.value,
@@ -57,7 +64,9 @@ fn gradient(of: &kc::Gradient, a: Option<Value>, b: Option<Value>) -> Gradient {
         test: of.test,
         quantity: of.quantity,
         unit: of.unit,
-        relative: both.map(|(a, b)| difference(a, b) / a.value),
+        relative: both
+            .filter(|(a, _)| a.is_known())
+            .map(|(a, b)| difference(a, b) / a.value),
         standard_errors: both.map(|(a, b)| difference(a, b) / a.uncertainty.hypot(b.uncertainty)),
         a,
         b,
