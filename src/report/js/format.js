@@ -38,11 +38,12 @@ function percent(share, digits = 2) {
   return share === null || !Number.isFinite(share) ? '–' : `${number(100 * share, digits)} %`;
 }
 
-// A relative change with its sign, in percent.
+// A relative change with its sign, in percent: to a tenth where it is small, to three digits where it is large.
 function signed(share) {
   if (share === null || share === undefined || !Number.isFinite(share)) return '–';
-  const text = (100 * share).toFixed(Math.abs(share) < 1 ? 1 : 0);
-  return `${Number(text) > 0 ? '+' : ''}${minus(Number(text) === 0 ? '0' : text)}\u202f%`;
+  const small = (100 * share).toFixed(1);
+  if (Number(small) === 0) return '0\u202f%';
+  return `${share > 0 ? '+' : ''}${Math.abs(share) < 1 ? minus(small) : number(100 * share)}\u202f%`;
 }
 
 // In how many of a larger unit an SI value is best read.
