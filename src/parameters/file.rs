@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::spelling;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -22,6 +23,9 @@ const NEIGHBOURS: [&str; 9] = [
     "generator",
     "effects",
 ];
+
+/// What the table of a parameter may hold: the keys of campaigns.
+const KEYS: [&str; 5] = ["value", "unit", "range", "fit", "comment"];
 
 /// Values by name.
 #[derive(Default)]
@@ -159,10 +163,30 @@ impl Reader<'_> {
             .collect()
     }
 
+    /// Refuses what a parameter's table has and nobody reads: most often a misspelt `unit`.
+    fn refuse_unknown(&mut self, key: &str, table: &DeTable) {
+        for name in table.keys().filter(|name| !KEYS.contains(&&**name.get_ref())) {
+            let own = name.get_ref();
+            let expected = format!("one of {}", KEYS.join(", "));
+            let place = format!("{key}.{own}");
+            self.wrong(
+                name.span().start,
+                &place,
+                "an unknown key",
+                &expected,
+                &spelling::remedy(own, KEYS),
+            );
+        }
+    }
+
     /// `name = value`, or a table with `value` and perhaps `unit`.
     fn stated(&mut self, section: &str, name: &Spanned<impl AsRef<str>>, value: &Spanned<DeValue>) -> Option<Stated> {
         let key = format!("{section}.{}", name.get_ref().as_ref());
-        let (number, unit) = match value.get_ref().as_table() {
+        let table = value.get_ref().as_table();
+        if let Some(table) = table {
+            self.refuse_unknown(&key, table);
+        }
+        let (number, unit) = match table {
             Some(table) => (
                 table.get("value").map(Spanned::get_ref),
                 table.get("unit").and_then(|unit| unit.get_ref().as_str()),

@@ -54,6 +54,10 @@ fn parameter_files_are_read_with_care() {
         &["line 1", "N/mm", "N/m"],
     );
     params("[parameters.k_tire]\nunit = \"N/m\"\n", &["no `value`"]);
+    params(
+        "[parameters.k_tire]\nvalue = 2e5\nunits = \"N/m\"\n",
+        &["line 3, column 1, `parameters.k_tire.units`", "did you mean `unit`?"],
+    );
     params("parameters = 3\n", &["a table"]);
     params("[paramters]\nk_tire = 2e5\n", &["`paramters`", "[parameters]"]);
 }
