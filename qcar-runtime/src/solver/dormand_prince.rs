@@ -235,25 +235,23 @@ impl DormandPrince {
         let n = self.x.len();
         let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
         let (x, x_end, absolute) = (&self.x[..n], &self.x_end[..n], &self.settings.absolute[..n]);
-        let (mut sum, mut probe) = (0.0, 0.0);
+        let scaled = &mut self.stage[..n];
         for i in 0..n {
             let k = [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]];
             let scale = absolute[i] + self.settings.relative * x[i].abs().max(x_end[i].abs());
-            let scaled = h * dot(ERROR, k) / scale;
-            sum += scaled * scaled;
             // An infinite state would hide in its own tolerance; zero times it is not a number.
-            probe += 0.0 * (x_end[i] + k6[i]);
+            scaled[i] = h * dot(ERROR, k) / scale + 0.0 * (x_end[i] + k6[i]);
         }
-        (sum / n.max(1) as f64).sqrt() + probe
+        mean_square(scaled).sqrt()
     }
 
     /// What the dense output of an accepted step needs beside its ends: its quartic, and means.
     fn make_dense(&mut self) {
         let n = self.quartic.len();
         let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
-        let means = &mut self.means[..n];
+        let (quartic, means) = (&mut self.quartic[..n], &mut self.means[..n]);
         for i in 0..n {
-            self.quartic[i] = dot(DENSE, [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]]);
+            quartic[i] = dot(DENSE, [k0[i], k2[i], k3[i], k4[i], k5[i], k6[i]]);
             means[i] = dot(A7, [k0[i], k2[i], k3[i], k4[i], k5[i]]);
         }
     }
@@ -303,6 +301,19 @@ fn combine<const N: usize>(out: &mut [f64], x: &[f64], h: f64, a: [f64; N], k: [
     for i in 0..n {
         out[i] = x[i] + dot(a, std::array::from_fn(|j| k[j][i]));
     }
+}
+
+/// In lanes, so that no sum waits for all others.
+fn mean_square(v: &[f64]) -> f64 {
+    let (chunks, rest) = v.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for chunk in chunks {
+        for (sum, v) in sums.iter_mut().zip(chunk) {
+            *sum += v * v;
+        }
+    }
+    let rest: f64 = rest.iter().map(|v| v * v).sum();
+    (sums.iter().sum::<f64>() + rest) / v.len().max(1) as f64
 }
 
 #[inline(always)]
