@@ -15,7 +15,7 @@ fn main() {
 #[divan::bench]
 fn cleat_run(bencher: Bencher<'_, '_>) {
     let (parameters, road) = (parameters(), cleat(0.03));
-    let (car, drive) = (car(&parameters), drive(&road, 30.0));
+    let (car, drive) = (car(&parameters), drive(&road, 30.0 / 3.6));
     bencher.bench_local(|| ride(&car, &drive, &Settings::default()).expect("it rides"));
 }
 
@@ -26,7 +26,7 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
     let car = car(&parameters);
     let drives: Vec<_> = [20.0, 30.0, 40.0]
         .into_iter()
-        .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh)))
+        .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh / 3.6)))
         .collect();
     bencher.bench_local(|| rides(&car, &drives, &Settings::default(), UNTOLD));
 }

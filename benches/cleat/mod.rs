@@ -1,11 +1,15 @@
 //! The car of the cleat runs: axle_d with z and x chains on an area tyre.
 
+#[path = "../../qcar-runtime/tests/support/track.rs"]
+mod track;
+
 use models::axle_d::AxleD;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::road::{Road, Shape};
-use qcar_runtime::simulate::{Car, Drive, Variant};
+use qcar_runtime::simulate::{Car, Variant};
 use qcar_runtime::tyre::{Geometry, Rates, Tyre};
+
+pub use track::{cleat, drive};
 
 const RADIUS: f64 = 0.324;
 const STATIC_DEFLECTION: f64 = 0.03102;
@@ -60,28 +64,5 @@ pub fn car(parameters: &Values) -> Car<'_, AxleD> {
         tyre,
         load: LOAD,
         variant: Variant::Complete,
-    }
-}
-
-/// The thesis's cleat, with the length of those on the test track.
-pub fn cleat(height: f64) -> Road {
-    Road::from_shape(
-        &Shape::Cleat {
-            height,
-            descent: 0.4,
-            blend: 0.17,
-        },
-        1.5,
-    )
-    .expect("a road")
-}
-
-/// A second at 1 kHz.
-pub fn drive(road: &Road, kmh: f64) -> Drive<'_> {
-    Drive {
-        road,
-        speed: kmh / 3.6,
-        sample_rate: 1000.0,
-        samples: 1001,
     }
 }

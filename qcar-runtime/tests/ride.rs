@@ -1,35 +1,17 @@
 //! Rides of a hand-written model against what must hold of any ride.
 
 mod roller;
+#[path = "support/track.rs"]
+mod track;
 
 use qcar_runtime::progress::UNTOLD;
 use qcar_runtime::road::{Road, RoadError, Shape};
 use qcar_runtime::simulate::{Drive, Method, Ride, Settings, SimulateError, Variant, ride, rides};
 use roller::{GAP, K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
-
-fn cleat(height: f64) -> Road {
-    Road::from_shape(
-        &Shape::Cleat {
-            height,
-            descent: 0.4,
-            blend: 0.17,
-        },
-        1.5,
-    )
-    .expect("it is a road")
-}
+use track::{cleat, drive};
 
 fn flat() -> Road {
     Road::from_points(&[[0.0, 0.0], [20.0, 0.0]]).expect("it is a road")
-}
-
-fn drive(road: &Road, speed: f64) -> Drive<'_> {
-    Drive {
-        road,
-        speed,
-        sample_rate: 1000.0,
-        samples: 1001,
-    }
 }
 
 fn ridden(variant: Variant, road: &Road, speed: f64, settings: &Settings) -> Ride {

@@ -12,7 +12,7 @@ fn ridden(kmh: f64, height: f64, tolerance: f64) -> Ride {
         method: Method::Adaptive(tolerance),
         ..Settings::default()
     };
-    ride(&cleat::car(&parameters), &cleat::drive(&road, kmh), &settings).expect("it rides")
+    ride(&cleat::car(&parameters), &cleat::drive(&road, kmh / 3.6), &settings).expect("it rides")
 }
 
 /// The largest difference over the whole run, over the peak.
