@@ -6,6 +6,7 @@
 use nalgebra::SMatrix;
 
 use crate::model::{About, ResponseMut};
+use crate::vectors::{Loops, widest};
 
 /// How many lines of a frequency response are computed together: a cache line of each row.
 pub const LINES: usize = 8;
@@ -108,35 +109,38 @@ pub fn respond<const R: usize>(omega: &[f64], mut into: ResponseMut<'_>, block: 
         "a response has {R} rows"
     );
     let mut rows = [[0.0; LINES]; R];
+    let compute = |frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]| {
+        widest(Lines {
+            block,
+            frequencies,
+            rows,
+        });
+    };
     let (chunks, rest) = omega.as_chunks::<LINES>();
     for (place, frequencies) in chunks.iter().enumerate() {
-        compute(block, frequencies, &mut rows);
+        compute(frequencies, &mut rows);
         scatter(&rows, &mut into, omega.len(), place * LINES, LINES);
     }
     if let Some(&last) = rest.last() {
         let mut frequencies = [last; LINES];
         frequencies[..rest.len()].copy_from_slice(rest);
-        compute(block, &frequencies, &mut rows);
+        compute(&frequencies, &mut rows);
         scatter(&rows, &mut into, omega.len(), chunks.len() * LINES, rest.len());
     }
 }
 
-/// Computes a block with the widest vectors of this machine. The bits are the same: nothing is fused or reordered.
-#[inline]
-fn compute<const R: usize>(block: &impl Block<R>, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]) {
-    #[cfg(target_arch = "x86_64")]
-    if std::arch::is_x86_feature_detected!("avx2") {
-        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
-        // SAFETY: this machine has AVX2, and the function asks for nothing else.
-        return unsafe { compute_avx2(block, frequencies, rows) };
-    }
-    block.compute(frequencies, rows);
+/// A block of lines that is to be computed.
+struct Lines<'a, B, const R: usize> {
+    block: &'a B,
+    frequencies: &'a [f64; LINES],
+    rows: &'a mut [[f64; LINES]; R],
 }
 
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-fn compute_avx2<const R: usize>(block: &impl Block<R>, frequencies: &[f64; LINES], rows: &mut [[f64; LINES]; R]) {
-    block.compute(frequencies, rows);
+impl<B: Block<R>, const R: usize> Loops for Lines<'_, B, R> {
+    #[inline(always)]
+    fn run(self) {
+        self.block.compute(self.frequencies, self.rows);
+    }
 }
 
 /// Copies a block of `count` lines from `start` on to the rows of the whole response.

@@ -5,6 +5,8 @@
 pub use nalgebra;
 
 pub mod model;
+// Loops for every instruction set.
+mod vectors;
 // What generated models stand on.
 pub mod generated;
 // What every part reports through.

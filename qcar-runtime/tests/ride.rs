@@ -5,7 +5,7 @@ mod roller;
 mod track;
 
 use qcar_runtime::progress::UNTOLD;
-use qcar_runtime::road::{Road, RoadError, Shape};
+use qcar_runtime::road::{Road, RoadError};
 use qcar_runtime::simulate::{Drive, Method, Ride, Settings, SimulateError, Variant, ride, rides};
 use roller::{GAP, K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
 use track::{cleat, drive};
