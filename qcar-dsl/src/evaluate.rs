@@ -252,90 +252,97 @@ struct Given<'a> {
     contact: Contact,
 }
 
-/// Where a leaf is read.
+/// What is given to a program, in the order in which it stands in the registers.
 #[derive(Clone, Copy, Debug)]
-enum Leaf {
-    Number(f64),
-    Parameter(usize),
-    Constant(usize),
-    State(usize),
-    Input(usize),
-    Stretch,
-    Rate,
-    ContactForce(usize),
+enum Part {
+    Parameters,
+    Constants,
+    States,
+    Inputs,
+    Contact,
 }
 
-impl Leaf {
-    /// The place of a symbol in the vectors; `None` for the frequency, which differs from line to line.
-    fn of(about: &About, symbol: Symbol) -> Option<Leaf> {
-        let state = || {
-            about
-                .states
-                .iter()
-                .position(|state| state.symbol == symbol)
-                .map(Leaf::State)
-        };
-        let input = || {
-            about
-                .inputs
-                .iter()
-                .position(|input| input.symbol == symbol)
-                .map(Leaf::Input)
-        };
-        match symbol {
-            Symbol::Parameter(p) => Some(Leaf::Parameter(p.into())),
-            Symbol::Stretch(_) => Some(Leaf::Stretch),
-            Symbol::Rate(_) => Some(Leaf::Rate),
-            Symbol::ContactForce(axis) => Some(Leaf::ContactForce(axis.into())),
-            _ => state().or_else(input),
-        }
+impl Given<'_> {
+    /// All parts, in the order of [`Part`].
+    fn with_parts(&self, mut take: impl FnMut(Part, &[f64])) {
+        let Contact { s, v, force } = self.contact;
+        take(Part::Parameters, self.p);
+        take(Part::Constants, self.constants);
+        take(Part::States, self.x);
+        take(Part::Inputs, self.u);
+        take(Part::Contact, &[s, v, force[0], force[1]]);
     }
+}
 
-    fn read(self, given: &Given) -> f64 {
-        match self {
-            Leaf::Number(value) => value,
-            Leaf::Parameter(place) => given.p[place],
-            Leaf::Constant(place) => given.constants[place],
-            Leaf::State(place) => given.x[place],
-            Leaf::Input(place) => given.u[place],
-            Leaf::Stretch => given.contact.s,
-            Leaf::Rate => given.contact.v,
-            Leaf::ContactForce(axis) => given.contact.force[axis],
+/// Number of the variants of [`Part`].
+const PARTS: usize = 5;
+
+/// The part and place of a symbol in what is given; `None` for the frequency, which differs from line to line.
+fn place_of(about: &About, symbol: Symbol) -> Option<(Part, usize)> {
+    let state = || about.states.iter().position(|state| state.symbol == symbol);
+    let input = || about.inputs.iter().position(|input| input.symbol == symbol);
+    match symbol {
+        Symbol::Parameter(p) => Some((Part::Parameters, p.into())),
+        Symbol::Stretch(_) => Some((Part::Contact, 0)),
+        Symbol::Rate(_) => Some((Part::Contact, 1)),
+        Symbol::ContactForce(axis) => Some((Part::Contact, 2 + usize::from(axis))),
+        _ => {
+            let state = state().map(|place| (Part::States, place));
+            state.or_else(|| Some((Part::Inputs, input()?)))
         }
     }
 }
 
-/// A program whose leaves know where they are read. A value stands in the register of its number.
+/// A program whose values have registers: first its numbers, then each part that it reads as a whole, since copying a
+/// part costs less than looking for its entries, then the frequency, then the results in the order of the operations.
 #[derive(Clone, Debug)]
 struct Code {
-    leaves: Vec<(usize, Leaf)>,
-    frequencies: Vec<usize>,
-    operations: Vec<(usize, Op)>,
+    numbers: Vec<f64>,
+    /// Where each part begins, and its length; zero for one that is not read.
+    parts: [(usize, usize); PARTS],
+    frequency: usize,
+    operations: Vec<Op>,
     outputs: Vec<Value>,
-    registers: usize,
 }
 
 impl Code {
     fn new(about: &About, program: &Program) -> Self {
-        let (mut leaves, mut frequencies, mut operations) = (Vec::new(), Vec::new(), Vec::new());
-        for (register, &op) in program.ops.iter().enumerate() {
-            match op {
-                Op::Constant(value) => leaves.push((register, Leaf::Number(value))),
-                Op::Prepared(place) => leaves.push((register, Leaf::Constant(place as usize))),
-                Op::Input(symbol) => match Leaf::of(about, symbol) {
-                    Some(leaf) => leaves.push((register, leaf)),
-                    None => frequencies.push(register),
-                },
-                _ => operations.push((register, op)),
-            }
+        let mut lengths = [0; PARTS];
+        let numbers = program.ops.iter().filter_map(|op| match op {
+            Op::Constant(value) => Some(*value),
+            _ => None,
+        });
+        let numbers: Vec<f64> = numbers.collect();
+        for (part, place) in program.ops.iter().filter_map(|op| given(about, op)) {
+            lengths[part as usize] = lengths[part as usize].max(place + 1);
         }
-        let outputs = program.outputs.clone();
+        let mut frequency = numbers.len();
+        let parts = lengths.map(|length| {
+            frequency += length;
+            (frequency - length, length)
+        });
+        let mut next_number = 0..numbers.len();
+        let (mut registers, mut operations) = (Vec::new(), Vec::new());
+        for op in &program.ops {
+            let register = match op {
+                Op::Constant(_) => next_number.next().unwrap_or_default(),
+                Op::Input(_) | Op::Prepared(_) => {
+                    given(about, op).map_or(frequency, |(part, place)| parts[part as usize].0 + place)
+                }
+                _ => {
+                    operations.push(op.renumbered(|value| registers[value.0 as usize]));
+                    frequency + operations.len()
+                }
+            };
+            registers.push(Value(register as u32));
+        }
+        let outputs = program.outputs.iter().map(|value| registers[value.0 as usize]);
         Code {
-            leaves,
-            frequencies,
+            outputs: outputs.collect(),
+            numbers,
+            parts,
+            frequency,
             operations,
-            outputs,
-            registers: program.ops.len(),
         }
     }
 
@@ -357,9 +364,7 @@ impl Code {
             self.load(given, registers);
             for first in (0..lines).step_by(BLOCK) {
                 let block = &omega[first..lines.min(first + BLOCK)];
-                for &register in &self.frequencies {
-                    registers[register] = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
-                }
+                registers[self.frequency] = std::array::from_fn(|lane| block[lane.min(block.len() - 1)]);
                 self.operate(registers);
                 let rows = into.iter_mut().flat_map(|part| part.chunks_exact_mut(lines));
                 for (row, value) in rows.zip(&self.outputs) {
@@ -370,25 +375,42 @@ impl Code {
     }
 
     fn with_registers<const N: usize>(&self, work: impl FnOnce(&mut [[f64; N]])) {
+        let registers = self.frequency + 1 + self.operations.len();
         SCRATCH.with_borrow_mut(|scratch| {
-            if scratch.len() < self.registers * N {
-                scratch.resize(self.registers * N, 0.0);
+            if scratch.len() < registers * N {
+                scratch.resize(registers * N, 0.0);
             }
-            work(&mut scratch.as_chunks_mut::<N>().0[..self.registers]);
+            work(&mut scratch.as_chunks_mut::<N>().0[..registers]);
         });
     }
 
     fn load<const N: usize>(&self, given: &Given, registers: &mut [[f64; N]]) {
-        for &(register, leaf) in &self.leaves {
-            registers[register] = [leaf.read(given); N];
-        }
+        let mut copy = |from: usize, values: &[f64]| {
+            for (register, value) in registers[from..][..values.len()].iter_mut().zip(values) {
+                *register = [*value; N];
+            }
+        };
+        copy(0, &self.numbers);
+        given.with_parts(|part, values| {
+            let (from, length) = self.parts[part as usize];
+            copy(from, &values[..length]);
+        });
     }
 
     fn operate<const N: usize>(&self, registers: &mut [[f64; N]]) {
-        for &(register, op) in &self.operations {
-            let (earlier, rest) = registers.split_at_mut(register);
+        for (place, &op) in self.operations.iter().enumerate() {
+            let (earlier, rest) = registers.split_at_mut(self.frequency + 1 + place);
             operate(op, earlier, &mut rest[0]);
         }
+    }
+}
+
+/// The part and place of a leaf in what is given.
+fn given(about: &About, op: &Op) -> Option<(Part, usize)> {
+    match *op {
+        Op::Prepared(place) => Some((Part::Constants, place as usize)),
+        Op::Input(symbol) => place_of(about, symbol),
+        _ => None,
     }
 }
 

@@ -31,6 +31,25 @@ pub enum Op {
     Select(Value, Value, Value),
 }
 
+impl Op {
+    /// The same operation on values of other numbers.
+    pub fn renumbered(self, new: impl Fn(Value) -> Value) -> Op {
+        match self {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self,
+            Op::Neg(a) => Op::Neg(new(a)),
+            Op::Add(a, b) => Op::Add(new(a), new(b)),
+            Op::Sub(a, b) => Op::Sub(new(a), new(b)),
+            Op::Mul(a, b) => Op::Mul(new(a), new(b)),
+            Op::Div(a, b) => Op::Div(new(a), new(b)),
+            Op::Pow(a, b) => Op::Pow(new(a), new(b)),
+            Op::Min(a, b) => Op::Min(new(a), new(b)),
+            Op::Max(a, b) => Op::Max(new(a), new(b)),
+            Op::Call(function, a) => Op::Call(function, new(a)),
+            Op::Select(test, a, b) => Op::Select(new(test), new(a), new(b)),
+        }
+    }
+}
+
 /// A straight-line program.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {

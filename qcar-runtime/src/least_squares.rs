@@ -32,6 +32,12 @@ pub trait Problem {
     ///
     /// Both at once, since nearly every step is accepted and most models share work between the two.
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]);
+
+    /// Writes `r(x)` alone and says true, where that costs much less than both: then a step that is refused, or the last,
+    /// costs no Jacobian.
+    fn evaluate_residual(&mut self, _x: &[f64], _residual: &mut [f64]) -> bool {
+        false
+    }
 }
 
 /// An interval for each variable; infinite where there is none. Each lower bound lies below its upper bound.
@@ -62,7 +68,7 @@ pub struct Options {
     pub cost: f64,
     /// Length of the step relative to the length of `x`, both in scaled variables.
     pub step: f64,
-    /// Evaluations of the residual.
+    /// Evaluations of the residual at places of their own.
     pub evaluations: usize,
 }
 
@@ -125,7 +131,7 @@ pub struct Outcome {
     pub start_cost: f64,
     /// The residual there.
     pub residual: DVector<f64>,
-    /// Its Jacobian there.
+    /// Its Jacobian there; where the evaluations were used up, maybe still that of the place before.
     pub jacobian: DMatrix<f64>,
     /// For each variable: −1 on its lower bound, +1 on its upper bound, 0 between.
     pub at_bound: Vec<i8>,
@@ -150,6 +156,8 @@ struct Point {
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
     cost: f64,
+    /// True where the Jacobian is that of this point.
+    is_linearised: bool,
 }
 
 impl Point {
@@ -159,6 +167,7 @@ impl Point {
             residual: DVector::zeros(residuals),
             jacobian: DMatrix::zeros(residuals, variables),
             cost: f64::NAN,
+            is_linearised: false,
         }
     }
 
@@ -169,6 +178,17 @@ impl Point {
             self.jacobian.as_mut_slice(),
         );
         self.cost = 0.5 * self.residual.norm_squared();
+        self.is_linearised = true;
+    }
+
+    /// Evaluates the residual, and its Jacobian where that comes with it.
+    fn look<P: Problem + ?Sized>(&mut self, problem: &mut P) {
+        if problem.evaluate_residual(self.x.as_slice(), self.residual.as_mut_slice()) {
+            self.cost = 0.5 * self.residual.norm_squared();
+            self.is_linearised = false;
+        } else {
+            self.evaluate(problem);
+        }
     }
 }
 
@@ -241,7 +261,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
             let cost = self.here.cost;
             let reduction = cost - self.trial.cost;
             let lower = reduction > 0.0;
-            let accepted = lower && self.accept();
+            let accepted = lower && self.accept(options);
             let usable = accepted || (!lower && reduction.is_finite());
             let reduction = if usable { reduction } else { f64::NEG_INFINITY };
             let settled = self.settled(&step, interior, cost, reduction, options);
@@ -256,8 +276,16 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     }
 
     /// Moves to the trial point, unless its linearisation holds a value that is not finite.
-    fn accept(&mut self) -> bool {
+    fn accept(&mut self, options: &Options) -> bool {
         std::mem::swap(&mut self.here, &mut self.trial);
+        if !self.here.is_linearised && self.evaluations >= options.evaluations {
+            // Nothing goes on from here.
+            std::mem::swap(&mut self.here.jacobian, &mut self.trial.jacobian);
+            return true;
+        }
+        if !self.here.is_linearised {
+            self.here.evaluate(self.problem);
+        }
         let finite = self.normal.assemble(&self.here.jacobian, &self.here.residual);
         if !finite {
             std::mem::swap(&mut self.here, &mut self.trial);
@@ -268,7 +296,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
 
     fn try_step(&mut self, step: &Step) {
         self.trial.x = reflect::within(&(&self.here.x + &step.step), self.bounds);
-        self.trial.evaluate(self.problem);
+        self.trial.look(self.problem);
         self.evaluations += 1;
     }
 

@@ -129,17 +129,26 @@ pub struct Recordings {
 }
 
 impl Stimulus {
-    /// Leaves so many times less of a history, and says when it ends now; `None` of anything else.
-    fn shorten(&mut self, times: usize) -> Option<f64> {
-        let Stimulus::History { inputs, rate, .. } = self else {
-            return None;
-        };
-        let length = inputs.signals[0].1.len() / times;
-        inputs
-            .signals
-            .iter_mut()
-            .for_each(|(_, samples)| samples.truncate(length));
-        Some(inputs.start + (length as f64 - 0.5) / *rate)
+    /// Leaves less of a record through which a model has to be driven, so many times less of a history and half of a
+    /// ride whose values stand `at` these times: when it ends now, and by how much fewer of its values are then to be
+    /// looked at. Anything else stays.
+    fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
+        match self {
+            Stimulus::History { inputs, rate, .. } => {
+                let length = inputs.signals[0].1.len() / times;
+                let signals = inputs.signals.iter_mut();
+                signals.for_each(|(_, samples)| samples.truncate(length));
+                (inputs.start + (length as f64 - 0.5) / *rate, 1)
+            }
+            // The impact and the first of the after-shake have all modes of an axle.
+            Stimulus::Cleat(passage) if at.len() > 1 && times > 1 => {
+                let last = at[at.len() - 1];
+                let end = at[at.len() / 2];
+                passage.duration -= last - end;
+                (end.next_up(), times.div_ceil(2))
+            }
+            _ => (f64::INFINITY, times),
+        }
     }
 
     /// The sensor of what drove the run; none measures a road.
@@ -264,16 +273,19 @@ impl Evidence {
         tolerant
     }
 
-    /// The same with every so many-th value of each series, for a first look; of a history its beginning, as long as
-    /// such a part of it, since a model has to be driven through whatever it is held against.
+    /// The same with every so many-th value of each series, for a first look; of a history and a ride their beginning,
+    /// since a model has to be driven through whatever it is held against.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
-        let ends: Vec<Option<f64>> = thinned.runs.iter_mut().map(|run| run.stimulus.shorten(step)).collect();
+        let shorten = |(run, of): (usize, &mut Run)| {
+            let series = self.series.iter().find(|series| series.run == run);
+            of.stimulus.shorten(step, series.map_or(&[], |series| &series.at))
+        };
+        let ends: Vec<(f64, usize)> = thinned.runs.iter_mut().enumerate().map(shorten).collect();
         for series in &mut thinned.series {
-            let keep: Vec<usize> = match ends[series.run] {
-                Some(end) => (0..series.at.len()).filter(|&k| series.at[k] < end).collect(),
-                None => (0..series.at.len()).step_by(step).collect(),
-            };
+            let (end, step) = ends[series.run];
+            let inside = (0..series.at.len()).filter(|&k| series.at[k] < end);
+            let keep: Vec<usize> = inside.step_by(step).collect();
             series.at = keep.iter().map(|&k| series.at[k]).collect();
             series.value = keep.iter().map(|&k| series.value[k]).collect();
             series.sigma = keep.iter().map(|&k| series.sigma[k]).collect();

@@ -274,6 +274,31 @@ impl<'a> Posterior<'a> {
         &x[self.free.len() + self.nuisance.len()..]
     }
 
+    /// Writes the residual; the columns of the Jacobian, of the data alone, are those along `free`, the first of all that
+    /// are free, and along the sensors' errors and sides.
+    fn look(&mut self, x: &[f64], residual: &mut [f64], free: &[Free]) -> Vec<Vec<f64>> {
+        self.move_to(x);
+        let both = [&self.values, &self.side];
+        let late = self.nuisance.lateness(self.evidence, &x[self.free.len()..]);
+        let predictions = match predict_sides(self.model, both, &late, free, self.evidence, Role::Fit) {
+            Ok(predictions) => predictions,
+            Err(error) => {
+                self.refused = Some(error);
+                residual.fill(f64::NAN);
+                return Vec::new();
+            }
+        };
+        let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
+        for mut prediction in predictions {
+            prediction.add(&self.unsteady[prediction.series]);
+            self.rows(&prediction, x, &mut rows, &mut columns);
+        }
+        let errors = x[self.free.len()..].iter().zip(&self.sigmas);
+        rows.extend(errors.map(|(error, sigma)| error / sigma));
+        residual.copy_from_slice(&rows);
+        columns
+    }
+
     /// Adds the rows of one prediction to columns that grow together.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
@@ -334,30 +359,7 @@ impl Problem for Posterior<'_> {
     }
 
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        self.move_to(x);
-        let both = [&self.values, &self.side];
-        let late = self.nuisance.lateness(self.evidence, &x[self.free.len()..]);
-        let predictions = predict_sides(self.model, both, &late, &self.free, self.evidence, Role::Fit);
-        let predictions = match predictions {
-            Ok(predictions) => predictions,
-            Err(error) => {
-                self.refused = Some(error);
-                residual.fill(f64::NAN);
-                return;
-            }
-        };
-        let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
-        for mut prediction in predictions {
-            prediction.add(&self.unsteady[prediction.series]);
-            self.rows(&prediction, x, &mut rows, &mut columns);
-        }
-        rows.extend(
-            x[self.free.len()..]
-                .iter()
-                .zip(&self.sigmas)
-                .map(|(c, sigma)| c / sigma),
-        );
-        residual.copy_from_slice(&rows);
+        let columns = self.look(x, residual, &self.free.clone());
         for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
             into.fill(0.0);
             into[..column.len()].copy_from_slice(column);
@@ -365,5 +367,11 @@ impl Problem for Posterior<'_> {
                 into[self.residuals + k] = 1.0 / self.sigmas[k];
             }
         }
+    }
+
+    /// Differentiated by differences, rides and histories cost many times more than alone.
+    fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
+        self.look(x, residual, &[]);
+        true
     }
 }

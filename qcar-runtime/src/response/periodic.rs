@@ -81,19 +81,13 @@ impl<'m> Periodic<'m> {
             (x, converged) = self.climb(p, drive, &rest);
         }
         balance.sample(&x);
-        let slopes = balance.slopes(groups);
+        if !groups.is_empty() {
+            balance.linearise();
+        }
+        let slope = |group: &Vec<usize>| balance.output_slopes(outputs, group);
         Cycle {
-            outputs: outputs.iter().map(|&output| balance.output(output)).collect(),
-            slopes: groups
-                .iter()
-                .zip(&slopes)
-                .map(|(group, dx)| {
-                    outputs
-                        .iter()
-                        .map(|&output| balance.output_slope(output, group, dx))
-                        .collect()
-                })
-                .collect(),
+            outputs: balance.outputs(outputs),
+            slopes: groups.iter().map(slope).collect(),
             coefficients: x,
             converged,
         }

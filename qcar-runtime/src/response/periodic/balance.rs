@@ -107,9 +107,13 @@ impl<'a> Balance<'a> {
         (x.as_slice().to_vec(), false)
     }
 
-    /// Takes a point as the present one, ready for derivatives there.
+    /// Takes a point as the present one.
     pub fn sample(&mut self, x: &[f64]) {
         self.residual(&DVector::from_column_slice(x));
+    }
+
+    /// Makes the present point ready for derivatives.
+    pub fn linearise(&mut self) {
         self.factors = Some(self.jacobian().lu());
         let points = self.samples.iter().zip(&self.inputs);
         let by_parameter = points.map(|(x, u)| {
@@ -120,52 +124,57 @@ impl<'a> Balance<'a> {
         self.by_parameter = by_parameter.collect();
     }
 
-    /// Harmonics of an output at the present point.
-    pub fn output(&self, output: usize) -> Vec<Complex<f64>> {
+    /// Harmonics of some outputs at the present point.
+    pub fn outputs(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
         let mut y = vec![0.0; self.model.about().outputs.len()];
-        let samples = self.samples.iter().zip(&self.inputs).map(|(x, u)| {
+        let mut samples = DMatrix::zeros(self.inputs.len(), outputs.len());
+        for (k, (x, u)) in self.samples.iter().zip(&self.inputs).enumerate() {
             self.model.outputs(&self.constants, x, u, &mut y);
-            y[output]
-        });
-        let samples = DVector::from_iterator(self.inputs.len(), samples);
-        self.basis.harmonics((&self.basis.analysis * samples).as_slice())
-    }
-
-    /// How the coefficients of the present point move along each group of parameters; zero where they cannot be told.
-    pub fn slopes(&self, groups: &[Vec<usize>]) -> Vec<DVector<f64>> {
-        let unknowns = self.states.len() * self.basis.terms();
-        groups
-            .iter()
-            .map(|group| {
-                let push = self.by_parameter(group, false, |row| self.places[row]);
-                let mut stacked = DVector::zeros(unknowns);
-                for (place, samples) in push {
-                    let mut block = stacked.rows_mut(place * self.basis.terms(), self.basis.terms());
-                    block += &self.basis.analysis * samples;
-                }
-                let solved = self.factors.as_ref().and_then(|factors| factors.solve(&stacked));
-                solved.unwrap_or_else(|| DVector::zeros(unknowns))
-            })
-            .collect()
-    }
-
-    /// How the harmonics of an output move along a group of parameters, `dx` being the move of the coefficients.
-    pub fn output_slope(&self, output: usize, group: &[usize], dx: &DVector<f64>) -> Vec<Complex<f64>> {
-        let mut samples = DVector::zeros(self.inputs.len());
-        for (_, direct) in self.by_parameter(group, true, |row| (row == output).then_some(0)) {
-            samples += direct;
+            let row = outputs.iter().enumerate();
+            row.for_each(|(column, &output)| samples[(k, column)] = y[output]);
         }
-        let moves = self.synthesis(dx);
-        let entries = self.model.about().matrices.iter().enumerate();
-        for (entry, at) in entries.filter(|(_, e)| e.matrix == Matrix::C && usize::from(e.row) == output) {
-            let Some(place) = self.places[usize::from(at.column)] else {
-                continue;
-            };
-            for k in 0..samples.len() {
-                samples[k] += self.matrices[k][entry] * moves[(k, place)];
+        self.harmonics(&samples)
+    }
+
+    /// How the harmonics of some outputs move along a group of parameters; a state that cannot be told of stays.
+    pub fn output_slopes(&self, outputs: &[usize], group: &[usize]) -> Vec<Vec<Complex<f64>>> {
+        let moves = self.synthesis(&self.slope(group));
+        let mut samples = DMatrix::zeros(self.inputs.len(), outputs.len());
+        for (column, &output) in outputs.iter().enumerate() {
+            let mut samples = samples.column_mut(column);
+            for (_, direct) in self.by_parameter(group, true, |row| (row == output).then_some(0)) {
+                samples += direct;
+            }
+            let entries = self.model.about().matrices.iter().enumerate();
+            for (entry, at) in entries.filter(|(_, e)| e.matrix == Matrix::C && usize::from(e.row) == output) {
+                let Some(place) = self.places[usize::from(at.column)] else {
+                    continue;
+                };
+                for k in 0..samples.len() {
+                    samples[k] += self.matrices[k][entry] * moves[(k, place)];
+                }
             }
         }
-        self.basis.harmonics((&self.basis.analysis * samples).as_slice())
+        self.harmonics(&samples)
+    }
+
+    /// How the coefficients of the present point move along a group of parameters; zero where they cannot be told.
+    fn slope(&self, group: &[usize]) -> DVector<f64> {
+        let (terms, unknowns) = (self.basis.terms(), self.states.len() * self.basis.terms());
+        let mut push = DVector::zeros(unknowns);
+        for (place, samples) in self.by_parameter(group, false, |row| self.places[row]) {
+            let mut block = push.rows_mut(place * terms, terms);
+            block += &self.basis.analysis * samples;
+        }
+        let solved = self.factors.as_ref().and_then(|factors| factors.solve(&push));
+        solved.unwrap_or_else(|| DVector::zeros(unknowns))
+    }
+
+    /// Harmonics of samples, a column for each series.
+    fn harmonics(&self, samples: &DMatrix<f64>) -> Vec<Vec<Complex<f64>>> {
+        let coefficients = &self.basis.analysis * samples;
+        let of = coefficients.column_iter();
+        of.map(|column| self.basis.harmonics(column.as_slice())).collect()
     }
 
     /// Samples of ∂f/∂p (or ∂h/∂p) along a group, by what `place` makes of a row.
