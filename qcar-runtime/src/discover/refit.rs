@@ -128,7 +128,7 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
     let mut settled = refit;
     for _ in 0..ROUNDS {
         posterior.unsteady = unsteady(model, &settled.values, evidence, Role::Fit)?;
-        let outcome = posterior.search(&posterior.place(&settled), MOST_EVALUATIONS)?;
+        let outcome = posterior.search(&posterior.place(&settled), TO_SETTLE)?;
         settled = posterior.refit(outcome);
     }
     Ok(settled)
@@ -136,6 +136,8 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
 
 /// Rounds of a refit with what its sweeps add to their balance: the second has it from where the first arrived.
 const ROUNDS: usize = 2;
+/// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
+const TO_SETTLE: usize = 20;
 
 /// True for a run that records one side of the car.
 fn of_one_side(run: &Run) -> bool {

@@ -34,6 +34,9 @@ const SETTLED: f64 = 1e-7;
 /// A constant that nothing returns, as the force of a friction that sticks, would make the matrix singular: this share
 /// of ω returns it slowly. It bends the way of the search by as little, and not its end.
 const RETURN: f64 = 1e-6;
+/// Where a whole step leaves less than this share of itself to the next one by the same matrix, that matrix serves once
+/// more: to factorise a new one costs as much as tens of residuals.
+const STRAIGHT: f64 = 0.2;
 /// The shortest share of a Newton step that is tried.
 const SHORTEST: f64 = 1e-3;
 
@@ -73,8 +76,9 @@ impl<'a> Balance<'a> {
     pub fn solve(&mut self, start: &[f64]) -> (Vec<f64>, bool) {
         let mut x = DVector::from_column_slice(start);
         let mut residual = self.residual(&x);
+        let mut kept = None;
         for _ in 0..ITERATIONS {
-            let factors = self.jacobian().lu();
+            let factors = kept.take().unwrap_or_else(|| self.jacobian().lu());
             let Some(step) = factors.solve(&residual) else {
                 return (x.as_slice().to_vec(), false);
             };
@@ -103,6 +107,8 @@ impl<'a> Balance<'a> {
                 self.residual(&x);
                 return (x.as_slice().to_vec(), true);
             }
+            let is_straight = is_monotonic && share == 1.0 && next < STRAIGHT * length;
+            kept = is_straight.then_some(factors);
         }
         (x.as_slice().to_vec(), false)
     }
