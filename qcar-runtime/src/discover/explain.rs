@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::gap::Gap;
 use super::nuisance::Nuisance;
 use super::predict::{Free, PredictError};
-use super::refit::{Refit, refit_with, settle};
+use super::refit::{Effort, Refit, refit_with, settle};
 use crate::campaign::Role;
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -103,13 +103,18 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// Fits from `values` with at most so many evaluations.
+    /// Fits from `values` with at most so much effort.
     ///
     /// # Errors
     /// Where the model lacks what was measured.
-    pub fn refit(&self, values: &Values, evidence: &Evidence, evaluations: usize) -> Result<Refit, PredictError> {
+    pub fn refit(
+        &self,
+        values: &Values,
+        evidence: &Evidence,
+        effort: impl Into<Effort>,
+    ) -> Result<Refit, PredictError> {
         let nuisance = self.nuisance.clone();
-        refit_with(self.model, values, &self.free(), evidence, nuisance, evaluations)
+        refit_with(self.model, values, &self.free(), evidence, nuisance, effort)
     }
 
     /// What a refit says of all runs.

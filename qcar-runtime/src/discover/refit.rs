@@ -89,7 +89,26 @@ pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evide
 /// How often a refit may evaluate the model unless told otherwise.
 const MOST_EVALUATIONS: usize = 60;
 
-/// The same with sensors that may be wrong as `nuisance` says, and at most so many evaluations.
+/// What a refit may cost.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Effort {
+    /// How often it may evaluate the model.
+    pub evaluations: usize,
+    /// True where a good place soon is worth more than the best one exactly.
+    pub hurries: bool,
+}
+
+impl From<usize> for Effort {
+    /// At most so many evaluations on the way to the best place.
+    fn from(evaluations: usize) -> Self {
+        Self {
+            evaluations,
+            hurries: false,
+        }
+    }
+}
+
+/// The same with sensors that may be wrong as `nuisance` says, and at most so much effort.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
@@ -99,12 +118,12 @@ pub fn refit_with(
     free: &[Free],
     evidence: &Evidence,
     nuisance: Nuisance,
-    evaluations: usize,
+    effort: impl Into<Effort>,
 ) -> Result<Refit, PredictError> {
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.resize(posterior.variables(), 0.0);
-    let outcome = posterior.search(&start, evaluations)?;
+    let outcome = posterior.search(&start, effort)?;
     Ok(posterior.refit(outcome))
 }
 
@@ -202,12 +221,14 @@ impl<'a> Posterior<'a> {
     }
 
     /// The best place that is found from `start`.
-    fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
+    fn search(&mut self, start: &[f64], effort: impl Into<Effort>) -> Result<Outcome, PredictError> {
+        let effort = effort.into();
         let options = Options {
             gradient: 1e-5,
             cost: 1e-6,
             step: 1e-6,
-            evaluations,
+            evaluations: effort.evaluations,
+            secants: effort.hurries,
         };
         let priors: Vec<f64> = self.sigmas.iter().map(|sigma| MOST * sigma).collect();
         let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));

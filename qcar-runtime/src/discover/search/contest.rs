@@ -13,7 +13,7 @@ use super::{News, Progress};
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation};
 use crate::discover::predict::PredictError;
-use crate::discover::refit::Refit;
+use crate::discover::refit::{Effort, Refit};
 use crate::response::parameters::Values;
 
 /// What the explanations are held against.
@@ -204,10 +204,11 @@ impl Runner {
     /// `None` where the model gives no number.
     fn run(self, entrants: &[Entrant], evidence: &Evidence, stage: &Stage) -> Option<Runner> {
         let entrant = &entrants[self.entrant];
-        let refit = entrant
-            .explanandum
-            .refit(&self.values, evidence, stage.evaluations)
-            .ok()?;
+        let effort = Effort {
+            evaluations: stage.evaluations,
+            hurries: stage.tolerant,
+        };
+        let refit = entrant.explanandum.refit(&self.values, evidence, effort).ok()?;
         let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
             entrant: self.entrant,
