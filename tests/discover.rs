@@ -1,8 +1,11 @@
 //! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
 
+use std::fs;
+use std::io::Read;
 use std::path::Path;
 use std::process::Command;
 
+use flate2::read::GzDecoder;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::{Order, make};
 use serde_json::Value;
@@ -158,4 +161,120 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     );
     let model = answer["model_file"].as_str().expect("a file");
     qcar::catalogue::compiled(model).unwrap_or_else(|failure| panic!("{failure:?}"));
+}
+
+/// The sweeps of the shipped rig, with every sample of a column changed.
+fn swept(folder: &Path, changed: &mut dyn FnMut(&str, f64) -> f64) {
+    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
+    fs::create_dir(folder.join("rig")).expect("a folder");
+    for level in ["025", "050", "100"] {
+        let file = format!("rig/sweep_{level}.csv.gz");
+        let mut text = String::new();
+        let packed = fs::File::open(shipped.join(&file)).expect("it is shipped");
+        GzDecoder::new(packed).read_to_string(&mut text).expect("text");
+        let mut lines = text.lines();
+        let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
+        let mut out = names.join(",") + "\n";
+        for line in lines {
+            let cells = names.iter().zip(line.split(','));
+            let cells = cells.map(|(name, cell)| match *name {
+                "time" => cell.to_owned(),
+                name => format!("{:.5}", changed(name, cell.parse().expect("a number"))),
+            });
+            out += &(cells.collect::<Vec<_>>().join(",") + "\n");
+        }
+        fs::write(folder.join(format!("rig/sweep_{level}.csv")), out).expect("a new file");
+    }
+    let manifest = fs::read_to_string(shipped.join("campaign.toml")).expect("it is shipped");
+    let runs = manifest
+        .split("[[run]]")
+        .filter(|run| !run.contains("kind =") || run.contains("\"sweep\""));
+    let manifest = runs.collect::<Vec<_>>().join("[[run]]").replace(".csv.gz", ".csv");
+    fs::write(folder.join("campaign.toml"), manifest).expect("a new file");
+}
+
+/// The manifest of such a campaign, changed.
+fn edit(folder: &Path, change: impl Fn(&str) -> String) {
+    let file = folder.join("campaign.toml");
+    let text = fs::read_to_string(&file).expect("it was written");
+    fs::write(file, change(&text)).expect("it is there");
+}
+
+/// What is said of a campaign that `discover` refuses.
+fn refusal(campaign: &Path) -> String {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+    let output = command.arg("discover").arg(campaign).output().expect("qcar runs");
+    assert_eq!(output.status.code(), Some(2));
+    String::from_utf8(output.stderr).expect("text")
+}
+
+/// Uniform numbers by a linear congruence.
+fn noise() -> impl FnMut() -> f64 {
+    let mut state = 11_u64;
+    move || {
+        state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+    }
+}
+
+#[test]
+fn pure_noise_says_nothing() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut noise = noise();
+    swept(folder.path(), &mut |_, _| noise());
+    let refusal = refusal(folder.path());
+    assert!(
+        refusal.contains("nothing but noise") && refusal.contains("no run that says anything"),
+        "{refusal}"
+    );
+}
+
+/// A sensor that is dead is left out, and nothing is made up to explain it.
+#[test]
+fn a_sensor_that_shows_noise_is_left_out() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut noise = noise();
+    swept(folder.path(), &mut |name, value| {
+        if name.starts_with("body") { noise() } else { value }
+    });
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    let notices = answer["notices"].to_string();
+    assert!(notices.contains("`body` shows nothing but noise"), "{notices}");
+}
+
+#[test]
+fn one_run_alone_and_none_held_out_are_enough_for_an_answer() {
+    let folder = tempfile::tempdir().expect("a folder");
+    swept(folder.path(), &mut |_, value| value);
+    edit(folder.path(), |text| text.replace("\"held_out\"", "\"fit\""));
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    assert_eq!(answer["gap"]["held_out"]["before"], Value::Null);
+    edit(folder.path(), |text| {
+        text.split("[[run]]").take(2).collect::<Vec<_>>().join("[[run]]")
+    });
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    edit(folder.path(), |text| text.replace("\"fit\"", "\"held_out\""));
+    assert!(refusal(folder.path()).contains("no run may be fitted"));
+}
+
+/// The left wheel's sensor shows three times what the right one does: no axle does that, and no effect explains it.
+#[test]
+fn sensors_that_contradict_each_other_are_no_effect() {
+    let folder = tempfile::tempdir().expect("a folder");
+    swept(folder.path(), &mut |name, value| {
+        if name == "wheel_left_z" { 3.0 * value } else { value }
+    });
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let best = &answer["places"][0];
+    assert_eq!(
+        [&best["at"], &best["sensor"], &best["shape"]],
+        ["wheel", "z", "gain"],
+        "{best}"
+    );
 }

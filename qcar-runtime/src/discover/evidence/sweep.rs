@@ -66,15 +66,26 @@ impl Evidence {
             .filter_map(|f| Some((f, swept.amplitude(f)?)))
             .collect();
         let (frequency, amplitude): (Vec<f64>, Vec<f64>) = passed.into_iter().unzip();
+        let (place, before) = (self.runs.len(), self.series.len());
         for sensor in sensors {
             let samples = signal(&history, &sensor)?;
-            let (place, respond) = (self.runs.len(), |order: usize| {
+            let respond = |order: usize| {
                 let at: Vec<f64> = answered(&frequency, order, rate);
                 let response: Vec<f64> = at.iter().map(|f| f * order as f64).collect();
                 (at, swept.responses(&samples, &response, AROUND))
-            });
-            self.series
-                .extend((1..=ORDERS).map(|order| series(place, &sensor, order, respond(order))));
+            };
+            let first = series(place, &sensor, 1, respond(1));
+            if !stands_clear(&first) {
+                let said = format!("`{}` shows nothing but noise", sensor.location);
+                self.notices
+                    .push(format!("{}: {said}; that sensor is left out", run.file));
+                continue;
+            }
+            let others = (2..=ORDERS).map(|order| series(place, &sensor, order, respond(order)));
+            self.series.extend(std::iter::once(first).chain(others));
+        }
+        if self.series.len() == before {
+            return Ok(());
         }
         self.runs.push(Run {
             name: run.file.clone(),
@@ -91,6 +102,15 @@ impl Evidence {
         });
         Ok(())
     }
+}
+
+/// Whether a sensor answers at all: chance lifts one value in eight thousand above three standard deviations.
+fn stands_clear(series: &Series) -> bool {
+    const CLEAR: f64 = 3.0;
+    const SHARE: f64 = 0.05;
+    let pairs = series.value.iter().zip(&series.sigma);
+    let clear = pairs.filter(|(value, sigma)| value.norm() > CLEAR * **sigma).count();
+    clear as f64 > SHARE * series.value.len() as f64
 }
 
 /// Frequencies whose neighbourhoods overlap little: evenly spaced below, by equal ratios above.
