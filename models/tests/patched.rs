@@ -10,6 +10,8 @@ use qcar_dsl::source::Source;
 use qcar_runtime::model::Model;
 
 axle_file!("tests/zoo/axle_b_with_coulomb_friction.axle");
+axle_file!("tests/zoo/axle_c_with_suspended_mass.axle");
+axle_file!("tests/zoo/axle_c_with_tire_dynamic_stiffness.axle");
 
 const FILE: &str = "tests/zoo/axle_b_with_coulomb_friction.axle";
 
@@ -32,12 +34,23 @@ fn a_patch_writes_the_same_file_every_time() {
 
 #[test]
 fn rustc_compiles_a_patched_file_as_any_other() {
-    let generated = module(&compile_file(Path::new(""), FILE).unwrap().compiled.unwrap());
-    let fingerprint = format!(
-        "FINGERPRINT: u64 = {:#018x};",
-        axle_b_with_coulomb_friction::FINGERPRINT
-    );
-    assert!(generated.contains(&fingerprint));
+    let compiled = [
+        (
+            "axle_b_with_coulomb_friction",
+            axle_b_with_coulomb_friction::FINGERPRINT,
+        ),
+        ("axle_c_with_suspended_mass", axle_c_with_suspended_mass::FINGERPRINT),
+        (
+            "axle_c_with_tire_dynamic_stiffness",
+            axle_c_with_tire_dynamic_stiffness::FINGERPRINT,
+        ),
+    ];
+    for (name, fingerprint) in compiled {
+        let file = format!("tests/zoo/{name}.axle");
+        let generated = module(&compile_file(Path::new(""), &file).unwrap().compiled.unwrap());
+        let fingerprint = format!("FINGERPRINT: u64 = {fingerprint:#018x};");
+        assert!(generated.contains(&fingerprint), "{name}");
+    }
     let about = axle_b_with_coulomb_friction::AxleBWithCoulombFriction.about();
     assert!(about.states.iter().any(|state| state.name == "z_damper_f_dry"));
 }
