@@ -14,6 +14,8 @@ mod zoo {
     qcar_derive::axle_file!("tests/zoo/names.axle");
     // With an effect in it.
     qcar_derive::axle_file!("tests/zoo/axle_b_with_coulomb_friction.axle");
+    qcar_derive::axle_file!("tests/zoo/axle_c_with_suspended_mass.axle");
+    qcar_derive::axle_file!("tests/zoo/axle_c_with_tire_dynamic_stiffness.axle");
 }
 
 /// Every compiled model with the file it comes from.
@@ -21,13 +23,21 @@ fn all() -> Vec<(String, &'static dyn Model)> {
     let shipped = models::all()
         .iter()
         .map(|shipped| (shipped.file.to_string(), shipped.model));
-    let zoo: [(&str, &'static dyn Model); 4] = [
+    let zoo: [(&str, &'static dyn Model); 6] = [
         ("tests/zoo/laws.axle", &zoo::laws::Laws),
         ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms),
         ("tests/zoo/names.axle", &zoo::names::Names),
         (
             "tests/zoo/axle_b_with_coulomb_friction.axle",
             &zoo::axle_b_with_coulomb_friction::AxleBWithCoulombFriction,
+        ),
+        (
+            "tests/zoo/axle_c_with_suspended_mass.axle",
+            &zoo::axle_c_with_suspended_mass::AxleCWithSuspendedMass,
+        ),
+        (
+            "tests/zoo/axle_c_with_tire_dynamic_stiffness.axle",
+            &zoo::axle_c_with_tire_dynamic_stiffness::AxleCWithTireDynamicStiffness,
         ),
     ];
     shipped
