@@ -181,8 +181,10 @@ pub struct Track {
     pub pwt_x: Vec<f64>,
 }
 
-/// Steps of integration a sample.
+/// Looks of the logger a sample.
 const FINER: usize = 4;
+/// Steps of integration between two looks where friction sticks: what sticks follows a fast damper within 0.1 ms.
+const STICKING: usize = 4;
 
 /// Drives a corner over a road for `seconds`.
 pub fn run(corner: &Corner, road: &Road, speed: f64, seconds: f64) -> Track {
@@ -196,6 +198,8 @@ pub fn run(corner: &Corner, road: &Road, speed: f64, seconds: f64) -> Track {
     let h = 1.0 / (RATE * FINER as f64);
     let derivative = |t: f64, y: &State| corner.derivative(0.0, y, rolling.push(t, y), false);
     let mut y = [0.0; STATES];
+    let is_dry = corner.laws.friction.is_some() || corner.laws.bouc_wen.is_some();
+    let steps = if is_dry { STICKING } else { 1 };
     let mut track = Track::default();
     let mut mean = Average::default();
     for i in 0..(seconds * RATE) as usize * FINER {
@@ -204,7 +208,10 @@ pub fn run(corner: &Corner, road: &Road, speed: f64, seconds: f64) -> Track {
         if i % FINER == FINER - 1 {
             track.push(&mean.give());
         }
-        y = step(t, &y, h, &derivative);
+        for k in 0..steps {
+            let part = h / steps as f64;
+            y = step(t + k as f64 * part, &y, part, &derivative);
+        }
     }
     track
 }
