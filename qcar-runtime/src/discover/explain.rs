@@ -59,6 +59,17 @@ impl Explanation {
         (self.refit.chi2 / self.refit.residuals as f64).max(1.0)
     }
 
+    /// How much the calibrations of the sensors are strained: the sum of the squares of their errors over what these may
+    /// be, before any measurement.
+    pub fn strain(&self) -> f64 {
+        let nuisance = &self.refit.nuisance;
+        let errors = self.refit.coefficients.iter().zip(nuisance.sigmas());
+        let squares = errors
+            .take(nuisance.of_calibration())
+            .map(|(error, sigma)| error / sigma);
+        squares.map(|error| error * error).sum()
+    }
+
     /// By what share of them the model misses most of the fitted values that stand clear of the noise: the median.
     pub fn misfit(&self, evidence: &Evidence) -> f64 {
         const CLEAR: f64 = 10.0;
@@ -103,17 +114,19 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// Fits from `values` with at most so much effort.
+    /// Fits from `values`, and from the sensors' errors of an earlier fit, with at most so much effort.
     ///
     /// # Errors
     /// Where the model lacks what was measured.
     pub fn refit(
         &self,
         values: &Values,
+        earlier: Option<&Refit>,
         evidence: &Evidence,
         effort: impl Into<Effort>,
     ) -> Result<Refit, PredictError> {
-        let nuisance = self.nuisance.clone();
+        let mut nuisance = self.nuisance.clone();
+        nuisance.start = earlier.map_or_else(Vec::new, |earlier| earlier.coefficients.clone());
         refit_with(self.model, values, &self.free(), evidence, nuisance, effort)
     }
 

@@ -92,6 +92,23 @@ impl Gap {
 }
 
 impl Gap {
+    /// The largest gap of one sensor in values of one kind, of the fitted or of the held-out runs: what a few values show
+    /// clearly many others may dilute. Few values alone are not looked at.
+    pub fn local(&self, evidence: &Evidence) -> f64 {
+        const FEW: usize = 100;
+        let mut groups: BTreeMap<_, Vec<f64>> = BTreeMap::new();
+        for role in [Role::Fit, Role::HeldOut] {
+            for (place, series) in evidence.of_role(role) {
+                let group = groups
+                    .entry((role == Role::Fit, &series.sensor, series.kind))
+                    .or_default();
+                group.extend(&self.residuals[place]);
+            }
+        }
+        let many = groups.into_values().filter(|group| group.len() >= FEW);
+        many.map(|group| rms(group.into_iter())).fold(0.0, f64::max)
+    }
+
     /// The share of the variance of these runs' records over time for which the model does not account; `None` without
     /// such records.
     pub fn missed(&self, evidence: &Evidence, role: Role) -> Option<f64> {

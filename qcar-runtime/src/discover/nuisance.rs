@@ -74,6 +74,12 @@ pub const SENSOR: [Shape; 7] = [
     },
 ];
 
+/// The most that a calibration is wrong by, in standard deviations of its prior. What is beyond is a fault of the sensor:
+/// a gap, which has to be explained.
+///
+/// Two sensors that are compared may both be wrong, so that a ratio of them is allowed twice as much.
+pub const STRAINED: f64 = 2.0;
+
 /// A predicted series as a sensor with errors shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
@@ -94,6 +100,8 @@ pub struct Nuisance {
     pub band: (f64, f64),
     /// What is suspected beside their calibration.
     pub suspects: Vec<Suspect>,
+    /// Coefficients from which a search begins; zero beyond those that are known.
+    pub start: Vec<f64>,
 }
 
 /// An error that some sensors have in common: they are one device, or are read through one.
@@ -130,6 +138,7 @@ impl Nuisance {
                 frequencies().fold(0.0, f64::max),
             ),
             suspects: Vec::new(),
+            start: Vec::new(),
         }
     }
 

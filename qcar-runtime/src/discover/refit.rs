@@ -12,7 +12,7 @@ use std::ops::Range;
 use nalgebra::{Complex, DMatrix};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
-use super::nuisance::Nuisance;
+use super::nuisance::{Nuisance, STRAINED};
 use super::predict::{Free, PredictError, Prediction, predict_sides, unsteady};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
@@ -54,8 +54,8 @@ pub struct Refit {
 /// Standard deviation of the logarithm of a side's factor: parts of one drawing, and springs of one batch.
 const SIDE: f64 = 0.015;
 
-/// The most that a sensor or a side is wrong by, in standard deviations of its prior: a model that lacks something shall
-/// not buy its way out by calibrations that no sensor has.
+/// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not buy its
+/// way out by sides that no car has.
 const MOST: f64 = 3.0;
 
 impl Refit {
@@ -122,6 +122,7 @@ pub fn refit_with(
 ) -> Result<Refit, PredictError> {
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
+    start.extend(&posterior.nuisance.start);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, effort)?;
     Ok(posterior.refit(outcome))
@@ -230,7 +231,9 @@ impl<'a> Posterior<'a> {
             evaluations: effort.evaluations,
             secants: effort.hurries,
         };
-        let priors: Vec<f64> = self.sigmas.iter().map(|sigma| MOST * sigma).collect();
+        let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
+        let sides = sides.iter().map(|sigma| MOST * sigma);
+        let priors: Vec<f64> = sensors.iter().map(|sigma| STRAINED * sigma).chain(sides).collect();
         let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
         let bounds = Bounds {

@@ -129,6 +129,12 @@ pub fn discover(
     if !judge.is_gap(&before) {
         return Ok(verdict(Verdict::None, Vec::new(), &before));
     }
+    // A strained calibration that nothing explains is an unlucky one.
+    let unexplained = if judge.is_clear(&before) {
+        Verdict::Unknown
+    } else {
+        Verdict::None
+    };
     let mut first = base.contenders(evidence, progress)?;
     judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
@@ -148,14 +154,14 @@ pub fn discover(
         }
     }
     let Some(path) = best else {
-        return Ok(verdict(Verdict::Unknown, Vec::new(), &before));
+        return Ok(verdict(unexplained, Vec::new(), &before));
     };
     if !judge.is_enough(&path) {
-        return Ok(verdict(Verdict::Unknown, Vec::new(), &path.state.explanation));
+        return Ok(verdict(unexplained, Vec::new(), &path.state.explanation));
     }
     let path = path.without_what_is_not_missed(&base, &judge, evidence, progress)?;
     if !judge.is_enough(&path) {
-        return Ok(verdict(Verdict::Unknown, Vec::new(), &path.state.explanation));
+        return Ok(verdict(unexplained, Vec::new(), &path.state.explanation));
     }
     let named = match path.class.len() {
         0 | 1 => Verdict::Found,

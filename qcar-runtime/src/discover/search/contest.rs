@@ -40,8 +40,8 @@ struct Stage {
     starts: usize,
     /// Explanations that go on,
     kept: usize,
-    /// if they gain this share of what the best of them gains over no change at all.
-    share: f64,
+    /// if they gain this share of what the best of them gains over no change at all, where a share is asked for.
+    share: Option<f64>,
 }
 
 const STAGES: [Stage; 4] = [
@@ -53,7 +53,7 @@ const STAGES: [Stage; 4] = [
         starts: 2,
         kept: 14,
         // So few steps tell who is far from any use, not yet who is better than no change.
-        share: f64::NEG_INFINITY,
+        share: None,
     },
     Stage {
         first: false,
@@ -62,7 +62,7 @@ const STAGES: [Stage; 4] = [
         evaluations: 8,
         starts: 2,
         kept: 8,
-        share: 0.3,
+        share: Some(0.3),
     },
     Stage {
         first: false,
@@ -71,7 +71,7 @@ const STAGES: [Stage; 4] = [
         evaluations: 12,
         starts: 1,
         kept: 4,
-        share: 0.3,
+        share: Some(0.3),
     },
     Stage {
         first: false,
@@ -80,7 +80,7 @@ const STAGES: [Stage; 4] = [
         evaluations: 25,
         starts: 1,
         kept: 4,
-        share: 0.0,
+        share: Some(0.0),
     },
 ];
 
@@ -208,7 +208,11 @@ impl Runner {
             evaluations: stage.evaluations,
             hurries: stage.tolerant,
         };
-        let refit = entrant.explanandum.refit(&self.values, evidence, effort).ok()?;
+        let earlier = self.refit.as_ref();
+        let refit = entrant
+            .explanandum
+            .refit(&self.values, earlier, evidence, effort)
+            .ok()?;
         let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
             entrant: self.entrant,
@@ -239,8 +243,8 @@ fn distances(field: &[Runner]) -> Vec<Dropped> {
 fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage) -> Vec<Runner> {
     field.sort_by(|a, b| a.score.total_cmp(&b.score));
     let unchanged = field.iter().find(|runner| entrants[runner.entrant].unknowns == 0);
-    let least = match (field.first(), unchanged) {
-        (Some(first), Some(unchanged)) => unchanged.score - stage.share * (unchanged.score - first.score),
+    let least = match (field.first(), unchanged, stage.share) {
+        (Some(first), Some(unchanged), Some(share)) => unchanged.score - share * (unchanged.score - first.score),
         _ => f64::INFINITY,
     };
     let mut passed: BTreeMap<usize, usize> = BTreeMap::new();

@@ -10,7 +10,13 @@ use crate::discover::explain::Explanation;
 
 /// A gap (RMS over uncertainty) below this is noise: what differs between the sides of an axle, and what its averages
 /// leave of that, come to a tenth.
-const NOISE: f64 = 1.2;
+pub const NOISE: f64 = 1.2;
+/// The same of one sensor in values of one kind: high harmonics, which are next to nothing, scatter by more than their
+/// noise.
+const LOCAL: f64 = 2.5;
+/// Sensors whose calibrations have to be wrong by more than this together (sum of squares over what is usual) are no
+/// better than a gap.
+const STRAIN: f64 = 25.0;
 /// An effect must lower the sum of squares by so much, beside the penalty of its parameters, in units of the scatter.
 const SIGNIFICANT: f64 = 60.0;
 /// All effects together must close so much of the excess gap of the held-out runs,
@@ -50,9 +56,15 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// True where more is left than noise.
+    /// True where more is left than noise, or where the calibrations of the sensors are strained.
     pub fn is_gap(&self, explanation: &Explanation) -> bool {
-        explanation.gap.fit.max(explanation.gap.held_out) > NOISE
+        self.is_clear(explanation) || explanation.strain() > STRAIN
+    }
+
+    /// True where more is left than noise, in all values or in those of one sensor and kind.
+    pub fn is_clear(&self, explanation: &Explanation) -> bool {
+        let gap = &explanation.gap;
+        gap.fit.max(gap.held_out) > NOISE || gap.local(self.evidence) > LOCAL
     }
 
     /// True where an effect lowers the sum of squares by more than chance.
@@ -135,8 +147,12 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// Share of the excess of the squared gap over noise that is gone.
+    /// Share of the excess of the squared gap over noise that is gone. Where the gap shows in a part of the values, or in
+    /// the calibrations alone, it is closed if that is gone.
     fn closed(&self, before: &Explanation, after: &Explanation) -> f64 {
+        if self.gap(before) <= NOISE {
+            return if self.is_gap(after) { 0.0 } else { 1.0 };
+        }
         let excess = |explanation| (self.gap(explanation).powi(2) - 1.0).max(0.0);
         1.0 - excess(after) / excess(before).max(f64::MIN_POSITIVE)
     }

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
+use super::rules::NOISE;
 use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -240,8 +241,10 @@ impl State {
             .filter(|&run| fitted(run))
             .map(|run| gaps[run])
             .fold(0.0, f64::max);
+        // A run of few values that scatters is no place where a weak effect shows.
+        let is_weak = self.explanation.gap.fit <= NOISE;
         Looks {
-            first: evidence.only(|run| fitted(run) && gaps[run] > MUCH * most),
+            first: evidence.only(|run| fitted(run) && (is_weak || gaps[run] > MUCH * most)),
             all: evidence,
             tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
         }
@@ -328,7 +331,7 @@ impl State {
 fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) -> Result<Explanation, PredictError> {
     // What cannot be predicted at all is an error here, where among many it only drops out.
     let start = explanandum.starts()?.swap_remove(0);
-    explanandum.refit(&start, evidence, 1)?;
+    explanandum.refit(&start, None, evidence, 1)?;
     let entrant = Entrant {
         explanandum,
         unknowns: 0,
