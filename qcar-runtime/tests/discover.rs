@@ -6,7 +6,10 @@ mod strut;
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::evidence::{Evidence, Kind, Run, Series, Stimulus};
+use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
+use qcar_runtime::discover::nuisance::{Form, Nuisance};
+use qcar_runtime::discover::refit::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -157,6 +160,33 @@ fn a_smooth_calibration_error_leaves_no_gap() {
             model.about().parameters[free.parameter].name
         );
     }
+}
+
+/// 4 % at one of three sensors that are good to 0.7 % each: all would have to be wrong, and that is no explanation.
+#[test]
+fn a_gain_beyond_calibration_strains_the_sensors_and_is_told_when_suspected() {
+    let model = Strut::new(PLAIN);
+    let strain = |evidence: &Evidence| {
+        let (refit, gap) = fitted(&model, evidence);
+        let named = Vec::new();
+        Explanation { named, refit, gap }.strain()
+    };
+    let usual = |location: &str| if location == "pad" { 1.006 } else { 0.996 };
+    assert!(strain(&evidence(&model, &TRUTH, |location, _| usual(location))) < 5.0);
+
+    let wrong = evidence(
+        &model,
+        &TRUTH,
+        |location, _| if location == "wheel" { 1.04 } else { 1.0 },
+    );
+    assert!(strain(&wrong) > 10.0, "{}", strain(&wrong));
+    let (base, _) = fitted(&model, &wrong);
+    let suspected = Nuisance::of(&wrong).suspecting("wheel", Some(Axis::Z), Form::Gain(0), 1.0);
+    let suspected = suspected.expect("the wheel has a sensor");
+    let refit = refit_with(&model, &base.values, &base.free, &wrong, suspected, 60).expect("sensors are there");
+    let gain = refit.coefficients[refit.nuisance.len() - 1].exp();
+    assert!((gain - 1.04).abs() < 0.015, "{gain}");
+    assert!(refit.chi2 < base.chi2 - 10.0, "{} {}", refit.chi2, base.chi2);
 }
 
 #[test]

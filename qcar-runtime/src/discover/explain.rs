@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::candidate::Added;
 use super::evidence::Evidence;
 use super::gap::Gap;
-use super::nuisance::Nuisance;
+use super::nuisance::{Form, Nuisance, SENSOR};
 use super::predict::{Free, PredictError};
 use super::refit::{Effort, Refit, refit_with, settle};
 use crate::campaign::Role;
@@ -59,15 +59,16 @@ impl Explanation {
         (self.refit.chi2 / self.refit.residuals as f64).max(1.0)
     }
 
-    /// How much the calibrations of the sensors are strained: the sum of the squares of their errors over what these may
-    /// be, before any measurement.
+    /// How much the gains and delays of the sensors are strained: the sum of the squares of their errors over what these
+    /// may be, before any measurement. Errors of other forms take up what a mean of two sides differs by from one.
     pub fn strain(&self) -> f64 {
         let nuisance = &self.refit.nuisance;
-        let errors = self.refit.coefficients.iter().zip(nuisance.sigmas());
-        let squares = errors
-            .take(nuisance.of_calibration())
-            .map(|(error, sigma)| error / sigma);
-        squares.map(|error| error * error).sum()
+        let errors = self.refit.coefficients.iter().take(nuisance.of_calibration());
+        let shapes = SENSOR.iter().cycle();
+        let of_device = errors
+            .zip(shapes)
+            .filter(|(_, s)| matches!(s.form, Form::Gain(0) | Form::Delay));
+        of_device.map(|(error, shape)| (error / shape.sigma).powi(2)).sum()
     }
 
     /// By what share of them the model misses most of the fitted values that stand clear of the noise: the median.

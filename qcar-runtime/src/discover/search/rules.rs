@@ -14,9 +14,9 @@ pub const NOISE: f64 = 1.2;
 /// The same of one sensor in values of one kind: high harmonics, which are next to nothing, scatter by more than their
 /// noise.
 const LOCAL: f64 = 2.5;
-/// Sensors whose calibrations have to be wrong by more than this together (sum of squares over what is usual) are no
+/// Sensors whose gains and delays have to be wrong by more than this together (sum of squares over what is usual) are no
 /// better than a gap.
-const STRAIN: f64 = 25.0;
+const STRAIN: f64 = 20.0;
 /// An effect must lower the sum of squares by so much, beside the penalty of its parameters, in units of the scatter.
 const SIGNIFICANT: f64 = 60.0;
 /// All effects together must close so much of the excess gap of the held-out runs,
