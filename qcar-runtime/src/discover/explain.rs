@@ -115,7 +115,7 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// Fits from `values`, and from the sensors' errors of an earlier fit, with at most so much effort.
+    /// Fits from `values`, and, where a sensor is suspected, from the errors of an earlier fit, with at most so much effort.
     ///
     /// # Errors
     /// Where the model lacks what was measured.
@@ -127,6 +127,8 @@ impl Explanandum<'_> {
         effort: impl Into<Effort>,
     ) -> Result<Refit, PredictError> {
         let mut nuisance = self.nuisance.clone();
+        // Any other search does better where it may blame the sensors last.
+        let earlier = earlier.filter(|_| !nuisance.suspects.is_empty());
         nuisance.start = earlier.map_or_else(Vec::new, |earlier| earlier.coefficients.clone());
         refit_with(self.model, values, &self.free(), evidence, nuisance, effort)
     }
