@@ -70,10 +70,6 @@ pub struct Options {
     pub step: f64,
     /// Evaluations of the residual at places of their own.
     pub evaluations: usize,
-    /// True to spare every other Jacobian, where a residual comes without: that of the step before is corrected to agree
-    /// with what the step has shown (C. G. Broyden, "A class of methods for solving nonlinear simultaneous equations",
-    /// Math. Comp. 19, 1965). It leads downhill as well, but does not tell where a minimum is to many digits.
-    pub secants: bool,
 }
 
 impl Default for Options {
@@ -83,7 +79,6 @@ impl Default for Options {
             cost: 1e-10,
             step: 1e-8,
             evaluations: 200,
-            secants: false,
         }
     }
 }
@@ -155,25 +150,14 @@ pub fn minimize<P: Problem + ?Sized>(problem: &mut P, start: &[f64], bounds: &Bo
     search.finish(stop)
 }
 
-/// Where the Jacobian of a point is from.
-#[derive(Clone, Copy, PartialEq)]
-enum Slope {
-    /// It was evaluated at the point.
-    Here,
-    /// It is a secant through the point and the one before.
-    Secant,
-    /// It is none of this point.
-    Elsewhere,
-}
-
 /// A point with its residual and Jacobian.
 struct Point {
     x: DVector<f64>,
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
     cost: f64,
-    /// Where the Jacobian is from.
-    slope: Slope,
+    /// True where the Jacobian is that of this point.
+    is_linearised: bool,
 }
 
 impl Point {
@@ -183,7 +167,7 @@ impl Point {
             residual: DVector::zeros(residuals),
             jacobian: DMatrix::zeros(residuals, variables),
             cost: f64::NAN,
-            slope: Slope::Elsewhere,
+            is_linearised: false,
         }
     }
 
@@ -194,28 +178,17 @@ impl Point {
             self.jacobian.as_mut_slice(),
         );
         self.cost = 0.5 * self.residual.norm_squared();
-        self.slope = Slope::Here;
+        self.is_linearised = true;
     }
 
     /// Evaluates the residual, and its Jacobian where that comes with it.
     fn look<P: Problem + ?Sized>(&mut self, problem: &mut P) {
         if problem.evaluate_residual(self.x.as_slice(), self.residual.as_mut_slice()) {
             self.cost = 0.5 * self.residual.norm_squared();
-            self.slope = Slope::Elsewhere;
+            self.is_linearised = false;
         } else {
             self.evaluate(problem);
         }
-    }
-
-    /// Corrects the Jacobian of the point before by what the step from there has shown; variables count by their `scale`.
-    fn take_secant(&mut self, before: &Point, scale: &DVector<f64>) {
-        let step = &self.x - &before.x;
-        let direction = step.component_div(scale).component_div(scale);
-        let foreseen = &before.residual + &before.jacobian * &step;
-        self.jacobian.copy_from(&before.jacobian);
-        let missed = &self.residual - foreseen;
-        self.jacobian.ger(1.0 / direction.dot(&step), &missed, &direction, 1.0);
-        self.slope = Slope::Secant;
     }
 }
 
@@ -305,17 +278,13 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     /// Moves to the trial point, unless its linearisation holds a value that is not finite.
     fn accept(&mut self, options: &Options) -> bool {
         std::mem::swap(&mut self.here, &mut self.trial);
-        if self.here.slope == Slope::Elsewhere {
-            if self.evaluations >= options.evaluations {
-                // Nothing goes on from here.
-                std::mem::swap(&mut self.here.jacobian, &mut self.trial.jacobian);
-                return true;
-            }
-            if options.secants && self.trial.slope == Slope::Here {
-                self.here.take_secant(&self.trial, &self.normal.scale);
-            } else {
-                self.here.evaluate(self.problem);
-            }
+        if !self.here.is_linearised && self.evaluations >= options.evaluations {
+            // Nothing goes on from here.
+            std::mem::swap(&mut self.here.jacobian, &mut self.trial.jacobian);
+            return true;
+        }
+        if !self.here.is_linearised {
+            self.here.evaluate(self.problem);
         }
         let finite = self.normal.assemble(&self.here.jacobian, &self.here.residual);
         if !finite {

@@ -79,7 +79,6 @@ const TIGHT: Options = Options {
     cost: 1e-15,
     step: 1e-12,
     evaluations: 2000,
-    secants: false,
 };
 
 fn solve<F: Fn(&[Dual], usize) -> Dual>(residuals: usize, start: &[f64], bounds: &Bounds, residual: F) -> Outcome {
@@ -347,64 +346,4 @@ fn the_cost_never_rises_and_the_jacobian_is_that_of_the_optimum() {
     assert!(outcome.cost <= outcome.start_cost);
     let expected = DMatrix::from_row_slice(2, 2, &[-20.0 * outcome.x[0], 10.0, -1.0, 0.0]);
     assert!((outcome.jacobian - expected).norm() < 1e-12);
-}
-
-/// A problem whose residual comes without its Jacobian too, and how many Jacobians were asked for.
-struct Apart<P>(P, usize);
-
-impl<P: Problem> Problem for Apart<P> {
-    fn variables(&self) -> usize {
-        self.0.variables()
-    }
-
-    fn residuals(&self) -> usize {
-        self.0.residuals()
-    }
-
-    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        self.1 += 1;
-        self.0.evaluate(x, residual, jacobian);
-    }
-
-    fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        self.0
-            .evaluate(x, residual, &mut vec![0.0; self.variables() * self.residuals()]);
-        true
-    }
-}
-
-/// The outcome, and how many Jacobians it took.
-fn apart<F: Fn(&[Dual], usize) -> Dual>(
-    residuals: usize,
-    start: &[f64],
-    secants: bool,
-    residual: F,
-) -> (Outcome, usize) {
-    let functions = Functions {
-        variables: start.len(),
-        residuals,
-        residual,
-    };
-    let (mut problem, options) = (Apart(functions, 0), Options { secants, ..TIGHT });
-    let outcome = minimize(&mut problem, start, &Bounds::none(start.len()), &options);
-    assert!(outcome.stop.converged(), "{:?}", outcome.stop);
-    (outcome, problem.1)
-}
-
-#[test]
-fn a_refused_step_costs_no_jacobian() {
-    let together = unbounded(2, &[-1.2, 1.0], rosenbrock);
-    let (outcome, jacobians) = apart(2, &[-1.2, 1.0], false, rosenbrock);
-    assert_eq!((&outcome.x, outcome.evaluations), (&together.x, together.evaluations));
-    assert!(jacobians < outcome.evaluations, "{jacobians} {}", outcome.evaluations);
-}
-
-#[test]
-fn secants_spare_jacobians_on_the_way_to_the_same_place() {
-    let decay = |x: &[Dual], row: usize| x[1] * (x[0] * -(row as f64)).exp() - 2.0 * (-0.5 * row as f64).exp();
-    let (exact, all) = apart(6, &[0.3, 1.0], false, decay);
-    let (outcome, some) = apart(6, &[0.3, 1.0], true, decay);
-    assert_close(&exact.x, &[0.5, 2.0], 1e-6);
-    assert_close(&outcome.x, &[0.5, 2.0], 1e-6);
-    assert!(some < all, "{some} of {all}");
 }

@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::gap::Gap;
 use super::nuisance::{Form, Nuisance, SENSOR};
 use super::predict::{Free, PredictError};
-use super::refit::{Effort, Refit, refit_with, settle};
+use super::refit::{Refit, refit_with, settle};
 use crate::campaign::Role;
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -115,7 +115,7 @@ pub struct Explanandum<'a> {
 }
 
 impl Explanandum<'_> {
-    /// Fits from `values`, and, where a sensor is suspected, from the errors of an earlier fit, with at most so much effort.
+    /// Fits from `values`, and, where a sensor is suspected, from the errors of an earlier fit, with at most so many evaluations.
     ///
     /// # Errors
     /// Where the model lacks what was measured.
@@ -124,13 +124,13 @@ impl Explanandum<'_> {
         values: &Values,
         earlier: Option<&Refit>,
         evidence: &Evidence,
-        effort: impl Into<Effort>,
+        evaluations: usize,
     ) -> Result<Refit, PredictError> {
         let mut nuisance = self.nuisance.clone();
         // Any other search does better where it may blame the sensors last.
         let earlier = earlier.filter(|_| !nuisance.suspects.is_empty());
         nuisance.start = earlier.map_or_else(Vec::new, |earlier| earlier.coefficients.clone());
-        refit_with(self.model, values, &self.free(), evidence, nuisance, effort)
+        refit_with(self.model, values, &self.free(), evidence, nuisance, evaluations)
     }
 
     /// What a refit says of all runs.

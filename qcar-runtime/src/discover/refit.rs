@@ -89,26 +89,7 @@ pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evide
 /// How often a refit may evaluate the model unless told otherwise.
 const MOST_EVALUATIONS: usize = 60;
 
-/// What a refit may cost.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Effort {
-    /// How often it may evaluate the model.
-    pub evaluations: usize,
-    /// True where a good place soon is worth more than the best one exactly.
-    pub hurries: bool,
-}
-
-impl From<usize> for Effort {
-    /// At most so many evaluations on the way to the best place.
-    fn from(evaluations: usize) -> Self {
-        Self {
-            evaluations,
-            hurries: false,
-        }
-    }
-}
-
-/// The same with sensors that may be wrong as `nuisance` says, and at most so much effort.
+/// The same with sensors that may be wrong as `nuisance` says, and at most so many evaluations.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
@@ -118,13 +99,13 @@ pub fn refit_with(
     free: &[Free],
     evidence: &Evidence,
     nuisance: Nuisance,
-    effort: impl Into<Effort>,
+    evaluations: usize,
 ) -> Result<Refit, PredictError> {
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.extend(&posterior.nuisance.start);
     start.resize(posterior.variables(), 0.0);
-    let outcome = posterior.search(&start, effort)?;
+    let outcome = posterior.search(&start, evaluations)?;
     Ok(posterior.refit(outcome))
 }
 
@@ -222,14 +203,12 @@ impl<'a> Posterior<'a> {
     }
 
     /// The best place that is found from `start`.
-    fn search(&mut self, start: &[f64], effort: impl Into<Effort>) -> Result<Outcome, PredictError> {
-        let effort = effort.into();
+    fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
         let options = Options {
             gradient: 1e-5,
             cost: 1e-6,
             step: 1e-6,
-            evaluations: effort.evaluations,
-            secants: effort.hurries,
+            evaluations,
         };
         let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
         let sides = sides.iter().map(|sigma| MOST * sigma);

@@ -15,7 +15,6 @@ pub(super) const OPTIONS: Options = Options {
     cost: 1e-9,
     step: 1e-7,
     evaluations: 100,
-    secants: false,
 };
 
 /// Two searches found the same minimum when their costs differ by less than this part.

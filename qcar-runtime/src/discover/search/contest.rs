@@ -13,7 +13,7 @@ use super::{News, Progress};
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation};
 use crate::discover::predict::PredictError;
-use crate::discover::refit::{Effort, Refit};
+use crate::discover::refit::Refit;
 use crate::response::parameters::Values;
 
 /// What the explanations are held against.
@@ -204,14 +204,10 @@ impl Runner {
     /// `None` where the model gives no number.
     fn run(self, entrants: &[Entrant], evidence: &Evidence, stage: &Stage) -> Option<Runner> {
         let entrant = &entrants[self.entrant];
-        let effort = Effort {
-            evaluations: stage.evaluations,
-            hurries: stage.tolerant,
-        };
         let earlier = self.refit.as_ref();
         let refit = entrant
             .explanandum
-            .refit(&self.values, earlier, evidence, effort)
+            .refit(&self.values, earlier, evidence, stage.evaluations)
             .ok()?;
         let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
