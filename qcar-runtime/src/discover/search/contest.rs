@@ -44,6 +44,9 @@ struct Stage {
     share: Option<f64>,
 }
 
+/// So many times as many evaluations are for a linear model.
+const PATIENCE: usize = 3;
+
 const STAGES: [Stage; 4] = [
     Stage {
         first: true,
@@ -83,6 +86,15 @@ const STAGES: [Stage; 4] = [
         share: Some(0.0),
     },
 ];
+
+impl Stage {
+    /// Evaluations of a fit of this entrant: a linear model costs little, and one more resonance is not sought in vain
+    /// for want of a few steps.
+    fn evaluations(&self, entrant: &Entrant) -> usize {
+        let is_linear = entrant.explanandum.model.about().linear;
+        self.evaluations * if is_linear { PATIENCE } else { 1 }
+    }
+}
 
 /// An explanation of several, with its place among those that entered.
 pub struct Finalist {
@@ -207,7 +219,7 @@ impl Runner {
         let earlier = self.refit.as_ref();
         let refit = entrant
             .explanandum
-            .refit(&self.values, earlier, evidence, stage.evaluations)
+            .refit(&self.values, earlier, evidence, stage.evaluations(entrant))
             .ok()?;
         let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
