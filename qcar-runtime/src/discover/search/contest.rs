@@ -44,7 +44,7 @@ struct Stage {
     share: Option<f64>,
 }
 
-/// So many times as many evaluations are for a linear model.
+/// So many times as many evaluations are for a linear model in a first look.
 const PATIENCE: usize = 3;
 
 const STAGES: [Stage; 4] = [
@@ -88,11 +88,11 @@ const STAGES: [Stage; 4] = [
 ];
 
 impl Stage {
-    /// Evaluations of a fit of this entrant: a linear model costs little, and one more resonance is not sought in vain
-    /// for want of a few steps.
+    /// Evaluations of a fit of this entrant: in a first look a linear model costs little, and one more resonance is not
+    /// dropped for want of a few steps.
     fn evaluations(&self, entrant: &Entrant) -> usize {
-        let is_linear = entrant.explanandum.model.about().linear;
-        self.evaluations * if is_linear { PATIENCE } else { 1 }
+        let costs_little = self.first && entrant.explanandum.model.about().linear;
+        self.evaluations * if costs_little { PATIENCE } else { 1 }
     }
 }
 
