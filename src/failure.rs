@@ -23,6 +23,13 @@ impl Failure {
     }
 }
 
+impl fmt::Display for Failure {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (Failure::Finding(text) | Failure::Input(text)) = self;
+        out.write_str(text)
+    }
+}
+
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Failure::Input(error.to_string())

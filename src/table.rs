@@ -72,6 +72,11 @@ pub fn number(value: f64, digits: usize) -> String {
     }
 }
 
+/// The same, or a dash where there is no number.
+pub fn or_dash(value: Option<f64>, digits: usize) -> String {
+    value.map_or("-".into(), |value| number(value, digits))
+}
+
 fn trimmed(text: &str) -> String {
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').into(),

@@ -15,6 +15,8 @@ mod rig;
 pub use regression::Estimate;
 pub use rig::{Slope, gradient, value_for};
 
+use crate::campaign::DynamicCurve;
+
 /// What a quasi-static cycle says.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Cycle {
@@ -45,6 +47,16 @@ pub struct SineSamples<'a> {
     pub velocity: &'a [f64],
     /// N.
     pub force: &'a [f64],
+}
+
+impl<'a> From<&'a DynamicCurve> for SineSamples<'a> {
+    fn from(curve: &'a DynamicCurve) -> Self {
+        SineSamples {
+            displacement: &curve.displacement,
+            velocity: &curve.velocity,
+            force: &curve.force,
+        }
+    }
 }
 
 /// Why a curve has no gradients.

@@ -26,7 +26,7 @@ use crate::verbs::Format;
 use crate::workshop::Bench;
 
 // Where something would explain the gap.
-mod places;
+pub(crate) mod places;
 // The answer as text and JSON.
 pub(crate) mod render;
 // The gap as a figure.
@@ -65,6 +65,8 @@ pub(crate) struct Answer {
     base: Checked,
     /// Where something would explain what it leaves of the sweeps.
     pub sweeps: Sweeps,
+    /// Of each finding, the units of its parameters.
+    pub units: Vec<BTreeMap<String, String>>,
     /// The model with it; `None` where nothing of the model is missing.
     pub model: Option<Written>,
     /// Time for all of it.
@@ -122,6 +124,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     Ok(Answer {
         base: bench.checked().clone(),
         sweeps,
+        units: units(bench.clone(), &discovery),
         model: patched(bench, &discovery),
         campaign: campaign.name.clone(),
         evidence,
@@ -169,6 +172,20 @@ fn setting(campaign: &Campaign, about: &About) -> Setting {
         given: given.chain(own).collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
     }
+}
+
+/// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.
+fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String>> {
+    let mut units = Vec::new();
+    for finding in &discovery.findings {
+        let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref());
+        let own = patched.iter().flat_map(|patched| &patched.parameters);
+        units.push(own.map(|own| (own.effect_name.clone(), own.unit.to_string())).collect());
+        if let Some(patched) = patched.filter(|own| discovery.verdict == Verdict::Found && own.signals.is_empty()) {
+            bench = bench.holding(patched.model);
+        }
+    }
+    units
 }
 
 /// The model file with all that was found.

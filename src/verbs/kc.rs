@@ -15,7 +15,7 @@ use crate::failure::Failure;
 use crate::json;
 use crate::parameters;
 use crate::progress::while_counting;
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 use crate::verbs::Format;
 
 // Start values in campaign.toml.
@@ -53,8 +53,10 @@ pub(crate) struct Gradient {
     /// The parameter of the thesis's table 3.1 that it measures.
     pub parameter: Option<&'static str>,
     /// The value of that parameter with which the campaign's model has this gradient, its others at their start values:
-    /// larger than the gradient where a sub-frame yields. None where the model or its values cannot tell.
+    /// larger than the gradient where a sub-frame yields.
     pub parameter_value: Option<f64>,
+    /// Why that is not known of a gradient that has a parameter.
+    pub why_no_parameter_value: Option<String>,
     /// The campaign's start value of that parameter.
     pub start: Option<f64>,
 }
@@ -98,11 +100,12 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
         )
         .into());
     }
-    if let Some((model, values)) = model(campaign) {
-        found
-            .iter_mut()
-            .for_each(|gradient| take_apart(gradient, &model, &values));
-    }
+    let asked = model(campaign);
+    let of_parameters = found.iter_mut().filter(|gradient| gradient.parameter.is_some());
+    of_parameters.for_each(|gradient| match &asked {
+        Ok((model, values)) => take_apart(gradient, model, values),
+        Err(refused) => gradient.why_no_parameter_value = Some(refused.clone()),
+    });
     Ok(found)
 }
 
@@ -149,14 +152,7 @@ fn vertical_sines(campaign: &Campaign, runs: &[&Run]) -> Result<Vec<Gradient>, I
         .iter()
         .map(|run| campaign.dynamic_curve(run))
         .collect::<Result<Vec<_>, _>>()?;
-    let samples: Vec<_> = curves
-        .iter()
-        .map(|curve| SineSamples {
-            displacement: &curve.displacement,
-            velocity: &curve.velocity,
-            force: &curve.force,
-        })
-        .collect();
+    let samples: Vec<_> = curves.iter().map(SineSamples::from).collect();
     let sine = sines(&samples).map_err(|error| unusable(campaign, runs[0], &error))?;
     let gradient =
         |quantity, of: Estimate, unit, parameter| gradient(campaign, "dynamic_bounce", quantity, of, unit, parameter);
@@ -186,6 +182,7 @@ fn gradient(
         unit,
         parameter,
         parameter_value: None,
+        why_no_parameter_value: None,
         start,
     }
 }
@@ -193,28 +190,43 @@ fn gradient(
 /// What is clamped on a K&C rig.
 const CLAMPED: &str = "body";
 
-/// The campaign's model with its start values; `None` where the campaign does not have them all.
-fn model(campaign: &Campaign) -> Option<(Loaded, Values)> {
-    let model = catalogue::of_campaign(campaign, None).ok()?;
-    let values = parameters::resolve(model.about(), [campaign.manifest().as_path()], &[]).ok()?;
-    model.check_inertias(values.as_slice()).ok()?;
-    Some((model, values))
+/// The campaign's model with its start values, or why there is none: curves can be read without.
+fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
+    let refused = |failure: Failure| failure.to_string().trim_end().to_string();
+    let model = catalogue::of_campaign(campaign, None).map_err(refused)?;
+    let values = parameters::resolve(model.about(), [campaign.manifest().as_path()], &[]);
+    let values = values.map_err(|error| refused(error.into()))?;
+    model
+        .check_inertias(values.as_slice())
+        .map_err(|error| refused(error.into()))?;
+    Ok((model, values))
 }
 
-/// Asks the model what a parameter must be for it to have a gradient.
+/// Asks the model what the parameter of a gradient must be for it to have that.
 pub(crate) fn take_apart(gradient: &mut Gradient, model: &Loaded, values: &Values) {
+    let answer = parameter_value(gradient, model, values);
+    gradient.parameter_value = answer.as_ref().ok().copied();
+    gradient.why_no_parameter_value = answer.err();
+}
+
+fn parameter_value(gradient: &Gradient, model: &Loaded, values: &Values) -> Result<f64, String> {
     let axis = if gradient.test == "longitudinal" { "x" } else { "z" };
     let slope = if gradient.quantity == "damping" {
         Slope::Damping
     } else {
         Slope::Stiffness
     };
-    let mut parameters = model.about().parameters.iter();
-    let place = gradient
-        .parameter
-        .and_then(|name| parameters.position(|p| p.name == name));
-    gradient.parameter_value =
-        place.and_then(|place| kc::value_for(&**model, values, place, (CLAMPED, axis, slope), gradient.value));
+    let (about, name) = (model.about(), gradient.parameter.unwrap_or_default());
+    let place = about.parameters.iter().position(|own| own.name == name);
+    let place = place.ok_or_else(|| format!("model {} has no `{name}`", about.name))?;
+    let value = kc::value_for(&**model, values, place, (CLAMPED, axis, slope), gradient.value);
+    value.ok_or_else(|| {
+        let (curve, quantity) = (gradient.test, gradient.quantity);
+        format!(
+            "no `{name}` within its range gives model {} the {quantity} of the {curve} curve with its {CLAMPED} held",
+            about.name
+        )
+    })
 }
 
 fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
@@ -248,9 +260,25 @@ fn text(of: &[Gradient]) -> String {
             number(gradient.value, 4),
             number(gradient.uncertainty, 2),
             gradient.parameter.unwrap_or("-").into(),
-            gradient.parameter_value.map_or("-".into(), |value| number(value, 4)),
-            gradient.start.map_or("-".into(), |start| number(start, 4)),
+            or_dash(gradient.parameter_value, 4),
+            or_dash(gradient.start, 4),
         ]);
     }
-    table.text()
+    table.text() + &notes(of)
+}
+
+/// Each reason once, with the parameters that have no value by it.
+fn notes(of: &[Gradient]) -> String {
+    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    for gradient in of {
+        let (Some(why), Some(name)) = (&gradient.why_no_parameter_value, gradient.parameter) else {
+            continue;
+        };
+        match reasons.iter_mut().find(|(reason, _)| reason == why) {
+            Some((_, names)) => names.push(name),
+            None => reasons.push((why, vec![name])),
+        }
+    }
+    let note = |(why, names): &(&str, Vec<&str>)| format!("note: no parameter_value of {}: {why}\n", names.join(", "));
+    reasons.iter().map(note).collect()
 }

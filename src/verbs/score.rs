@@ -10,7 +10,7 @@ use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 
 use crate::failure::Failure;
 use crate::interruption::keep;
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 use crate::verbs::fit::{self, Choices, Fitted};
 
 /// A standard error below this part of the value means that the data determine it well.
@@ -93,9 +93,7 @@ fn compare(of: &Fitted, truth: &Truth, within: f64) -> (String, bool) {
         let error = 100.0 * (parameter.value / true_value - 1.0);
         let verdict = verdict(parameter, error, within);
         well &= verdict != "off";
-        let stderr = parameter
-            .relative_stderr
-            .map_or("-".into(), |part| number(100.0 * part, 2));
+        let stderr = or_dash(parameter.relative_stderr.map(|part| 100.0 * part), 2);
         let numbers = [
             number(*true_value, 5),
             number(parameter.value, 5),

@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 /// The parameters that the campaign wants fitted and that still have its start values: no error is the model's before
 /// these are known.
-fn guessed(campaign: &Campaign, model: &Loaded, values: &Values) -> Vec<String> {
+pub(crate) fn guessed(campaign: &Campaign, model: &Loaded, values: &Values) -> Vec<String> {
     let parameters = model.about().parameters.iter().zip(values.as_slice());
     let is_start = |name: &str, value: f64| {
         campaign

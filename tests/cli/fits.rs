@@ -155,6 +155,56 @@ fn curves_give_start_values() {
     succeeds(&["kc", campaign.to_str().unwrap()]);
 }
 
+/// A campaign like the one in the repository, but for one word of its `campaign.toml`.
+fn altered(from: &str, to: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    copy(&Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE), folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    assert_eq!(text.matches(from).count(), 1, "{from}");
+    fs::write(&manifest, text.replace(from, to)).unwrap();
+    folder
+}
+
+#[test]
+fn a_curve_that_gives_no_parameter_says_why() {
+    let cases = [
+        ("model = \"axle_a\"", "model = \"my.axle\"", "my.axle"),
+        ("m_corner = 490.9", "", "`m_corner`: found no value"),
+    ];
+    for (from, to, why) in cases {
+        let folder = altered(from, to);
+        let campaign = folder.path().to_str().unwrap();
+        let (text, json) = (
+            succeeds(&["kc", campaign]),
+            succeeds(&["kc", campaign, "--format", "json"]),
+        );
+        let note = text.lines().find(|line| line.starts_with("note: ")).unwrap();
+        let names = "k_wheel_z, c_wheel_z, k_wheel_x";
+        assert!(note.contains(&format!("no parameter_value of {names}: ")), "{text}");
+        let gradients: Value = serde_json::from_str(&json).unwrap();
+        for own in gradients.as_array().unwrap() {
+            let said = own["why_no_parameter_value"].as_str();
+            assert_eq!(own["parameter"].is_null(), said.is_none(), "{own}");
+            assert_eq!(own["parameter_value"], Value::Null, "{own}");
+        }
+        assert!(text.contains(why), "{text}");
+    }
+}
+
+#[test]
+fn a_curve_out_of_range_leaves_the_start_value_and_says_so() {
+    let folder = altered("range = [178000.0, 714000.0]", "range = [340000.0, 380000.0]");
+    let fit = fitted(&[folder.path().to_str().unwrap(), "--starts", "1"]);
+    let own = &fit["parameters"]["k_wheel_x"];
+    assert_eq!((&own["value"], &own["curve"]), (&own["start"], &Value::Null));
+    let said = fit["notices"].to_string();
+    assert!(
+        said.contains("k_wheel_x keeps its start value: the K&C longitudinal curve gives 47"),
+        "{said}"
+    );
+}
+
 #[test]
 fn wishes_that_cannot_be_met_are_refused() {
     let cases: [(&[&str], &[&str]); 5] = [

@@ -59,6 +59,38 @@ fn the_variants_differ_as_the_thesis_found() {
     assert!(vertical > 3.0 * locked.max(0.1), "{locked} {vertical}");
 }
 
+/// The largest accelerations along an axis in the written time histories of a run, column by column.
+fn largest(folder: &Path, run: &str, axis: &str) -> Vec<f64> {
+    let text = fs::read_to_string(folder.join(run)).unwrap();
+    let (head, rows) = text.split_once('\n').unwrap();
+    let is_wanted = |name: &&str| name.starts_with(axis) && name.ends_with("_acceleration");
+    let columns = head.split(',').enumerate().filter(|(_, name)| is_wanted(name));
+    let value = |row: &str, column: usize| row.split(',').nth(column).unwrap().parse::<f64>().unwrap().abs();
+    columns
+        .map(|(column, _)| rows.lines().map(|row| value(row, column)).fold(0.0, f64::max))
+        .collect()
+}
+
+#[test]
+fn what_is_locked_does_not_accelerate() {
+    let folder = tempfile::tempdir().unwrap();
+    let ride = |variant| {
+        let out = folder.path().join(variant);
+        succeeds(&["simulate", AXLE, "--variant", variant, "--out", out.to_str().unwrap()]);
+        ["x_", "z_"].map(|axis| largest(&out, "v30_h30.csv", axis))
+    };
+    let [along, up] = ride("complete");
+    assert!(
+        along.len() > 2 && along.iter().chain(&up).all(|most| *most > 0.5),
+        "{along:?} {up:?}"
+    );
+    for variant in ["locked", "vertical"] {
+        let [locked, up] = ride(variant);
+        assert_eq!(locked, vec![0.0; along.len()], "{variant}");
+        assert!(up.iter().all(|most| *most > 0.5), "{variant} {up:?}");
+    }
+}
+
 #[test]
 fn time_histories_are_written_run_by_run() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,3 +1,3 @@
-qcar_derive::axle_file!("../../../tmp/refused.axle");
+qcar_derive::axle_file!("axles/refused.axle");
 
 fn main() {}

@@ -6,8 +6,9 @@ function curves({ kc, loops }) {
     `${words(own.test)}, ${own.quantity}`,
     measured(own.value, own.uncertainty, own.unit),
     own.parameter || '',
+    own.parameter ? parameterValue(own) : '',
     own.start === null ? '' : quantity(own.start, own.unit),
-    own.start === null ? '' : percent(own.value / own.start - 1),
+    own.start === null || own.parameter_value === null ? '' : signed(own.start / own.parameter_value - 1),
   ]);
   const figures = loops.map((own) =>
     figure(`loop-${own.test}`, `${own.test}: force over displacement, and the gradient`, h('div', { class: 'canvas' })),
@@ -18,7 +19,7 @@ function curves({ kc, loops }) {
     h(
       'p',
       {},
-      'Gradients of the quasi-static and dynamic curves: stiffness from the slope, damping from the force over velocity, friction from half the width of the loop. The uncertainty is one standard deviation.',
+      'Gradients of the quasi-static and dynamic curves: stiffness from the slope, damping from the force over velocity, friction from half the width of the loop. The uncertainty is one standard deviation. The parameter is what the model needs to have this gradient with its body held: more than the gradient where something yields in series.',
     ),
     h('div', { class: 'columns two' }, figures),
     table(
@@ -27,13 +28,18 @@ function curves({ kc, loops }) {
         ['curve', 'text'],
         ['gradient', 'number'],
         ['parameter', 'text'],
+        ['its value by the curve', 'number'],
         ['start value', 'number'],
-        ['gradient against start', 'number'],
+        ['start against curve', 'number'],
       ],
       rows,
     ),
   );
   return { element, draw: () => loops.forEach((own, at) => loopPlot(own, kc, figures[at].querySelector('.canvas'))) };
+}
+
+function parameterValue({ parameter_value: value, unit, why_no_parameter_value: why }) {
+  return value === null ? why : quantity(value, unit, 4);
 }
 
 // The measured cycle in grey, each direction of travel a curve, and its gradient as a line through the middle.

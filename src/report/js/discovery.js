@@ -97,7 +97,7 @@ function kappaPart(all) {
     charts = ['real', 'imaginary'].map((part, at) => kappaPlot(own, part, place.children[at].querySelector('.canvas')));
   };
   const rows = all.map((own) => [
-    own.place,
+    words(own.place),
     own.sensor ? 'sensor' : 'in the axle',
     percent(own.ceiling, 3),
     percent(own.common, 3),
@@ -109,7 +109,7 @@ function kappaPart(all) {
     h(
       'p',
       {},
-      'For each place, the dynamic stiffness κ that would have to be added there to explain all channels at once. The ceiling is the share of the squared gap that any effect at this place could explain; with one κ for all levels, a linear one.',
+      'For each link, mass and sensor, the dynamic stiffness κ that would have to be added there to explain all channels at once. The ceiling is the share of the squared gap that any effect at this place could explain; with one κ for all levels, a linear one.',
     ),
     table(
       'Places',
@@ -123,7 +123,7 @@ function kappaPart(all) {
     ),
     select(
       'κ at',
-      all.map((own) => [own.place, own.place]),
+      all.map((own) => [own.place, words(own.place)]),
       all[0].place,
       show,
     ),
@@ -155,14 +155,18 @@ function kappaPlot(own, part, place) {
 
 function effectPart(effect) {
   const rows = Object.entries(effect.parameters).map(([name, value]) => {
-    const error = effect.stderr[name];
+    const [error, unit] = [effect.stderr[name], effect.units[name]];
     return [
       name,
-      error === null ? quantity(value, unitOf(name)) : measured(value, error, unitOf(name)),
+      error === null ? quantity(value, unit) : measured(value, error, unit),
       error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
     ];
   });
-  const rivals = effect.rivals.map((rival) => [`${words(rival.effect)} at ${words(rival.at)}`, number(rival.behind)]);
+  const rivals = effect.rivals.map((rival) => [
+    `${words(rival.effect)} at ${words(rival.at)}`,
+    number(rival.behind),
+    rival.early ? 'when it was left behind, before the end' : 'at the end',
+  ]);
   return h(
     'div',
     {},
@@ -182,10 +186,11 @@ function effectPart(effect) {
       ),
       rivals.length
         ? table(
-            'Rivals',
+            'Rivals, by how much worse they explain the fitted runs',
             [
               ['effect', 'text'],
               ['behind by', 'number'],
+              ['judged', 'text sentence'],
             ],
             rivals,
           )

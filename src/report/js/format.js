@@ -13,7 +13,7 @@ function number(value, digits = 3) {
   return minus(
     rounded
       .toLocaleString('en-GB', { minimumFractionDigits: Math.min(decimals, 6), maximumFractionDigits: 6 })
-      .replace(/,/g, '\u2009'),
+      .replace(/,/g, '\u202f'),
   );
 }
 
@@ -88,7 +88,7 @@ function measured(value, error, unit) {
           minimumFractionDigits: places,
           maximumFractionDigits: places,
         })
-        .replace(/,/g, '\u2009'),
+        .replace(/,/g, '\u202f'),
     );
   const both = `${fixed(own)} ± ${fixed(off)}`;
   const text = power ? `(${both})·10${superscript(power)}` : both;

@@ -3,10 +3,13 @@
 function limits(data) {
   const own = Object.values(data.fit.parameters);
   const reason = (parameter) => parameter.why_no_stderr && parameter.why_no_stderr.reason;
-  const names = (wanted) => own.filter((parameter) => reason(parameter) === wanted).map((parameter) => parameter.name);
+  const names = (wanted) =>
+    own.filter((parameter) => reason(parameter) === wanted && !parameter.curve).map((parameter) => parameter.name);
+  const curves = own.filter((parameter) => parameter.curve).map((parameter) => parameter.name);
   const loose = own.filter((parameter) => parameter.relative_stderr > 0.05).map((parameter) => parameter.name);
   const sentences = [
-    listed(names('not_seen'), 'No fitted channel sees {}; what depends on them stands on the start values.'),
+    listed(names('not_seen'), 'The rig fit does not see {}; what it says of them are their start values.'),
+    listed(curves, 'The rig fit does not see {}; what it says of them is from the K&C curves.'),
     listed(names('only_together'), 'The data determine {} only in combination.'),
     listed(names('at_bound'), '{} rest on a bound of their range, and have no error bar.'),
     listed(loose, 'The relative standard error of {} is above 5 %.'),

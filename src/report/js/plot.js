@@ -35,7 +35,7 @@ function plot(place, { x, y, at, curves, height = 220, sync, digits = 3, gaps = 
       x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) },
       y: { range: y.range || padded },
     },
-    axes: [axis(x, 26, x.log ? 30 : 50), axis(y, 46, 40)],
+    axes: [axis(x, 26, x.log ? 30 : 50), axis(y, room, 40)],
     series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : say(v)) }, ...series],
     bands: bands(curves),
     cursor: { sync: sync && { key: sync, setSeries: false }, points: { size: 6 }, drag: { x: true, y: false } },
@@ -57,6 +57,17 @@ const FREQUENCY = {
   log: true,
   ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
 };
+
+// The plots of a transmissibility: magnitude, phase, and what else is said of it `below`.
+function polarPlots(column, { at, sync, curves, below }) {
+  const parts = [
+    { y: { label: 'magnitude, dB' }, curves: curves('magnitude') },
+    { y: { label: 'phase, °' }, height: 190, curves: curves('phase') },
+    below,
+  ];
+  const places = column.querySelectorAll('.canvas');
+  return parts.map((part, place) => plot(places[place], { x: FREQUENCY, at, sync, ...part }));
+}
 
 // The axes of an acceleration over time.
 const SECONDS = { label: 'time, s' };
@@ -112,6 +123,11 @@ function axis({ label, ticks, whole }, size, space) {
     filter: ticks ? (u, splits) => splits : undefined,
     values: ticks || ((u, splits) => splits.map((v) => (v === null ? '' : plain(v)))),
   };
+}
+
+// As wide as the longest number beside an axis.
+function room(u, texts) {
+  return Math.max(46, 14 + 7 * Math.max(0, ...(texts || []).map((text) => text.length)));
 }
 
 function tight(u, low, high) {

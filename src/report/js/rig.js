@@ -67,19 +67,14 @@ function ratioFigure(ratio) {
 }
 
 function ratioPlots(ratio, column) {
-  const [magnitude, phase, coherence] = column.querySelectorAll('.canvas');
-  const common = { x: FREQUENCY, at: ratio.frequency, sync: 'rig' };
-  return [
-    plot(magnitude, { ...common, y: { label: 'magnitude, dB' }, curves: polarCurves(ratio, 'magnitude') }),
-    plot(phase, { ...common, y: { label: 'phase, °' }, height: 190, curves: polarCurves(ratio, 'phase') }),
-    plot(coherence, {
-      ...common,
-      y: { label: 'coherence', range: coherenceRange },
-      height: 130,
-      digits: 5,
-      curves: [{ role: 'measured', values: ratio.coherence }],
-    }),
-  ];
+  const coherence = {
+    y: { label: 'coherence', range: coherenceRange },
+    height: 130,
+    digits: 5,
+    curves: [{ role: 'measured', values: ratio.coherence }],
+  };
+  const curves = (part) => polarCurves(ratio, part);
+  return polarPlots(column, { at: ratio.frequency, sync: 'rig', curves, below: coherence });
 }
 
 function coherenceRange(u, low) {

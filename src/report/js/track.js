@@ -35,6 +35,7 @@ function track({ track: own, simulate }) {
         : null,
       '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.',
     ),
+    startCaution(own.at_start, changed),
     select('Run', runs, first, show),
     traces,
     h('h3', {}, 'Errors over all runs'),
@@ -65,6 +66,18 @@ function track({ track: own, simulate }) {
       histograms.forEach(({ element: place, own }) => histogramPlot(own, place.querySelector('.canvas')));
     },
   };
+}
+
+// What no rig run sees is no more than a guess in the rides of the rig fit.
+function startCaution(names, changed) {
+  if (!names.length) return null;
+  const [plural, own] = [names.length > 1, names.join(', ')];
+  return h(
+    'p',
+    { class: 'caution' },
+    `No rig run or K&C curve determines ${own}: before, ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be theirs.`,
+    changed ? ' What was found together with the effect is fitted to the cleat runs too.' : null,
+  );
 }
 
 function drawTraces(run, place) {

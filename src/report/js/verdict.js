@@ -100,13 +100,7 @@ function effectAnswer(effect) {
   const lines = Object.entries(effect.parameters)
     .filter(([name]) => effect.stderr[name] !== null)
     .map(([name, value]) =>
-      h('p', {}, h('span', { class: 'what' }, name), ' ', measured(value, effect.stderr[name], unitOf(name))),
+      h('p', {}, h('span', { class: 'what' }, name), ' ', measured(value, effect.stderr[name], effect.units[name])),
     );
   return answer(`${words(effect.name)} at ${words(effect.at)}`, lines);
-}
-
-// Parameters of effects carry their unit in their first letter, as those of models do.
-function unitOf(name) {
-  const units = { m: 'kg', k: 'N/m', c: 'N s/m', f: 'N' };
-  return (/^[mkcf]_/.test(name) && units[name[0]]) || '1';
 }

@@ -16,11 +16,11 @@ use qcar_runtime::transmissibility::Options;
 use serde::Serialize;
 
 use super::sides::{Measured, Side};
-use crate::progress::{Showing, while_counting};
+use crate::progress::while_counting;
 use crate::report::rounded::{curve, rounded};
 use crate::verbs::frf;
 use crate::verbs::study::rig::{Polar, band, nearest, unwrapped};
-use crate::verbs::study::swept::{Swept, between};
+use crate::verbs::study::swept::{Swept, between, swept_by};
 
 /// A channel of both models, in a run where one was measured.
 #[derive(Serialize)]
@@ -116,10 +116,10 @@ fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<Swept<'a>, InputErro
     if side.model.about().linear {
         return Ok(Swept::at_rest(&*side.model, &side.values));
     }
-    let showing = Showing::new();
-    showing.tell(format!("{}: sweeps of {}", campaign.name, side.model.about().name));
-    let evidence = Evidence::from_campaign(campaign, side.model.about())?;
-    Ok(Swept::new(&*side.model, &side.values, &evidence))
+    while_counting(swept_by(&campaign.name, &*side.model), |told| {
+        let evidence = Evidence::from_campaign(campaign, side.model.about())?;
+        Ok(Swept::new(&*side.model, &side.values, &evidence, told))
+    })
 }
 
 /// Channels of the models alone, at these frequencies (Hz): those that both have.

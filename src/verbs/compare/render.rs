@@ -9,7 +9,7 @@ use super::gather::Comparison;
 use super::modes::Pair;
 use super::moved::Parameter;
 use super::ratios::Largest;
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 
 /// What the terminal gets.
 pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> String {
@@ -180,10 +180,6 @@ fn cleat(heading: &str, of: Option<&BTreeMap<String, Changes>>) -> String {
 fn three(of: Option<Spread>) -> [String; 3] {
     let own = |value: fn(&Spread) -> f64| percent(of.as_ref().map(value));
     [own(|own| own.least), own(|own| own.median), own(|own| own.greatest)]
-}
-
-fn or_dash(value: Option<f64>, digits: usize) -> String {
-    value.map_or("-".into(), |value| number(value, digits))
 }
 
 fn percent(share: Option<f64>) -> String {

@@ -11,13 +11,21 @@ use super::Answer;
 /// Places that are listed.
 const LISTED: usize = 5;
 
+/// A place, as effects call it.
+#[derive(PartialEq, Serialize)]
+pub(crate) struct Site {
+    /// The link, mass or sensor location.
+    pub at: String,
+    /// The axis of a sensor: its signal, not the model, would be wrong.
+    pub sensor: Option<&'static str>,
+}
+
 /// A place, with what is missing if it is missing there.
 #[derive(Serialize)]
 pub(crate) struct Missing {
-    /// The link, mass or sensor location, as effects call it.
-    pub at: String,
-    /// The axis of a sensor: its signal, not the model, would be wrong.
-    sensor: Option<&'static str>,
+    /// Where.
+    #[serde(flatten)]
+    pub site: Site,
     /// Share of the squared gap that the best κ there explains: what no effect there can exceed.
     pub explains: f64,
     /// The dynamic stiffness that would have to be added, run by run.
@@ -26,8 +34,8 @@ pub(crate) struct Missing {
     pub shape: Shape,
 }
 
-impl Missing {
-    /// The place in words.
+impl Site {
+    /// In words.
     pub fn name(&self) -> String {
         match self.sensor {
             Some(axis) => format!("the sensor of {} along {axis}", self.at),
@@ -50,20 +58,24 @@ struct Stiffness {
 
 /// The places that explain most, the best first.
 pub(crate) fn places(of: &Answer) -> Vec<Missing> {
-    let mut found: Vec<Missing> = Vec::new();
+    let missing = |(site, kappa): (Site, &Kappa)| Missing {
+        site,
+        explains: kappa.ceiling,
+        kappa: stiffness(kappa),
+        shape: shape(kappa),
+    };
+    sites(of).into_iter().take(LISTED).map(missing).collect()
+}
+
+/// Every place once, by what explains most there, the best first.
+pub(crate) fn sites(of: &Answer) -> Vec<(Site, &Kappa)> {
+    let mut found: Vec<(Site, &Kappa)> = Vec::new();
     for kappa in &of.sweeps.places {
-        let (at, sensor) = at(&of.base, &kappa.place);
-        if !found.iter().any(|other| other.at == at && other.sensor == sensor) {
-            found.push(Missing {
-                at,
-                sensor,
-                explains: kappa.ceiling,
-                kappa: stiffness(kappa),
-                shape: shape(kappa),
-            });
+        let site = site(&of.base, &kappa.place);
+        if found.iter().all(|(other, _)| *other != site) {
+            found.push((site, kappa));
         }
     }
-    found.truncate(LISTED);
     found
 }
 
@@ -74,7 +86,7 @@ pub(crate) fn of_ceiling(of: &Answer, place: &str) -> Option<f64> {
         .sweeps
         .places
         .iter()
-        .find(|kappa| at(&of.base, &kappa.place).0 == place)?;
+        .find(|kappa| site(&of.base, &kappa.place).at == place)?;
     let explained = of.sweeps.explained_by(&of.discovery.after.gap, &of.evidence)?;
     Some(explained / there.ceiling)
 }
@@ -95,11 +107,16 @@ fn stiffness(kappa: &Kappa) -> Vec<Stiffness> {
     all
 }
 
-/// What effects call a place, and the axis of a sensor.
-fn at(model: &Model, place: &Place) -> (String, Option<&'static str>) {
+fn site(model: &Model, place: &Place) -> Site {
     match place {
-        Place::Sensor(point) => (point.location.clone(), Some(point.axis.name())),
-        Place::Parameter(parameter) => (owner(model, *parameter), None),
+        Place::Sensor(point) => Site {
+            at: point.location.clone(),
+            sensor: Some(point.axis.name()),
+        },
+        Place::Parameter(parameter) => Site {
+            at: owner(model, *parameter),
+            sensor: None,
+        },
     }
 }
 

@@ -1,5 +1,6 @@
 //! What was discovered, as text for people and as JSON for programs.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::evidence::Kind;
@@ -11,7 +12,7 @@ use serde::Serialize;
 use super::Answer;
 use super::places::{self, Missing};
 use crate::json::{self, Ordered};
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 
 /// The answer as `docs/json.md` describes it.
 #[derive(Serialize)]
@@ -34,6 +35,7 @@ struct Effect<'a> {
     form: Option<&'a str>,
     parameters: Ordered<f64>,
     stderr: Ordered<Option<f64>>,
+    units: &'a BTreeMap<String, String>,
     evidence: Evidence,
     rivals: &'a [Rival],
 }
@@ -99,7 +101,8 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .discovery
             .findings
             .iter()
-            .map(|finding| effect(of, finding))
+            .zip(&of.units)
+            .map(|(finding, units)| effect(of, finding, units))
             .collect(),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
@@ -126,7 +129,7 @@ fn missing(of: &Answer) -> Vec<Missing> {
     }
 }
 
-fn effect<'a>(of: &'a Answer, finding: &'a Finding) -> Effect<'a> {
+fn effect<'a>(of: &'a Answer, finding: &'a Finding, units: &'a BTreeMap<String, String>) -> Effect<'a> {
     let alone = of.discovery.findings.len() == 1;
     let each = |value: fn(&(String, f64, f64)) -> f64| {
         let named = finding.parameters.iter().map(move |p| (p.0.clone(), value(p)));
@@ -141,6 +144,7 @@ fn effect<'a>(of: &'a Answer, finding: &'a Finding) -> Effect<'a> {
             .into_iter()
             .map(|(name, e)| (name, e.is_finite().then_some(e)))
             .collect(),
+        units,
         evidence: Evidence {
             chi2_lowered_by: finding.evidence,
             gap_closed: finding.closed,
@@ -209,8 +213,8 @@ pub(super) fn text(of: &Answer) -> String {
         gaps.row(vec![name.into(), number(before, 3), number(after, 3)]);
     }
     out += &gaps.text();
-    for finding in &of.discovery.findings {
-        out += &format!("\n{}", described(finding));
+    for (finding, units) in of.discovery.findings.iter().zip(&of.units) {
+        out += &format!("\n{}", described(finding, units));
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
@@ -238,15 +242,12 @@ pub(crate) fn sentence(of: &Answer) -> String {
     }
 }
 
-fn described(finding: &Finding) -> String {
-    let mut table = Table::new(["parameter", "value", "stderr"]);
+fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
+    let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
     for (name, value, error) in &finding.parameters {
-        let error = if error.is_finite() {
-            number(*error, 2)
-        } else {
-            "-".into()
-        };
-        table.row(vec![name.clone(), number(*value, 4), error]);
+        let error = or_dash(Some(*error).filter(|error| error.is_finite()), 2);
+        let unit = units.get(name).cloned().unwrap_or_default();
+        table.row(vec![name.clone(), unit, number(*value, 4), error]);
     }
     let share = 100.0 * finding.closed;
     let form = finding
@@ -275,7 +276,7 @@ fn described(finding: &Finding) -> String {
 /// The place that explains most.
 fn acts(best: &Missing) -> String {
     let share = 100.0 * best.explains;
-    let (at, like) = (best.name(), best.shape.name());
+    let (at, like) = (best.site.name(), best.shape.name());
     format!("something at {at} could explain {share:.1} % of what it leaves of the sweeps; it would be {like}\n")
 }
 

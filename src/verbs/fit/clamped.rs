@@ -4,13 +4,14 @@ use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{NoError, ParameterFit};
 
 use super::Fitted;
+use crate::table::number;
 use crate::verbs::kc::{self, Gradient};
 
 /// How far another open parameter is moved to see whether a curve's answer stands on it.
 const DOUBT: f64 = 1.1;
 
 /// Gives the parameters that the fit left at their start values those with which the fitted model has the measured
-/// gradients, where these are within their ranges.
+/// gradients, where these are within their ranges; else a notice says why not.
 ///
 /// # Errors
 /// A curve without gradients.
@@ -31,7 +32,9 @@ pub(super) fn take_over(fitted: &mut Fitted) -> Result<(), InputError> {
             .is_some_and(|name| open.iter().any(|open| open == name))
         {
             kc::take_apart(&mut gradient, &fitted.model, &fitted.values());
-            adopt(fitted, &gradient);
+            if let Err(why) = adopt(fitted, &gradient) {
+                fitted.campaign.notices.push(why);
+            }
         }
     }
     Ok(())
@@ -41,23 +44,32 @@ fn is_open(parameter: &ParameterFit) -> bool {
     parameter.why_no_stderr == Some(NoError::NotSeen)
 }
 
-fn adopt(fitted: &mut Fitted, gradient: &Gradient) {
-    let (Some(name), Some(value)) = (gradient.parameter, gradient.parameter_value) else {
-        return;
-    };
+/// # Errors
+/// Why the parameter keeps its start value.
+fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
+    let name = gradient.parameter.unwrap_or_default();
+    let kept = |why: &str| format!("{name} keeps its start value: {why}");
+    let unknown = gradient.why_no_parameter_value.as_deref().unwrap_or_default();
+    let value = gradient.parameter_value.ok_or_else(|| kept(unknown))?;
     let with = partners(fitted, gradient, value);
     let parameters = &mut fitted.fit.parameters;
-    let within = |own: &&mut ParameterFit| own.range.is_none_or(|(low, high)| (low..=high).contains(&value));
-    if let Some(own) = parameters.iter_mut().find(|own| own.name == name).filter(within) {
-        let error = with.is_empty().then_some(gradient.uncertainty);
-        own.value = value;
-        own.stderr = error;
-        own.relative_stderr = error.map(|error| error / value);
-        own.why_no_stderr = (!with.is_empty()).then_some(NoError::OnlyTogether { with });
-        own.curve = Some(gradient.test);
-        let tied = |other: &&mut ParameterFit| other.tied_to.as_deref() == Some(name);
-        parameters.iter_mut().filter(tied).for_each(|tied| tied.value = value);
+    let own = parameters.iter_mut().find(|own| own.name == name);
+    let own = own.expect("the fit has left it open");
+    if let Some((low, high)) = own.range.filter(|(low, high)| !(*low..=*high).contains(&value)) {
+        let (test, value) = (gradient.test, number(value, 4));
+        return Err(kept(&format!(
+            "the K&C {test} curve gives {value}, out of its range {low} to {high}"
+        )));
     }
+    let error = with.is_empty().then_some(gradient.uncertainty);
+    own.value = value;
+    own.stderr = error;
+    own.relative_stderr = error.map(|error| error / value);
+    own.why_no_stderr = (!with.is_empty()).then_some(NoError::OnlyTogether { with });
+    own.curve = Some(gradient.test);
+    let tied = |other: &&mut ParameterFit| other.tied_to.as_deref() == Some(name);
+    parameters.iter_mut().filter(tied).for_each(|tied| tied.value = value);
+    Ok(())
 }
 
 /// The open parameters on whose start values the answer of a curve stands: moved, they move it by more than its error.

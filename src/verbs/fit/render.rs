@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::Fitted;
 use crate::json::{self, Ordered};
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 
 /// Parameters by name, channels run by run.
 #[derive(Serialize)]
@@ -89,7 +89,6 @@ fn summary(of: &Fitted) -> String {
 fn parameters(of: &[ParameterFit]) -> String {
     let mut table = Table::new(["parameter", "unit", "start", "value", "stderr", "stderr_%", "remark"]);
     for parameter in of {
-        let or_dash = |value: Option<f64>, digits| value.map_or("-".to_string(), |value| number(value, digits));
         table.row(vec![
             parameter.name.clone(),
             parameter.unit.clone(),

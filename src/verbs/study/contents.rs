@@ -29,7 +29,7 @@ pub struct Contents<'a> {
     axles: Axles,
     loops: Vec<Loop>,
     rig: Vec<Ratio>,
-    track: Option<Track>,
+    track: Option<Track<'a>>,
     gap_map: GapMap,
     kappa: Vec<Explanation>,
     refitted: Vec<Refitted>,

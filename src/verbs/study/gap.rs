@@ -1,13 +1,14 @@
 //! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
+use qcar_runtime::discover::Kappa;
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::gap::Tile;
-use qcar_runtime::discover::{Kappa, Place};
 use serde::Serialize;
 
 use super::gather::Study;
 use crate::report::rounded::{curve, rounded};
+use crate::verbs::discover::places::{Site, sites};
 
 /// A part of the gap.
 #[derive(Serialize)]
@@ -27,7 +28,7 @@ pub struct Patch {
 /// What would have to be added at a place.
 #[derive(Serialize)]
 pub struct Explanation {
-    /// A parameter's name, or a sensor.
+    /// In words.
     place: String,
     sensor: bool,
     /// Share of the squared gap that a κ free in every run explains, and one for all runs.
@@ -100,21 +101,14 @@ const SHOWN: usize = 8;
 
 /// The places that explain the gap of the sweeps best; none without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
-    let about = of.fitted.model.about();
-    let explanation = |kappa: &Kappa| {
-        let (place, sensor) = match &kappa.place {
-            Place::Parameter(place) => (about.parameters[*place].name.to_string(), false),
-            Place::Sensor(point) => (format!("{} {}", point.location, point.axis.name()), true),
-        };
-        Explanation {
-            place,
-            sensor,
-            ceiling: rounded(kappa.ceiling),
-            common: rounded(kappa.common),
-            runs: kappa.runs.iter().map(stiffness).collect(),
-        }
+    let explanation = |(site, kappa): (Site, &Kappa)| Explanation {
+        place: site.name(),
+        sensor: site.sensor.is_some(),
+        ceiling: rounded(kappa.ceiling),
+        common: rounded(kappa.common),
+        runs: kappa.runs.iter().map(stiffness).collect(),
     };
-    of.answer.sweeps.places.iter().take(SHOWN).map(explanation).collect()
+    sites(&of.answer).into_iter().take(SHOWN).map(explanation).collect()
 }
 
 fn stiffness(of: &qcar_runtime::discover::kappa::KappaRun) -> Stiffness {

@@ -52,6 +52,8 @@ pub struct Track {
     pub cleats: Vec<Cleat>,
     /// The fitted model.
     pub before: Driven,
+    /// Its parameters that the fit has left at their start values.
+    pub at_start: Vec<String>,
     /// The model with what it lacked.
     pub after: Option<Driven>,
     /// The better of both without its longitudinal motion.
@@ -126,6 +128,7 @@ fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Tr
         |(model, values): (&Loaded, &Values), variant| simulate::drive(campaign, model, values, &cleats, variant);
     let track = Track {
         before: drive((&fitted.model, &values), Variant::Complete)?,
+        at_start: simulate::guessed(campaign, &fitted.model, &values),
         after: after.map(|_| drive(best, Variant::Complete)).transpose()?,
         locked: drive(best, Variant::LongitudinallyLocked)?,
         vertical: drive(best, Variant::PureVertical)?,

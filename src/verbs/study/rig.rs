@@ -7,7 +7,8 @@ use qcar_runtime::fit::quality::{Quality, quality};
 use serde::Serialize;
 
 use super::gather::Study;
-use super::swept::Swept;
+use super::swept::{Swept, swept_by};
+use crate::progress::while_counting;
 use crate::report::rounded::curve;
 use crate::verbs::fit::files::{Compared, compare};
 
@@ -47,7 +48,11 @@ pub struct Polar {
 /// All ratios that were measured.
 pub fn ratios(of: &Study) -> Vec<Ratio> {
     let after = of.after.as_ref();
-    let after = after.map(|after| Swept::new(&*after.model, &after.values, &of.answer.evidence));
+    let after = after.map(|after| {
+        while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |told| {
+            Swept::new(&*after.model, &after.values, &of.answer.evidence, told)
+        })
+    });
     let compared = compare(&of.fitted);
     compared
         .iter()

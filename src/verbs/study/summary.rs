@@ -69,14 +69,17 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
     let mut out = format!("{}: {}\n\n", of.fitted.campaign.name, summary.missing);
     out += &fits(summary);
     if let Some(track) = &of.track {
-        let _ = write!(out, "\n{}", cleats(track));
+        let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
     let _ = write!(out, "\n{}", gaps(of));
-    for finding in &of.answer.discovery.findings {
+    for (finding, units) in of.answer.discovery.findings.iter().zip(&of.answer.units) {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
-        let values: Vec<String> = known
-            .map(|(name, value, error)| format!("{name} = {} ± {}", number(*value, 4), number(*error, 2)))
-            .collect();
+        let value = |(name, value, error): &(String, f64, f64)| {
+            let unit = units.get(name).filter(|unit| *unit != "1");
+            let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
+            format!("{name} = {} ± {}{unit}", number(*value, 4), number(*error, 2))
+        };
+        let values: Vec<String> = known.map(value).collect();
         let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, values.join(", "));
     }
     if let Some(file) = of.answer.model.as_ref().and_then(|model| model.file.as_ref()) {
@@ -120,6 +123,19 @@ fn cleats(of: &Track) -> String {
         table.row(std::iter::once(name.clone()).chain(cells).collect());
     }
     table.text()
+}
+
+/// What no rig run sees is no more than a guess in the rides of the rig fit.
+fn at_start(names: &[String]) -> String {
+    let has = if names.len() == 1 {
+        "has its start value"
+    } else {
+        "have their start values"
+    };
+    match names {
+        [] => String::new(),
+        names => format!("before: no rig run sees {}, which {has}\n", names.join(", ")),
+    }
 }
 
 fn median(of: Option<qcar_runtime::compare::Summary>) -> String {

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Complex;
-use qcar_runtime::campaign::Role;
-use qcar_runtime::discover::evidence::{Evidence, Kind};
+use qcar_runtime::discover::evidence::{Evidence, Kind, Stimulus};
 use qcar_runtime::discover::predict::predict;
 use qcar_runtime::model::{Channel, Model};
+use qcar_runtime::progress::{self, Told};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
@@ -14,11 +14,19 @@ use qcar_runtime::response::ratio::ratio;
 pub struct Swept<'a> {
     model: &'a dyn Model,
     values: &'a Values,
-    /// By run and location: Hz, and the first harmonic over the pad; `None` of what is taken as linear.
-    responses: Option<BTreeMap<(String, String), Response>>,
+    /// `None` of what is taken as linear.
+    responses: Option<BTreeMap<Key, Response>>,
 }
 
+/// A run and a location.
+type Key = (String, String);
+/// Hz, and the first harmonic over the pad.
 type Response = (Vec<f64>, Vec<Complex<f64>>);
+
+/// What is being done meanwhile.
+pub fn swept_by(campaign: &str, model: &dyn Model) -> String {
+    format!("{campaign}: {} in sweep", model.about().name)
+}
 
 impl<'a> Swept<'a> {
     /// A model as it answers to small motions about rest, whatever the run.
@@ -30,22 +38,19 @@ impl<'a> Swept<'a> {
         }
     }
 
-    /// A model in the runs of a campaign.
-    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence) -> Self {
+    /// A model in the sweeps of a campaign.
+    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, told: Told<'_>) -> Self {
         if model.about().linear {
             return Swept::at_rest(model, values);
         }
-        let predict = |role| predict(model, values, &[], evidence, role).unwrap_or_default();
-        let predictions = [Role::Fit, Role::HeldOut].into_iter().flat_map(predict);
-        let responses = predictions.filter_map(|prediction| {
-            let series = &evidence.series[prediction.series];
-            let key = (evidence.runs[series.run].name.clone(), series.sensor.location.clone());
-            (series.kind == Kind::Harmonic(1)).then(|| (key, (series.at.clone(), prediction.value)))
-        });
+        let is_sweep = |run: &usize| matches!(evidence.runs[*run].stimulus, Stimulus::Sweep { .. });
+        let sweeps = (0..evidence.runs.len()).filter(is_sweep);
+        let sweeps: Vec<Evidence> = sweeps.map(|run| evidence.only(|own| own == run)).collect();
+        let responses = progress::map(&sweeps, told, |sweep| responses(model, values, sweep));
         Swept {
             model,
             values,
-            responses: Some(responses.collect()),
+            responses: Some(responses.into_iter().flatten().collect()),
         }
     }
 
@@ -67,6 +72,18 @@ impl<'a> Swept<'a> {
         };
         Some(frequency.iter().map(|&f| between(lines, &ratio, f)).collect())
     }
+}
+
+/// What a model shows in one sweep.
+fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> Vec<(Key, Response)> {
+    let run = &sweep.runs[0];
+    let predictions = predict(model, values, &[], sweep, run.role).unwrap_or_default();
+    let first = predictions.into_iter().filter_map(|prediction| {
+        let series = &sweep.series[prediction.series];
+        let key = (run.name.clone(), series.sensor.location.clone());
+        (series.kind == Kind::Harmonic(1)).then(|| (key, (series.at.clone(), prediction.value)))
+    });
+    first.collect()
 }
 
 /// On the straight line between two neighbours; NaN outside.

@@ -15,8 +15,10 @@ use crate::verbs::simulate::compared::{Compared, Pair, alignment, pairs};
 
 /// All runs.
 #[derive(Serialize)]
-pub struct Track {
+pub struct Track<'a> {
     runs: Vec<Run>,
+    /// Parameters that stand at their start values before.
+    at_start: &'a [String],
     /// Keyed by `mass_axis`.
     histograms: BTreeMap<String, Errors>,
 }
@@ -66,7 +68,7 @@ const BIN: f64 = 0.05;
 const RUN_IN: f64 = 0.05;
 
 /// The cleat runs of a study.
-pub fn track(of: &Study) -> Option<Track> {
+pub fn track(of: &Study) -> Option<Track<'_>> {
     let track = of.track.as_ref()?;
     let models = Models {
         before: of.fitted.model.about(),
@@ -80,6 +82,7 @@ pub fn track(of: &Study) -> Option<Track> {
         runs: runs
             .filter_map(|(place, cleat)| run(&models, track, place, cleat))
             .collect(),
+        at_start: &track.at_start,
         histograms: histograms(
             &track.before.compared,
             track.after.as_ref().map(|driven| &driven.compared),

@@ -98,14 +98,7 @@ fn damping(campaign: &Campaign) -> Result<Option<f64>, InputError> {
         .filter(is_sine)
         .map(|run| campaign.dynamic_curve(run));
     let curves = curves.collect::<Result<Vec<_>, _>>()?;
-    let samples: Vec<SineSamples> = curves
-        .iter()
-        .map(|curve| SineSamples {
-            displacement: &curve.displacement,
-            velocity: &curve.velocity,
-            force: &curve.force,
-        })
-        .collect();
+    let samples: Vec<_> = curves.iter().map(SineSamples::from).collect();
     Ok(sines(&samples).ok().map(|sine| sine.damping.value))
 }
 

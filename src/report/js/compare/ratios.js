@@ -66,23 +66,17 @@ function ratioColumn(ratio) {
 }
 
 function comparedPlots(ratio, column) {
-  const [magnitude, phase, change] = column.querySelectorAll('.canvas');
-  const common = { x: FREQUENCY, at: ratio.frequency, sync: 'ratios' };
-  return [
-    plot(magnitude, { ...common, y: { label: 'magnitude, dB' }, curves: sideCurves(ratio, 'magnitude') }),
-    plot(phase, { ...common, y: { label: 'phase, °' }, height: 190, curves: sideCurves(ratio, 'phase') }),
-    plot(change, {
-      ...common,
-      y: { label: 'B over A, dB', range: aroundZero },
-      height: 150,
-      curves: [
-        ...(ratio.measured_change
-          ? [{ role: 'measured', label: 'measured', values: ratio.measured_change.magnitude }]
-          : []),
-        { role: 'change', values: ratio.change.magnitude },
-      ],
-    }),
-  ];
+  const observed = ratio.measured_change;
+  const change = {
+    y: { label: 'B over A, dB', range: aroundZero },
+    height: 150,
+    curves: [
+      ...(observed ? [{ role: 'measured', values: observed.magnitude }] : []),
+      { role: 'change', values: ratio.change.magnitude },
+    ],
+  };
+  const curves = (part) => sideCurves(ratio, part);
+  return polarPlots(column, { at: ratio.frequency, sync: 'ratios', curves, below: change });
 }
 
 // Zero stays in sight.
