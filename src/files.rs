@@ -1,8 +1,8 @@
 //! Text files to read and to write.
 
-use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::{fs, process};
 
 use qcar_runtime::error::{InputError, Place, Problem};
 
@@ -15,6 +15,24 @@ pub fn read_text(file: &Path) -> Result<String, InputError> {
         let remedy = "correct the path, or put the file there";
         Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into()
     })
+}
+
+/// The value of a flag that names a folder for results: refused before the work for it is begun where nothing can be
+/// written. Nothing stays there.
+///
+/// # Errors
+/// What the system says of a file in the folder, or in the one in which it is to be made.
+pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
+    let folder = PathBuf::from(name);
+    let existing = folder.ancestors().find(|own| own.exists()).unwrap_or(Path::new("."));
+    let probe = existing.join(format!("qcar-{}.part", process::id()));
+    match fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)) {
+        Ok(()) => Ok(folder),
+        Err(error) => Err(format!(
+            "found {}: {error}, expected a place to write to; choose another folder, or make room there",
+            existing.display()
+        )),
+    }
 }
 
 /// The files that stand complete, in the order in which they were written; held while one is being written.

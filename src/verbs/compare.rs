@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::files::put;
+use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::report::{Report, page};
@@ -69,7 +69,7 @@ pub struct Arguments {
     #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:50:300")]
     frequencies: Frequencies,
     /// Write report.html, compare.json and the tables as CSV into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]

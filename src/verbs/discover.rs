@@ -18,7 +18,7 @@ use qcar_runtime::model::{About, Default};
 
 use crate::catalogue;
 use crate::failure::Failure;
-use crate::files::put;
+use crate::files::{folder_for_results, put};
 use crate::interruption::note;
 use crate::parameters::check_vehicle;
 use crate::progress::Showing;
@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long)]
     model: Option<String>,
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -104,8 +104,9 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer,
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
-    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let showing = Showing::new();
+    showing.tell(format!("{}: reading", campaign.name));
+    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
         News::Far(done, of) => showing.far(done, of),

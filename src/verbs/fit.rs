@@ -16,6 +16,7 @@ use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
+use crate::files::folder_for_results;
 use crate::parameters::out_of_range;
 use crate::progress::while_counting;
 use crate::verbs::Format;
@@ -44,7 +45,7 @@ pub struct Arguments {
     #[command(flatten)]
     choices: Choices,
     /// Write parameters.toml, fit.json, transmissibility.csv and transmissibility.svg into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]

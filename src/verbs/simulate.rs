@@ -11,6 +11,7 @@ use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, V
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
+use crate::files::folder_for_results;
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
 use crate::verbs::TableFormat;
@@ -46,7 +47,7 @@ pub struct Arguments {
     #[arg(long, value_enum, default_value_t = VariantName::Complete)]
     variant: VariantName,
     /// Write the time histories into this folder, a CSV for each run
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]

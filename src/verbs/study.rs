@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use clap::Args;
 
 use crate::failure::Failure;
-use crate::files::put;
+use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::report::{Report, page};
 use crate::verbs::Format;
@@ -46,7 +46,7 @@ pub struct Arguments {
     #[arg(long)]
     model: Option<String>,
     /// Write report.html, study.json and the files of each step into this folder
-    #[arg(long, value_name = "DIR")]
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: PathBuf,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]

@@ -85,6 +85,21 @@ fn flags_are_read_with_care() {
     frf(&["--channels", "pad_to_moon"], &["`pad_to_moon`", "`pad_to_body`"]);
 }
 
+/// Before the work, whose result nobody would see.
+#[test]
+fn a_folder_that_cannot_be_written_to_is_refused() {
+    let said: &[&str] = &[
+        "--out <DIR>",
+        "given.toml",
+        "a place to write to",
+        "choose another folder",
+    ];
+    for verb in ["fit", "simulate", "discover", "study"] {
+        refused("", &[verb, "models/campaigns/axle_a_rig", "--out", "FILE"], said);
+    }
+    refused("", &["compare", "axle_a", "axle_a", "--out", "FILE"], said);
+}
+
 #[test]
 fn parameters_without_a_value_are_all_named() {
     refused(
