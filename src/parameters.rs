@@ -9,9 +9,9 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use qcar_runtime::campaign::{Campaign, FACTS, dimension};
+use qcar_runtime::campaign::{self, Campaign, FACTS, dimension};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::model::About;
+use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::spelling;
 
@@ -156,6 +156,25 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
         (!(low..=high).contains(&value)).then_some(sentence)
     });
     beyond.collect()
+}
+
+/// What a model brings along beside a campaign and leaves to an estimate: parameters with a default and a range that are
+/// not `known`, and of which the campaign says nothing.
+pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
+    let is_given = |name: &str| campaign.parameter(name).is_some() || campaign.vehicle(name).is_some();
+    let open = about.parameters.iter().filter(|own| !own.known && !is_given(&own.name));
+    let parameter = |own: &model::Parameter| match own.default {
+        Default::Value(value) => Some(campaign::Parameter {
+            name: own.name.to_string(),
+            value,
+            unit: own.unit.to_string(),
+            range: Some(own.range?),
+            fit: true,
+            comment: "the default of the model".into(),
+        }),
+        Default::None | Default::Same(_) => None,
+    };
+    open.filter_map(parameter).collect()
 }
 
 /// What is computed from parameter values is a number.

@@ -14,13 +14,13 @@ use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::search::{Discovery, News, Verdict, discover};
 use qcar_runtime::discover::{Evidence, Sweeps};
-use qcar_runtime::model::{About, Default};
+use qcar_runtime::model::About;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::note;
-use crate::parameters::check_vehicle;
+use crate::parameters::{check_vehicle, own};
 use crate::progress::Showing;
 use crate::verbs::Format;
 use crate::workshop::Bench;
@@ -154,23 +154,14 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
 fn setting(campaign: &Campaign, about: &About) -> Setting {
-    let given = campaign.parameters.iter().map(|p| Given {
-        name: p.name.clone(),
-        value: p.value,
+    let given = campaign.parameters.iter().cloned().chain(own(about, campaign));
+    let given = given.map(|p| Given {
         range: p.range.filter(|_| p.fit),
-    });
-    let is_given = |name: &str| campaign.parameters.iter().any(|p| p.name == name);
-    let own = about.parameters.iter().filter(|p| !p.known && !is_given(&p.name));
-    let own = own.filter_map(|p| match p.default {
-        Default::Value(value) => Some(Given {
-            name: p.name.to_string(),
-            value,
-            range: Some(p.range?),
-        }),
-        Default::None | Default::Same(_) => None,
+        name: p.name,
+        value: p.value,
     });
     Setting {
-        given: given.chain(own).collect(),
+        given: given.collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
     }
 }

@@ -10,6 +10,7 @@ use qcar_runtime::error::InputError;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
+use qcar_runtime::model::About;
 use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::transmissibility::Options;
@@ -17,7 +18,7 @@ use qcar_runtime::transmissibility::Options;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::files::folder_for_results;
-use crate::parameters::out_of_range;
+use crate::parameters::{out_of_range, own};
 use crate::progress::while_counting;
 use crate::verbs::Format;
 
@@ -32,8 +33,10 @@ pub(crate) mod files;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
-/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. A parameter that no fitted
-/// channel depends on takes its value from the K&C curve that measures it, where the campaign has one.
+/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. Estimated are the parameters
+/// that the campaign wants fitted, and what the model has beside them with a default and a range, but for what it calls
+/// known. A parameter that no fitted channel depends on takes its value from the K&C curve that measures it, where the
+/// campaign has one.
 /// The exit status is 1 where the search does not end at a minimum.
 #[derive(Args)]
 #[command(
@@ -143,7 +146,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let begun = Instant::now();
     let mut campaign = Campaign::open(folder)?;
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
-    let plan = plan(&campaign, choices)?;
+    let plan = plan(&campaign, model.about(), choices)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
     let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
@@ -164,9 +167,10 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     Ok(fitted)
 }
 
-/// The campaign's plan with the user's choices.
-fn plan(campaign: &Campaign, choices: &Choices) -> Result<Plan, InputError> {
+/// The campaign's plan, with what the model has beside it and the user's choices.
+fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, InputError> {
     let mut plan = Plan::new(campaign);
+    plan.parameters.extend(own(about, campaign));
     plan.starts = choices.starts.map_or(plan.starts, usize::from);
     let mut problems = Vec::new();
     for (name, fit) in choices
@@ -178,10 +182,10 @@ fn plan(campaign: &Campaign, choices: &Choices) -> Result<Plan, InputError> {
         match plan.parameters.iter_mut().find(|parameter| parameter.name == *name) {
             Some(parameter) => parameter.fit = fit,
             None => {
-                let names: Vec<_> = campaign.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
+                let names: Vec<_> = plan.parameters.iter().map(|p| format!("`{}`", p.name)).collect();
                 let (found, remedy) = (format!("`{name}`"), format!("choose among {}", names.join(", ")));
                 let name = if fit { "--free" } else { "--fix" };
-                problems.push(flag(name, found, "a parameter of the campaign", &remedy));
+                problems.push(flag(name, found, "a parameter that may be fitted", &remedy));
             }
         }
     }

@@ -51,6 +51,29 @@ fn what_the_rig_does_not_see_comes_from_its_curve() {
     assert_eq!(fit["parameters"]["k_wheel_x_other"]["value"], own["value"]);
 }
 
+/// Of an effect in a patched model the campaign says nothing: what its file gives is where the fit begins.
+#[test]
+fn what_a_model_brings_along_is_fitted_from_its_defaults() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("patched.axle");
+    let file = file.to_str().unwrap();
+    succeeds(&["patch", "axle_c", "suspended_mass", "--at", "body", "--out", file]);
+    let study = "models/campaigns/axle_c_study";
+    let fit = fitted(&[study, "--model", file]);
+    let truth = Truth::read(&Path::new(study).join("truth.toml")).unwrap();
+    for (name, own) in &truth.effects[0].parameters {
+        if name.ends_with("_x") {
+            continue;
+        }
+        let found = &fit["parameters"][name.as_str()];
+        let value = found["value"].as_f64().unwrap();
+        assert_eq!(found["fitted"], true, "{found}");
+        assert!((value / own - 1.0).abs() < 0.02, "{found} is {own}");
+    }
+    let kept = &fitted(&[study, "--model", file, "--fix", "m_pwt", "--starts", "1"])["parameters"]["m_pwt"];
+    assert_eq!((&kept["fitted"], &kept["value"]), (&false.into(), &kept["start"]));
+}
+
 #[test]
 fn a_curve_of_two_springs_in_series_tells_neither() {
     let folder = tempfile::tempdir().unwrap();
