@@ -2,6 +2,8 @@
 
 const LANE = { z: 182, x: 88 };
 const STEP = { z: 112, x: 330 };
+// From one element of a link to the next.
+const BESIDE = 22;
 const BAR = { z: 36, x: 112 };
 
 function axles(data) {
@@ -87,7 +89,8 @@ function axleDrawing(axle, axis, fresh) {
   const lanes = Math.max(...links.map((own) => own.lane)) + 1;
   const across = LANE[axis];
   const upright = axis === 'z';
-  const width = upright ? lanes * across + 16 : (top - bottom) * STEP.x + BAR.x + 16;
+  const widest = BESIDE * (Math.max(1, ...links.map(({ link }) => link.elements.length)) - 1);
+  const width = upright ? lanes * across + widest / 2 + 16 : (top - bottom) * STEP.x + BAR.x + 16;
   const height = upright ? (top - bottom) * STEP.z + BAR.z + 34 : lanes * across + 20;
   const along = (level) =>
     upright ? 12 + BAR.z / 2 + (top - level) * STEP.z : 8 + BAR.x / 2 + (level - bottom) * STEP.x;
@@ -117,7 +120,7 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
   const kind = `point ${own.kind}${isNew(own) ? ' new' : ''}`;
   const label =
     own.inertia === null ? [words(own.name)] : [words(own.name), quantity(own.inertia, own.angle ? 'kg m^2' : 'kg')];
-  if (own.kind === 'road' || own.kind === 'motion') {
+  if (isLine(own)) {
     return svg(
       'g',
       { class: kind },
@@ -142,6 +145,11 @@ function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {
   return svg('g', { class: kind }, svg('rect', { ...box, rx: 3 }), text);
 }
 
+// What is prescribed is drawn as a hatched line.
+function isLine({ kind }) {
+  return kind === 'road' || kind === 'motion';
+}
+
 function hatch(low, high, y) {
   let path = '';
   for (let x = low + 6; x <= high; x += 9) path += `M${x} ${y}l-6 8`;
@@ -154,19 +162,14 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
   const high = Math.max(...levels);
   const low = Math.min(...levels);
   const sign = axis === 'z' ? 1 : -1;
-  const from = along(high) + sign * edge;
-  const to = along(low) - sign * (place.get(ends[levels.indexOf(low)].point).own.kind === 'road' ? 0 : edge);
+  const reach = (level) => (isLine(place.get(ends[levels.indexOf(level)].point).own) ? 0 : edge);
+  const from = along(high) + sign * reach(high);
+  const to = along(low) - sign * reach(low);
   const centre = lane(at);
   const symbols = link.elements.length ? link.elements : [{ kind: 'law', law: '' }];
-  const spread = symbols.length > 1 ? 22 : 0;
+  const half = (BESIDE * (symbols.length - 1)) / 2;
   const shapes = symbols.map((element, index) =>
-    symbol(
-      element.kind,
-      Math.min(from, to),
-      Math.max(from, to),
-      centre + (index - (symbols.length - 1) / 2) * spread,
-      axis,
-    ),
+    symbol(element.kind, Math.min(from, to), Math.max(from, to), centre + BESIDE * index - half, axis),
   );
   const lines = [words(link.name), ...elementsText(link).map(shortened)];
   const middle = (from + to) / 2;
@@ -176,7 +179,7 @@ function drawLink({ link, ends, lane: at }, place, { axis, along, lane, isNew })
           svg(
             'text',
             {
-              x: centre + 20 + spread / 2,
+              x: centre + 20 + half,
               y: middle + 4 + (index - (lines.length - 1) / 2) * 15,
               class: index ? 'value' : 'name',
             },

@@ -85,9 +85,9 @@ function details(summary, ...children) {
   return h('details', {}, h('summary', {}, summary), children);
 }
 
-// `z_wheel` as a letter with its index, in whatever surrounds it.
+// `z_wheel` as a letter or word with its index, in whatever surrounds it.
 function formula(text) {
-  return text.split(/([A-Za-z]\p{M}*_\w+)/u).map((part, at) => {
+  return text.split(/([A-Za-z]+\p{M}*_\w+)/u).map((part, at) => {
     if (at % 2 === 0) return part;
     const [letter, ...index] = part.split('_');
     return [h('i', {}, letter), h('sub', {}, index.join(' '))];

@@ -52,9 +52,14 @@ const SCALES = {
   m: [1e3, 'mm'],
 };
 
-// A value and its unit; `pair` keeps a value and its error in one scale.
+// Below this much of the larger unit the SI unit is the shorter one.
+const LITTLE = 0.01;
+
+// A value and its unit, and the factor that brings an error of the value there too.
 function inUnit(value, unit) {
-  const [factor, written] = SCALES[unit] || [1, unit];
+  const [larger, name] = SCALES[unit] || [1, unit];
+  const isLittle = larger < 1 && value !== 0 && Math.abs(value) * larger < LITTLE;
+  const [factor, written] = isLittle ? [1, unit] : [larger, name];
   return { factor, unit: written === '1' ? '' : pretty(written), value: value === null ? null : value * factor };
 }
 
@@ -73,21 +78,23 @@ function pretty(unit) {
   return unit.replace('^2', '²').replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
 }
 
+// Digits behind the point that are still read.
+const MOST_PLACES = 6;
+
 // `value ± error` with as many digits as the error allows; both with one power of ten where a plain number is long.
 function measured(value, error, unit) {
   const scaled = inUnit(value, unit);
   if (error === null || !Number.isFinite(error) || error <= 0) return quantity(value, unit, 4);
   const size = Math.abs(scaled.value);
-  const power = size !== 0 && (size < 1e-4 || size >= 1e7) ? Math.floor(Math.log10(size)) : 0;
+  const places = (off) => Math.max(0, 1 - Math.floor(Math.log10(off)));
+  const isLong = size < 1e-4 || size >= 1e7 || places(error * scaled.factor) > MOST_PLACES;
+  const power = size !== 0 && isLong ? Math.floor(Math.log10(size)) : 0;
   const [own, off] = [scaled.value, error * scaled.factor].map((x) => x / 10 ** power);
-  const places = Math.min(6, Math.max(0, 1 - Math.floor(Math.log10(off))));
+  const shown = Math.min(MOST_PLACES, places(off));
   const fixed = (x) =>
     minus(
-      Number(x.toFixed(places))
-        .toLocaleString('en-GB', {
-          minimumFractionDigits: places,
-          maximumFractionDigits: places,
-        })
+      Number(x.toFixed(shown))
+        .toLocaleString('en-GB', { minimumFractionDigits: shown, maximumFractionDigits: shown })
         .replace(/,/g, '\u202f'),
     );
   const both = `${fixed(own)} ± ${fixed(off)}`;

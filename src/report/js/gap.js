@@ -184,7 +184,7 @@ function mapTicks(tiles) {
 
 function levelText(level, tile) {
   const units = { harmonic: 'mm/s', passage: 'mm', travel: 'mm', width: 'mm', cycle: 'mm' };
-  return units[tile.kind] ? `${plain(1e3 * level, 3)} ${units[tile.kind]}` : plain(level, 2);
+  return units[tile.kind] ? `${plain(1e3 * level, 3)} ${units[tile.kind]}` : plain(level, 4);
 }
 
 function tileText(role, tile) {

@@ -8,8 +8,8 @@ function limits(data) {
   const curves = own.filter((parameter) => parameter.curve).map((parameter) => parameter.name);
   const loose = own.filter((parameter) => parameter.relative_stderr > 0.05).map((parameter) => parameter.name);
   const sentences = [
-    listed(names('not_seen'), 'The rig fit does not see {}; what it says of them are their start values.'),
-    listed(curves, 'The rig fit does not see {}; what it says of them is from the K&C curves.'),
+    listed(names('not_seen'), 'The rig fit does not see {}: its tables and rides hold start values there.'),
+    listed(curves, 'The rig fit does not see {}: its tables and rides hold what the K&C curves say.'),
     listed(names('only_together'), 'The data determine {} only in combination.'),
     listed(names('at_bound'), '{} rest on a bound of their range, and have no error bar.'),
     listed(loose, 'The relative standard error of {} is above 5 %.'),

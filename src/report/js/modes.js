@@ -1,6 +1,6 @@
 // Natural vibrations: how fast, how damped, and what moves.
 
-function modes({ modes: { before, after }, model }) {
+function modes({ modes: { before, after }, model, axles }) {
   if (!before.length) return null;
   const sets = [['before', model, before], ...(after ? [['after', 'with what it lacked', after]] : [])];
   const element = section(
@@ -11,6 +11,13 @@ function modes({ modes: { before, after }, model }) {
       {},
       'Undamped natural frequency, damping ratio, and the motion of each mass over that of the largest: bars to the right move with it, bars to the left against it. A pale bar moves out of phase.',
     ),
+    [axles.before, axles.after].some((axle) => axle && !axle.linear)
+      ? h(
+          'p',
+          { class: 'caution' },
+          'Of a nonlinear model these are small motions about rest, where dry friction sticks and acts as a spring: in larger motions frequencies and damping are others.',
+        )
+      : null,
     h(
       'div',
       { class: 'columns wide' },

@@ -25,14 +25,16 @@ function record({ record: own, fit, campaign, discover }) {
     h(
       'div',
       { class: 'columns two' },
-      table(
-        'Vehicle',
-        [
-          ['fact', 'text'],
-          ['value', 'number'],
-        ],
-        own.vehicle.map(([name, value]) => [name, given(value, vehicleUnit(name))]),
-      ),
+      own.vehicle.length
+        ? table(
+            'Vehicle',
+            [
+              ['fact', 'text'],
+              ['value', 'number'],
+            ],
+            own.vehicle.map(([name, value]) => [name, given(value, vehicleUnit(name))]),
+          )
+        : null,
       table(
         'Sensors',
         [

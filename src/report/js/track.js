@@ -75,7 +75,7 @@ function startCaution(names, changed) {
   return h(
     'p',
     { class: 'caution' },
-    `No rig run or K&C curve determines ${own}: before, ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be theirs.`,
+    `No rig run or K&C curve determines ${own}: before, ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
     changed ? ' What was found together with the effect is fitted to the cleat runs too.' : null,
   );
 }

@@ -13,6 +13,7 @@ use super::sides::{Measured, Side, sides};
 use super::subject::Subject;
 use crate::failure::Failure;
 use crate::parameters::out_of_range;
+use crate::verbs::simulate::guessed;
 
 /// A and B, and in what they differ.
 pub(super) struct Comparison {
@@ -44,6 +45,7 @@ pub(super) fn gather(subject: &Subject, arguments: &Arguments) -> Result<Compari
         _ => None,
     };
     let mut notices: Vec<String> = sides.iter().flat_map(odd_values).collect();
+    notices.extend(sides.iter().filter_map(start_values));
     let ratios = all_ratios(&sides, both, beside.as_ref(), arguments, &mut notices)?;
     let (conditions, passages) = all_passages(&sides, both, beside.as_ref(), &mut notices)?;
     Ok(Comparison {
@@ -70,6 +72,14 @@ fn odd_values(side: &Side) -> Vec<String> {
     sentences
         .map(|sentence| format!("{}: {sentence}.", side.name))
         .collect()
+}
+
+/// What the fit to a campaign has left at its start value tells nothing of it.
+fn start_values(side: &Side) -> Option<String> {
+    let campaign = &side.measured.as_ref()?.campaign;
+    let names = guessed(campaign, &side.model, &side.values);
+    let sentence = format!("{}: no rig run sees {}: start values.", side.name, names.join(", "));
+    (!names.is_empty()).then_some(sentence)
 }
 
 fn all_ratios(

@@ -184,7 +184,9 @@ fn three(of: Option<Spread>) -> [String; 3] {
 
 fn percent(share: Option<f64>) -> String {
     let finite = share.filter(|share| share.is_finite());
-    finite.map_or("-".into(), |share| format!("{:.1}", 100.0 * share))
+    // Nothing below zero is left of what rounds to it.
+    let tenths = |share: f64| (1000.0 * share).round() / 10.0 + 0.0;
+    finite.map_or("-".into(), |share| format!("{:.1}", tenths(share)))
 }
 
 /// A cell of a number that may be missing.

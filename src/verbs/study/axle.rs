@@ -12,6 +12,7 @@ use serde::Serialize;
 pub struct Axle {
     name: String,
     doc: String,
+    linear: bool,
     points: Vec<Point>,
     links: Vec<Connection>,
     equations: String,
@@ -70,6 +71,7 @@ impl Axle {
         Axle {
             name: model.name.clone(),
             doc: model.doc.clone(),
+            linear: compiled.about.linear,
             points: model.coordinates.iter().map(|own| drawing.point(own)).collect(),
             links: model.links.iter().map(|link| drawing.connection(link)).collect(),
             equations: show(compiled, Stage::Equations),
