@@ -137,6 +137,8 @@ struct Lines<'a, B, const R: usize> {
 }
 
 impl<B: Block<R>, const R: usize> Loops for Lines<'_, B, R> {
+    type Result = ();
+
     #[inline(always)]
     fn run(self) {
         self.block.compute(self.frequencies, self.rows);

@@ -36,7 +36,7 @@ pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
 pub use recorded::{Between, Record, Recorded};
 pub use replay::{Replay, replay};
-pub use ride::{Drive, Ride, ride, rides};
+pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};
 pub use standard::Standard;

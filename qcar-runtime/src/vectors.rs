@@ -2,24 +2,27 @@
 
 /// Loops over plain numbers that gain by wide vectors.
 pub(crate) trait Loops {
+    /// What comes of them.
+    type Result;
+
     /// To be inlined always: it is compiled once for each instruction set that [`widest`] knows.
-    fn run(self);
+    fn run(self) -> Self::Result;
 }
 
 /// Runs loops with the widest vectors of this machine. The bits are the same: nothing is fused or reordered.
 #[inline]
-pub(crate) fn widest(loops: impl Loops) {
+pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
     #[cfg(target_arch = "x86_64")]
     if std::arch::is_x86_feature_detected!("avx2") {
         #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
         // SAFETY: this machine has AVX2, and the function asks for nothing else.
         return unsafe { with_avx2(loops) };
     }
-    loops.run();
+    loops.run()
 }
 
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-fn with_avx2(loops: impl Loops) {
-    loops.run();
+fn with_avx2<L: Loops>(loops: L) -> L::Result {
+    loops.run()
 }

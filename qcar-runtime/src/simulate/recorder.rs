@@ -1,14 +1,13 @@
 //! What is recorded of a rolling model.
 
 use super::rolling::Rolling;
-use super::sampling::Grid;
+use super::sampling::{Grid, Tape};
 use crate::model::{About, Contact, Model};
 use crate::solver::{After, Event, Step, System};
 
 /// A rolling model with its records.
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
-    grid: Grid,
     /// Room for a state.
     state: Vec<f64>,
     /// Room for its rate, behind that the outputs where the model is asked for them, and what is told of the contact.
@@ -17,8 +16,7 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     places: Vec<usize>,
     /// From this place on all is recorded.
     first: usize,
-    /// The record for each point of the fine grid, one behind the other.
-    rows: Vec<f64>,
+    tape: Tape,
     /// When the tyre lost the ground, s.
     pub lift_offs: Vec<f64>,
     /// When it came back, s.
@@ -44,41 +42,32 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             rates: vec![0.0; room],
             places,
             first,
-            rows: Vec::with_capacity(grid.points() * (room - first)),
+            tape: Tape::new(grid, room - first),
             lift_offs: Vec::new(),
             landings: Vec::new(),
             last: (f64::NAN, true),
-            grid,
         }
     }
 
     /// Records a car that is at rest in state `x` until a time, s.
     pub fn rest(&mut self, until: f64, x: &[f64]) {
         observe(&self.rolling, until, x, &mut self.rates);
-        while self.grid.next(until.next_down()).is_some() {
-            self.rows.extend_from_slice(&self.rates[self.first..]);
+        while self.tape.next(until.next_down()).is_some() {
+            self.tape.record(&self.rates[self.first..]);
         }
     }
 
     /// Each output at the samples.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
-        let column = |place| self.grid.decimate(&self.rows, self.width(), place - self.first);
-        self.places.iter().copied().map(column).collect()
+        let filtered = |place| self.tape.filtered(place - self.first);
+        self.places.iter().copied().map(filtered).collect()
     }
 
     /// Force of the tyre on the wheel in z and x at the samples, N, and area of its contact, m².
     pub fn contact(&self) -> [Vec<f64>; 3] {
-        let of = |what: usize| {
-            let rows = self.grid.at_samples(&self.rows, self.width());
-            rows.map(move |row| row[row.len() - OF_CONTACT + what])
-        };
-        let area = |deflection| self.rolling.tyre.area(deflection);
-        [of(0).collect(), of(1).collect(), of(2).map(area).collect()]
-    }
-
-    /// Length of a record.
-    fn width(&self) -> usize {
-        self.rates.len() - self.first
+        let of = |what: usize| self.tape.plain(self.rates.len() - self.first - OF_CONTACT + what);
+        let area = |deflection: &f64| self.rolling.tyre.area(*deflection);
+        [of(0).to_vec(), of(1).to_vec(), of(2).iter().map(area).collect()]
     }
 }
 
@@ -97,7 +86,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
     fn accept(&mut self, step: &Step<'_>) {
         let smooth = step.has_rates();
-        while let Some(t) = self.grid.next(step.end) {
+        while let Some(t) = self.tape.next(step.end) {
             let record = &mut self.rates[self.first..];
             if smooth {
                 step.rates_at(t, self.first, record);
@@ -105,7 +94,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
                 step.at(t, &mut self.state);
                 observe(&self.rolling, t, &self.state, &mut self.rates);
             }
-            self.rows.extend_from_slice(&self.rates[self.first..]);
+            self.tape.record(&self.rates[self.first..]);
         }
     }
 

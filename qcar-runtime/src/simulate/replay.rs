@@ -2,7 +2,7 @@
 
 use super::failure::SimulateError;
 use super::recorded::Recorded;
-use super::sampling::{AntiAlias, Grid};
+use super::sampling::{AntiAlias, Grid, Tape};
 use super::settings::Settings;
 use crate::model::{Model, StateKind};
 use crate::solver::{Effort, Step, System};
@@ -49,6 +49,7 @@ pub fn replay<M: Model + ?Sized>(
     } else {
         AntiAlias::JUMPING
     };
+    let (states, width) = (about.states.len(), about.states.len() + about.outputs.len());
     let grid = Grid::new(recorded.rate(), recorded.samples(), oversampling);
     let span = (grid.start(), grid.end());
     let mut x = riding(model, recorded, span.0);
@@ -58,18 +59,14 @@ pub fn replay<M: Model + ?Sized>(
         recorded,
         inputs: vec![0.0; about.inputs.len()],
         leg: span.0,
-        grid,
-        rows: Vec::new(),
-        room: vec![0.0; about.states.len() + about.outputs.len()],
+        tape: Tape::new(grid, width),
+        room: vec![0.0; width],
     };
     let longest_step = 1.0 / recorded.rate();
     let effort = settings.integrate(about, &mut rig, span, (longest_step, &jumps), &mut x)?;
-    let (grid, rows, width) = (&rig.grid, &rig.rows, rig.room.len());
-    let state = |place: usize| grid.at_samples(rows, width).map(|row| row[place]).collect();
-    let states = about.states.len();
     Ok(Replay {
-        outputs: (states..width).map(|place| grid.decimate(rows, width, place)).collect(),
-        states: (0..states).map(state).collect(),
+        outputs: (states..width).map(|output| rig.tape.filtered(output)).collect(),
+        states: (0..states).map(|state| rig.tape.plain(state).to_vec()).collect(),
         effort,
     })
 }
@@ -96,10 +93,9 @@ struct Rig<'a, M: ?Sized> {
     inputs: Vec<f64>,
     /// When the present leg began, s: until its end, held inputs stay as they were then.
     leg: f64,
-    grid: Grid,
-    /// For each point of the fine grid, the state and behind it the outputs.
-    rows: Vec<f64>,
-    /// Room for one of them.
+    /// The states, and behind them the outputs.
+    tape: Tape,
+    /// Room for a point of it.
     room: Vec<f64>,
 }
 
@@ -114,12 +110,12 @@ impl<M: Model + ?Sized> System for Rig<'_, M> {
     }
 
     fn accept(&mut self, step: &Step<'_>) {
-        while let Some(t) = self.grid.next(step.end) {
+        while let Some(t) = self.tape.next(step.end) {
             let (x, y) = self.room.split_at_mut(step.start_state().len());
             step.at(t, x);
             self.recorded.at(t, self.leg, &mut self.inputs);
             self.model.outputs(&self.constants, x, &self.inputs, y);
-            self.rows.extend_from_slice(&self.room);
+            self.tape.record(&self.room);
         }
     }
 }

@@ -73,18 +73,16 @@ pub fn ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<Ride, SimulateError> {
-    let tyre = car.rolling_tyre();
-    drive.check(&tyre)?;
-    let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
-    let start = drive.start(&tyre).min(grid.start());
-    let (rolling, mut x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
-    let (static_deflection, traction) = (rolling.deflection(start, &x), rolling.traction);
-
-    let about = car.model.about();
-    let span = (drive.reaches(&tyre).max(start), grid.end());
-    let mut recorder = Recorder::new(rolling, grid, about);
+    let Departure {
+        rolling,
+        mut x,
+        span,
+        grid,
+    } = Departure::new(car, drive)?;
+    let (static_deflection, traction) = (rolling.deflection(span.0, &x), rolling.traction);
+    let mut recorder = Recorder::new(rolling, grid, car.model.about());
     recorder.rest(span.0, &x);
-    let effort = settings.integrate(about, &mut recorder, span, (drive.longest_step(&tyre), &[]), &mut x)?;
+    let effort = drive.integrate(car, settings, &mut recorder, span, &mut x)?;
     let [vertical, longitudinal, area] = recorder.contact();
     Ok(Ride {
         time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
@@ -97,6 +95,47 @@ pub fn ride<M: Model + ?Sized>(
         traction,
         effort,
     })
+}
+
+/// The state in which a ride ends, and what the integration cost. Nothing is recorded on the way.
+///
+/// # Errors
+/// As [`ride`].
+pub fn end_of_ride<M: Model + ?Sized>(
+    car: &Car<'_, M>,
+    drive: &Drive<'_>,
+    settings: &Settings,
+) -> Result<(Vec<f64>, Effort), SimulateError> {
+    let Departure {
+        rolling,
+        mut x,
+        span,
+        grid,
+    } = Departure::new(car, drive)?;
+    let mut unrecorded = Recorder::new(rolling, grid.without_points(), car.model.about());
+    let effort = drive.integrate(car, settings, &mut unrecorded, span, &mut x)?;
+    Ok((x, effort))
+}
+
+/// A car at rest on flat ground, about to move.
+struct Departure<'a, M: ?Sized> {
+    rolling: Rolling<'a, M>,
+    x: Vec<f64>,
+    /// When the road begins to move it, and when the record ends, s.
+    span: (f64, f64),
+    grid: Grid,
+}
+
+impl<'a, M: Model + ?Sized> Departure<'a, M> {
+    fn new(car: &Car<'a, M>, drive: &Drive<'a>) -> Result<Self, SimulateError> {
+        let tyre = car.rolling_tyre();
+        drive.check(&tyre)?;
+        let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
+        let start = drive.start(&tyre).min(grid.start());
+        let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
+        let span = (drive.reaches(&tyre).max(start), grid.end());
+        Ok(Self { rolling, x, span, grid })
+    }
 }
 
 /// The fewest samples while an obstacle passes through the contact patch that still show an impact.
@@ -120,6 +159,18 @@ impl Drive<'_> {
         } else {
             Ok(())
         }
+    }
+
+    fn integrate<M: Model + ?Sized>(
+        &self,
+        car: &Car<'_, M>,
+        settings: &Settings,
+        recorder: &mut Recorder<'_, M>,
+        span: (f64, f64),
+        x: &mut [f64],
+    ) -> Result<Effort, SimulateError> {
+        let longest_step = self.longest_step(&car.rolling_tyre());
+        settings.integrate(car.model.about(), recorder, span, (longest_step, &[]), x)
     }
 
     /// When the whole circle of the tyre stands before the first point of the road, s.

@@ -44,17 +44,20 @@ impl AntiAlias {
     /// Samples of a fine signal that begins [`AntiAlias::REACH`] samples before the first and ends as many after the
     /// last.
     pub fn decimate(&self, fine: &[f64]) -> Vec<f64> {
-        self.decimate_column(fine, 1, 0)
+        let samples = fine
+            .len()
+            .saturating_sub(2 * (self.taps.len() - 1))
+            .div_ceil(self.oversampling);
+        let phase = |phase| fine[phase..].iter().step_by(self.oversampling).copied().collect();
+        let phases: Vec<Vec<f64>> = (0..self.oversampling).map(phase).collect();
+        self.decimate_phases(|phase| &phases[phase], samples)
     }
 
-    /// The same for one column of rows of a `width`.
-    fn decimate_column(&self, rows: &[f64], width: usize, column: usize) -> Vec<f64> {
+    /// The same for a signal that stands phase by phase: points a sample apart are neighbours in memory, as a tap
+    /// weighs them.
+    fn decimate_phases<'a>(&self, phase: impl Fn(usize) -> &'a [f64], samples: usize) -> Vec<f64> {
         let (every, reach) = (self.oversampling, self.taps.len() - 1);
-        let samples = (rows.len() / width).saturating_sub(2 * reach).div_ceil(every);
-        // Points of one phase stand a sample apart, so that a tap weighs neighbours in memory.
-        let phase = |phase| rows[phase * width + column..].iter().step_by(every * width);
-        let phases: Vec<Vec<f64>> = (0..every).map(|k| phase(k).copied().collect()).collect();
-        let from = |point: usize| &phases[point % every][point / every..][..samples];
+        let from = |point: usize| &phase(point % every)[point / every..][..samples];
         let mut out: Vec<f64> = from(reach).iter().map(|y| self.taps[0] * y).collect();
         // At the distance of whole samples the taps vanish: of two points a sample, every other one.
         let taps = self.taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
@@ -79,6 +82,8 @@ struct Tap<'a> {
 }
 
 impl Loops for Tap<'_> {
+    type Result = ();
+
     #[inline(always)]
     fn run(self) {
         let beside = self.before.iter().zip(self.behind);
@@ -88,13 +93,12 @@ impl Loops for Tap<'_> {
     }
 }
 
-/// The fine grid of a recording, gone through step by step.
+/// The fine grid of a recording.
 pub(super) struct Grid {
     filter: AntiAlias,
     /// Between points, s.
     spacing: f64,
     samples: usize,
-    next: usize,
 }
 
 impl Grid {
@@ -104,13 +108,7 @@ impl Grid {
             filter: AntiAlias::new(oversampling),
             spacing: 1.0 / (rate * oversampling as f64),
             samples,
-            next: 0,
         }
-    }
-
-    /// Number of points.
-    pub fn points(&self) -> usize {
-        (self.samples - 1 + 2 * AntiAlias::REACH) * self.filter.oversampling + 1
     }
 
     /// Time of the first point, s.
@@ -123,32 +121,81 @@ impl Grid {
         self.time(self.points() - 1)
     }
 
-    /// The samples of one column of a row of `width` for each point.
-    pub fn decimate(&self, rows: &[f64], width: usize, column: usize) -> Vec<f64> {
-        self.filter.decimate_column(rows, width, column)
+    /// The same time without a point to be recorded.
+    pub fn without_points(self) -> Self {
+        Self { samples: 0, ..self }
     }
 
-    /// Of a row of `width` for each point, those at the samples.
-    pub fn at_samples<'a>(&self, rows: &'a [f64], width: usize) -> impl Iterator<Item = &'a [f64]> {
-        let first = AntiAlias::REACH * self.filter.oversampling;
-        rows.chunks(width)
-            .skip(first)
-            .step_by(self.filter.oversampling)
-            .take(self.samples)
+    /// Number of points.
+    fn points(&self) -> usize {
+        match self.samples {
+            0 => 0,
+            samples => (samples - 1 + 2 * AntiAlias::REACH) * self.filter.oversampling + 1,
+        }
     }
 
-    /// The time of the next point up to `end` (s), given once.
-    pub fn next(&mut self, end: f64) -> Option<f64> {
-        let time = self.time(self.next);
-        (self.next < self.points() && time <= end).then(|| {
-            self.next += 1;
-            time
-        })
+    /// The most points that stand a sample apart.
+    fn points_of_phase(&self) -> usize {
+        self.points().div_ceil(self.filter.oversampling)
     }
 
     fn time(&self, point: usize) -> f64 {
         let first = AntiAlias::REACH * self.filter.oversampling;
         (point as f64 - first as f64) * self.spacing
+    }
+}
+
+/// Signals recorded on a fine grid, point by point.
+pub(super) struct Tape {
+    grid: Grid,
+    /// The point to be recorded next.
+    next: usize,
+    /// Each phase of each signal, one behind the other.
+    tracks: Vec<f64>,
+}
+
+impl Tape {
+    /// An empty tape.
+    pub fn new(grid: Grid, signals: usize) -> Self {
+        let tracks = signals * grid.filter.oversampling;
+        Self {
+            next: 0,
+            tracks: vec![0.0; tracks * grid.points_of_phase()],
+            grid,
+        }
+    }
+
+    /// The time of the point to be recorded next, where there is one up to `end` (s).
+    pub fn next(&self, end: f64) -> Option<f64> {
+        let time = self.grid.time(self.next);
+        (self.next < self.grid.points() && time <= end).then_some(time)
+    }
+
+    /// Records that point: a value for each signal.
+    #[inline]
+    pub fn record(&mut self, values: &[f64]) {
+        let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
+        let first = self.next % every * length + self.next / every;
+        for (place, value) in self.tracks[first..].iter_mut().step_by(every * length).zip(values) {
+            *place = *value;
+        }
+        self.next += 1;
+    }
+
+    /// The samples of a signal through the filter.
+    pub fn filtered(&self, signal: usize) -> Vec<f64> {
+        let filter = &self.grid.filter;
+        filter.decimate_phases(|phase| self.track(signal, phase), self.grid.samples)
+    }
+
+    /// The samples of a signal as it is.
+    pub fn plain(&self, signal: usize) -> &[f64] {
+        &self.track(signal, 0)[AntiAlias::REACH..][..self.grid.samples]
+    }
+
+    fn track(&self, signal: usize, phase: usize) -> &[f64] {
+        let length = self.grid.points_of_phase();
+        &self.tracks[(signal * self.grid.filter.oversampling + phase) * length..][..length]
     }
 }
 

@@ -9,6 +9,7 @@ use super::control::Control;
 use super::events::{Crossing, LOOK_AHEAD, Watch};
 use super::fastest::{ITERATIONS, fastest_rate};
 use super::{After, Effort, Reason, Report, Step, System, all_finite, legs, shortest_step};
+use crate::vectors::{Loops, widest};
 
 /// What the adaptive integrator is held to.
 #[derive(Clone, Debug, PartialEq)]
@@ -63,6 +64,17 @@ impl DormandPrince {
     ///
     /// `breaks` are the ascending times at which the right-hand side jumps.
     pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
+        widest(Integration {
+            by: self,
+            system,
+            span,
+            breaks,
+            x,
+        })
+    }
+
+    #[inline(always)]
+    fn run<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
         self.effort = Effort::default();
         self.control = Control::new(self.settings.longest_step);
         self.make_room(system.signals());
@@ -89,6 +101,7 @@ impl DormandPrince {
     }
 
     /// Integrates over one smooth leg: why and when it stopped.
+    #[inline(always)]
     fn leg<S: System>(&mut self, system: &mut S, (start, end): (f64, f64), shortest: f64) -> (Reason, f64) {
         let mut t = start;
         let mut fresh = true;
@@ -195,6 +208,7 @@ impl DormandPrince {
     }
 
     /// Goes through the stages to `x_end`: the error over the tolerance, not a number where anything is not finite.
+    #[inline(always)]
     fn attempt<S: System>(&mut self, system: &mut S, t: f64, t_end: f64, h: f64) -> f64 {
         combine(&mut self.stage, &self.x, h, A2, [&self.k[0]]);
         self.evaluate(system, t + C[0] * h, 1);
@@ -231,6 +245,7 @@ impl DormandPrince {
     }
 
     /// The error estimate over the tolerance, root mean square.
+    #[inline(always)]
     fn measure(&mut self, h: f64) -> f64 {
         let n = self.x.len();
         let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
@@ -246,6 +261,7 @@ impl DormandPrince {
     }
 
     /// What the dense output of an accepted step needs beside its ends: its quartic, and means.
+    #[inline(always)]
     fn make_dense(&mut self) {
         let n = self.quartic.len();
         let [k0, _, k2, k3, k4, k5, k6] = self.k.each_ref().map(|k| &k[..n]);
@@ -257,6 +273,7 @@ impl DormandPrince {
     }
 
     /// Makes an accepted step the past, up to the first event that ends it: that event, with what follows.
+    #[inline(always)]
     fn settle<S: System>(
         &mut self,
         system: &mut S,
@@ -303,7 +320,26 @@ fn combine<const N: usize>(out: &mut [f64], x: &[f64], h: f64, a: [f64; N], k: [
     }
 }
 
+/// An integration with its arguments: the sums over all states gain by wide vectors.
+struct Integration<'a, S> {
+    by: &'a mut DormandPrince,
+    system: &'a mut S,
+    span: (f64, f64),
+    breaks: &'a [f64],
+    x: &'a mut [f64],
+}
+
+impl<S: System> Loops for Integration<'_, S> {
+    type Result = Report;
+
+    #[inline(always)]
+    fn run(self) -> Report {
+        self.by.run(self.system, self.span, self.breaks, self.x)
+    }
+}
+
 /// In lanes, so that no sum waits for all others.
+#[inline(always)]
 fn mean_square(v: &[f64]) -> f64 {
     let (chunks, rest) = v.as_chunks::<4>();
     let mut sums = [0.0; 4];
