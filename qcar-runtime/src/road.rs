@@ -153,6 +153,16 @@ impl Road {
         self.vertices.windows(2).filter(|w| w[0][0] == w[1][0]).map(|w| w[0][0])
     }
 
+    /// Where the ground turns sharply, m: steps, kinks, but not the small turns between the chords of a curve.
+    pub(crate) fn edges(&self) -> impl Iterator<Item = [f64; 2]> {
+        /// Sine of the least turn, either way.
+        const SHARP: f64 = 0.1;
+        let turn = |[a, b]: [[f64; 2]; 2]| a[0] * b[1] - a[1] * b[0];
+        let turns = self.segments.windows(2).map(move |w| turn([w[0].along, w[1].along]));
+        let sharp = turns.zip(&self.vertices).filter(|(turn, _)| turn.abs() > SHARP);
+        sharp.map(|(_, vertex)| *vertex)
+    }
+
     /// Refuses a run that would leave the described road.
     ///
     /// # Errors

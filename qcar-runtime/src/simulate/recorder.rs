@@ -84,6 +84,10 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
         self.rolling.pass_steps(t, x);
     }
 
+    fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
+        self.rolling.next_bend(t, x, dx, from)
+    }
+
     fn accept(&mut self, step: &Step<'_>) {
         let smooth = step.has_rates();
         while let Some(t) = self.tape.next(step.end) {

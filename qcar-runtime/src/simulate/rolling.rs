@@ -33,6 +33,8 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     piece: Cell<usize>,
     /// Up to where the road has no further vertical step, m, for a tyre that feels such a step at once.
     smooth_until: f64,
+    /// Where the road turns sharply. The force of a circle bends when its rim comes over one of these points.
+    edges: Vec<[f64; 2]>,
 }
 
 /// Places of the wheel's position and velocity, in z and, where it moves, in x.
@@ -75,6 +77,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             traction: 0.0,
             piece: Cell::new(0),
             smooth_until: f64::INFINITY,
+            edges: edges(tyre.geometry(), road),
         };
         let mut x = vec![0.0; about.states.len()];
         let scales: Vec<f64> = scales(about).collect();
@@ -153,6 +156,18 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
+    /// The first time after `from` at which the rim of the tyre comes over an edge of the road, seen from time `t`.
+    pub fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
+        let (wheel, radius) = (self.wheel(t, x), self.tyre.radius());
+        let acceleration = [self.wheel.x.map_or(0.0, |x| dx[x[1]]), dx[self.wheel.z[1]]];
+        let [behind, ahead] = [-2.0, 2.0].map(|radii| wheel.position[0] + radii * radius);
+        let near = self.edges.partition_point(|edge| edge[0] < behind)..;
+        let near = self.edges[near].iter().take_while(|edge| edge[0] <= ahead);
+        let crossings = near.flat_map(|edge| crossings(&wheel, acceleration, radius, edge));
+        let times = crossings.map(|after| t + after).filter(|&time| time > from);
+        times.fold(f64::INFINITY, f64::min)
+    }
+
     /// The wheel's centre: above x = 0 at t = 0, and `x_wheel` ahead of a car of constant speed.
     #[inline]
     fn wheel(&self, t: f64, x: &[f64]) -> Wheel {
@@ -179,4 +194,26 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         contact.force[1] += self.traction;
         contact
     }
+}
+
+fn edges(geometry: Geometry, road: &Road) -> Vec<[f64; 2]> {
+    match geometry {
+        Geometry::Area | Geometry::Radial => road.edges().collect(),
+        // A point feels a step as an event, and nothing else before it is on it.
+        Geometry::Point => Vec::new(),
+    }
+}
+
+/// After which times the rim of a circle comes over a point and leaves it, s; not numbers where it does not.
+fn crossings(wheel: &Wheel, acceleration: [f64; 2], radius: f64, point: &[f64; 2]) -> [f64; 2] {
+    let ([x, z], [vx, vz], [ax, az]) = (wheel.position, wheel.velocity, acceleration);
+    let (dx, dz) = (point[0] - x, point[1] - z);
+    // At constant velocity the distance squared is a parabola of time; the acceleration is good for a correction.
+    let (squared, along) = (vx * vx + vz * vz, dx * vx + dz * vz);
+    let root = (along * along - squared * (dx * dx + dz * dz - radius * radius)).sqrt();
+    [-root, root].map(|root| {
+        let after = (along + root) / squared;
+        let (x, z) = (dx - after * vx, dz - after * vz);
+        after - 0.5 * after * after * (x * ax + z * az) / (x * vx + z * vz)
+    })
 }

@@ -113,7 +113,7 @@ impl DormandPrince {
             if self.effort.accepted + self.effort.rejected >= self.settings.most_steps {
                 return (Reason::TooManySteps, t);
             }
-            let (t_end, h) = self.control.next(t, end);
+            let (t_end, h) = self.control.next(t, end.min(self.bend(system, t)));
             let error = self.attempt(system, t, t_end, h);
             if !self.control.judge(error, h) {
                 self.effort.rejected += 1;
@@ -159,6 +159,12 @@ impl DormandPrince {
         self.watch
             .begin(system, t, LOOK_AHEAD * self.control.step, &self.x, &self.k[0]);
         true
+    }
+
+    /// Where the next step should end at the latest, so that no bend is inside it but for one right at its beginning.
+    fn bend<S: System>(&self, system: &S, t: f64) -> f64 {
+        let from = t + BEHIND * self.control.step;
+        system.next_bend(t, &self.x, &self.k[0][..self.x.len()], from)
     }
 
     /// The longest step that damps the fastest mode as the motion begins; not a number where there is none.
@@ -359,6 +365,9 @@ fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
 
 /// Several events may happen at one time, but so many in a row are one that comes back.
 const MOST_AT_ONCE: usize = 4;
+
+/// A bend that is nearer than this part of a step counts as behind: bends are foreseen no better.
+const BEHIND: f64 = 0.05;
 
 /// Modes of up to so much a step are damped, with a margin to where they are not, 5.7.
 const STABLE: f64 = 5.2;
