@@ -26,6 +26,9 @@ pub struct Step<'a> {
     pub(super) error: f64,
 }
 
+/// An error so far below the tolerance shows a smooth step.
+const SMOOTH: f64 = 0.3;
+
 impl<'a> Step<'a> {
     /// The state where the step begins.
     pub fn start_state(&self) -> &'a [f64] {
@@ -74,7 +77,7 @@ impl<'a> Step<'a> {
     /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step. A bend makes the
     /// tolerance shorten the step, and the same error in a shorter step is one of a signal that is further off.
     pub fn has_rates(&self) -> bool {
-        self.error < 1.0
+        self.error < SMOOTH
     }
 
     /// The same step, ended at `t` by an event.
