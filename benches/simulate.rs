@@ -5,7 +5,7 @@ mod cleat;
 use cleat::{car, cleat, drive, parameters};
 use divan::Bencher;
 use qcar_runtime::progress::UNTOLD;
-use qcar_runtime::simulate::{Settings, ride, rides};
+use qcar_runtime::simulate::{Settings, end_of_ride, ride, rides};
 
 fn main() {
     divan::main();
@@ -17,6 +17,14 @@ fn cleat_run(bencher: Bencher<'_, '_>) {
     let (parameters, road) = (parameters(), cleat(0.03));
     let (car, drive) = (car(&parameters), drive(&road, 30.0 / 3.6));
     bencher.bench_local(|| ride(&car, &drive, &Settings::default()).expect("it rides"));
+}
+
+/// The same without a record: what other programs' figures are of.
+#[divan::bench]
+fn cleat_run_unrecorded(bencher: Bencher<'_, '_>) {
+    let (parameters, road) = (parameters(), cleat(0.03));
+    let (car, drive) = (car(&parameters), drive(&road, 30.0 / 3.6));
+    bencher.bench_local(|| end_of_ride(&car, &drive, &Settings::default()).expect("it rides"));
 }
 
 /// 20, 30, 40 km/h over 10, 20, 30, 40 mm on all cores.

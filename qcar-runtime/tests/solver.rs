@@ -482,6 +482,50 @@ fn signals_come_with_smooth_steps() {
     assert_eq!(fixed.smooth, 0, "a method without an estimate of its error cannot know");
 }
 
+/// A mass on a damper that is pushed by a force with a bend, foreseen or not.
+struct Bent {
+    foreseen: bool,
+    ends: Vec<f64>,
+}
+
+const BEND: f64 = 0.437;
+
+impl System for Bent {
+    fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
+        dx[0] = (3.0 * t).sin() + 20.0 * (t - BEND).max(0.0) - x[0];
+    }
+
+    fn next_bend(&self, _: f64, _: &[f64], _: &[f64], from: f64) -> f64 {
+        if self.foreseen && from < BEND {
+            BEND
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn accept(&mut self, step: &Step<'_>) {
+        self.ends.push(step.end);
+    }
+}
+
+#[test]
+fn a_step_ends_at_a_bend_that_is_foreseen_and_no_step_fails_over_it() {
+    let run = |foreseen| {
+        let (mut bent, mut x) = (Bent { foreseen, ends: vec![] }, [0.0]);
+        let report = DormandPrince::new(settings(1e-8, 1, 0.2), 0).integrate(&mut bent, (0.0, 1.0), &[], &mut x);
+        assert_eq!(report.reason, Reason::End);
+        (bent.ends, report.effort, x[0])
+    };
+    let ((ends, foreseen, x), (_, unforeseen, same)) = (run(true), run(false));
+    assert!(ends.contains(&BEND), "{ends:?}");
+    assert!(
+        foreseen.rejected == 0 && unforeseen.rejected > 0,
+        "{foreseen:?} {unforeseen:?}"
+    );
+    assert!(foreseen.evaluations < unforeseen.evaluations);
+    assert!((x - same).abs() < 1e-7);
+}
+
 /// A driven wheel hop with a hardening spring and a digressive damper.
 fn nonlinear(t: f64, x: &[f64], dx: &mut [f64]) {
     dx[0] = x[1];

@@ -217,3 +217,42 @@ fn crossings(wheel: &Wheel, acceleration: [f64; 2], radius: f64, point: &[f64; 2
         after - 0.5 * after * after * (x * ax + z * az) / (x * vx + z * vz)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_rim_comes_over_a_point_when_it_was_foreseen() {
+        let wheel = Wheel {
+            position: [1.2, 0.29],
+            velocity: [8.0, -0.3],
+        };
+        let (radius, acceleration, point) = (0.32, [5.0, 40.0], [1.503, 0.03]);
+        let distance = |after: f64| {
+            let at = |axis: usize| {
+                wheel.position[axis] + after * (wheel.velocity[axis] + 0.5 * after * acceleration[axis]) - point[axis]
+            };
+            at(0).hypot(at(1))
+        };
+        let [over, left] = crossings(&wheel, acceleration, radius, &point);
+        assert!(0.0 < over && over < left, "{over} {left}");
+        assert!((distance(over) - radius).abs() < 1e-5, "{}", distance(over));
+        let out_of_reach = crossings(&wheel, acceleration, radius, &[1.503, -0.1]);
+        assert!(out_of_reach.iter().all(|after| after.is_nan()));
+    }
+
+    #[test]
+    fn edges_are_the_ends_of_steps_and_not_the_chords_of_curves() {
+        let cleat = Road::from_points(&[
+            [0.0, 0.0],
+            [1.5, 0.0],
+            [1.5, 0.03],
+            [1.9, 0.005],
+            [2.0, 0.0],
+            [9.0, 0.0],
+        ]);
+        let edges = edges(Geometry::Area, &cleat.expect("a road"));
+        assert_eq!(edges, [[1.5, 0.0], [1.5, 0.03]]);
+    }
+}
