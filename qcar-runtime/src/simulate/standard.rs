@@ -18,9 +18,6 @@ pub struct Standard {
 const SPEEDS: [f64; 3] = [20.0 / 3.6, 30.0 / 3.6, 40.0 / 3.6];
 /// m.
 const HEIGHTS: [f64; 4] = [0.01, 0.02, 0.03, 0.04];
-/// The straight part of the descent behind the step, and its return to the flat, m: those of a common test track.
-const DESCENT: f64 = 0.4;
-const BLEND: f64 = 0.17;
 /// Flat road before the cleat, m.
 const RUN_IN: f64 = 1.5;
 
@@ -57,7 +54,8 @@ impl Standard {
 
 /// A cleat on a road of a length (m).
 fn road(height: f64, length: f64) -> Result<Road, RoadError> {
-    let (descent, blend) = (DESCENT, BLEND);
+    // The straight part of the descent behind the step, and its return to the flat: those of a common test track.
+    let (descent, blend) = (0.4, 0.17);
     let cleat = Road::from_shape(&Shape::Cleat { height, descent, blend }, RUN_IN)?;
     let end = cleat.extent()[1].max(length);
     let points = cleat.vertices().iter().copied().chain([[end, 0.0]]);

@@ -89,15 +89,11 @@ fn summary(of: &Fitted) -> String {
 fn parameters(of: &[ParameterFit]) -> String {
     let mut table = Table::new(["parameter", "unit", "start", "value", "stderr", "stderr_%", "remark"]);
     for parameter in of {
-        table.row(vec![
-            parameter.name.clone(),
-            parameter.unit.clone(),
-            number(parameter.start, 5),
-            number(parameter.value, 5),
-            or_dash(parameter.stderr, 2),
-            or_dash(parameter.relative_stderr.map(|part| 100.0 * part), 2),
-            remark(parameter),
-        ]);
+        let names = [parameter.name.clone(), parameter.unit.clone()];
+        let values = [parameter.start, parameter.value].map(|value| number(value, 5));
+        let percent = parameter.relative_stderr.map(|part| 100.0 * part);
+        let errors = [parameter.stderr, percent].map(|error| or_dash(error, 2));
+        table.row([&names[..], &values, &errors, &[remark(parameter)]].concat());
     }
     table.text()
 }
