@@ -28,20 +28,20 @@ function discovery(data) {
   };
 }
 
-function gapTable({ gap, by_channel: channels }) {
+function gapTable({ gap, by_channel: channels, effects }) {
   const rows = [
     ['fitted runs', gap.fit],
     ['held-out runs', gap.held_out],
     ...Object.entries(channels).map(([name, own]) => [`sensor ${words(name)}`, own]),
   ]
     .filter(([, own]) => own.before !== null)
-    .map(([name, own]) => [name, number(own.before), number(own.after)]);
+    .map(([name, own]) => [name, number(own.before), ...(effects.length ? [number(own.after)] : [])]);
   return table(
     'Gap over its uncertainty',
     [
       ['', 'text'],
       ['before', 'number'],
-      ['after', 'number'],
+      ...(effects.length ? [['after', 'number']] : []),
     ],
     rows,
   );

@@ -6,7 +6,7 @@ function verdict(data) {
     'verdict',
     'Verdict',
     h('p', { class: 'lead' }, lead(data)),
-    h('p', {}, consequence(discover, summary)),
+    h('p', {}, consequence(discover, summary, data.kappa[0])),
     h('div', { class: 'answers' }, [
       fitAnswer(data),
       cleatAnswer(data),
@@ -23,7 +23,7 @@ function lead({ summary, discover }) {
   return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
 }
 
-function consequence(discover, { verdict: kind }) {
+function consequence(discover, { verdict: kind }, likely) {
   const judged =
     discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
   const [which, gap] = judged;
@@ -31,6 +31,9 @@ function consequence(discover, { verdict: kind }) {
   const rival = discover.effects[0] && discover.effects[0].rivals[0];
   const next = rival
     ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${number(rival.behind, 2)} behind in the sum of squares, scaled to the scatter that is left.`
+    : '';
+  const place = likely
+    ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of what it leaves of the sweeps.`
     : '';
   switch (kind) {
     case 'none':
@@ -40,7 +43,7 @@ function consequence(discover, { verdict: kind }) {
     case 'class':
       return `On ${which} runs the model leaves a gap of ${before}. Several effects close it alike, and these data cannot tell them apart.`;
     default:
-      return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.`;
+      return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.${place}`;
   }
 }
 

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::gather::{Study, Track};
 use super::rig::Ratio;
-use crate::table::{Table, number};
+use crate::table::{Table, number, or_dash};
 use crate::verbs::discover::render::sentence;
 use crate::verbs::simulate::compared::Sizes;
 
@@ -144,13 +144,18 @@ fn median(of: Option<qcar_runtime::compare::Summary>) -> String {
 
 fn gaps(of: &Study) -> String {
     let (before, after) = (&of.answer.discovery.before.gap, &of.answer.discovery.after.gap);
+    let changed = !of.answer.discovery.findings.is_empty();
     let mut table = Table::new(["gap_over_noise", "before", "after"]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),
     ] {
         if before.is_finite() {
-            table.row(vec![name.into(), number(before, 3), number(after, 3)]);
+            table.row(vec![
+                name.into(),
+                number(before, 3),
+                or_dash(changed.then_some(after), 3),
+            ]);
         }
     }
     table.text()
