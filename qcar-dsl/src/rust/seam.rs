@@ -103,6 +103,7 @@ impl Block<{rows}> for {name}<'_> {{
 }
 
 const ROLLING: &str = "
+    #[inline]
     fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
         let mut force = [0.0];
         straight::contact_force(fixed(constants), fixed(x), s, v, &mut force);

@@ -176,8 +176,8 @@ impl Tape {
     pub fn record(&mut self, values: &[f64]) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
         let first = self.next % every * length + self.next / every;
-        for (place, value) in self.tracks[first..].iter_mut().step_by(every * length).zip(values) {
-            *place = *value;
+        for (track, value) in self.tracks.chunks_exact_mut(every * length).zip(values) {
+            track[first] = *value;
         }
         self.next += 1;
     }

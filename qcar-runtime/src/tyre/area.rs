@@ -29,17 +29,14 @@ pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel, piece: &Cell<usize>
         centre: wheel.position,
         radius: tyre.radius,
     };
-    if road.carries(piece.get(), &circle) {
-        return straight(tyre, wheel, &Line::new(road.segment(piece.get()), &circle));
+    if !road.carries(piece.get(), &circle) {
+        let (first, last) = candidates(road, &circle)?;
+        piece.set(last);
+        if first < last {
+            return general(tyre, &gather(road, &circle, wheel.velocity, (first, last)));
+        }
     }
-    let (first, last) = candidates(road, &circle)?;
-    piece.set(last);
-    if first == last {
-        let line = Line::new(road.segment(first), &circle);
-        straight(tyre, wheel, &line)
-    } else {
-        general(tyre, &gather(road, &circle, wheel.velocity, (first, last)))
-    }
+    straight(tyre, wheel, &Line::new(road.segment(piece.get()), &circle))
 }
 
 /// The overlap of a circle with a road.
@@ -53,7 +50,7 @@ pub(super) fn overlap(radius: f64, road: &Road, wheel: &Wheel) -> Overlap {
 }
 
 /// On one straight piece of road the deflection is seen without a detour over the area.
-#[inline]
+#[inline(always)]
 fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
     let clip = line.clip()?;
     let (from, to) = (line.at(clip.from), line.at(clip.to));
@@ -65,6 +62,7 @@ fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
     Some(with_rates(tyre, tyre.radius - line.distance, line.frame().1, parts))
 }
 
+#[inline(never)]
 fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
     if overlap.area <= 0.0 {
         return None;
@@ -89,6 +87,7 @@ fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], parts: [Part; 2
     }
 }
 
+#[inline(never)]
 fn gather(road: &Road, circle: &Circle, velocity: [f64; 2], range: (usize, usize)) -> Overlap {
     let mut sweeps = Sweeps::new(circle.radius, velocity);
     let (mut area, mut moment, mut count) = (0.0, [0.0; 2], 0);
