@@ -171,7 +171,7 @@ impl Tyre {
     /// As [`Tyre::touch`], with a memory of the piece of road that was last under the wheel.
     ///
     /// Where that piece still is all that the circle is over, which is most of the time, nothing is searched for.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn touch_near(&self, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
         match self.geometry {
             Geometry::Area => area::touch(self, road, wheel, piece),

@@ -55,7 +55,7 @@ pub fn function(signature: &Signature, program: &Program) -> String {
 fn caller(signature: &Signature, cut: &Pieces) -> String {
     let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
     let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, operations(cut.program), signature.lines) + inline(signature.lines, true);
+    let mut text = doc(&signature.doc, operations(cut.program), signature.lines) + inline(signature, true);
     let arguments = signature
         .arguments
         .iter()
@@ -87,11 +87,13 @@ fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) 
     format!("pub fn {name}({}) {{\n", arguments.join(", "))
 }
 
-/// The code over lines is inlined into one function for each instruction set, as loops one after the other; any other
-/// piece stays a function of its own, since inlined again they would be as long as the whole.
-fn inline(lines: bool, whole: bool) -> &'static str {
-    match (lines, whole) {
+/// The code over lines is inlined into one function for each instruction set, as loops one after the other, and what
+/// runs thousands of times in a ride into what asks for it; any other piece stays a function of its own, since inlined
+/// again they would be as long as the whole.
+fn inline(signature: &Signature, whole: bool) -> &'static str {
+    match (signature.lines, whole) {
         (true, _) => "#[inline(always)]\n",
+        (false, true) if signature.name == "rolling_derivative" => "#[inline]\n",
         (false, true) => "",
         (false, false) => "#[inline(never)]\n",
     }
@@ -145,13 +147,13 @@ impl<'a> Printer<'a> {
                 doc(&self.signature.doc, count, *lines),
                 heading(name, self.arguments(), *lines, results),
             );
-            return doc + inline(*lines, true) + &heading + &self.body();
+            return doc + inline(self.signature, true) + &heading + &self.body();
         }
         let number = self.piece + 1;
         let kept = format!("kept: &mut {}", array(*lines, self.cut.kept.len()));
         let arguments = self.arguments().into_iter().chain([kept]).collect();
         doc(&[format!("Piece {number} of [`{name}`].")], count, *lines)
-            + inline(*lines, false)
+            + inline(self.signature, false)
             + &heading(&format!("{name}_{number}"), arguments, *lines, results)
             + &self.body()
     }

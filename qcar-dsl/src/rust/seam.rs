@@ -110,6 +110,7 @@ const ROLLING: &str = "
         force[0]
     }
 
+    #[inline]
     fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, dx: &mut [f64]) {
         straight::rolling_derivative(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(dx));
     }

@@ -4,6 +4,7 @@ use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
 use crate::model::{About, Contact, Model};
 use crate::solver::{After, Event, Step, System};
+use crate::vectors::{Loops, widest};
 
 /// A rolling model with its records.
 pub(super) struct Recorder<'a, M: ?Sized> {
@@ -73,7 +74,16 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
 
 impl<M: Model + ?Sized> System for Recorder<'_, M> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
-        self.last = (t, observe(&self.rolling, t, x, dx));
+        let rolling = &self.rolling;
+        self.last = (
+            t,
+            widest(Observation {
+                rolling,
+                t,
+                x,
+                rates: dx,
+            }),
+        );
     }
 
     fn signals(&self) -> usize {
@@ -128,8 +138,25 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 }
 
+/// An evaluation, for the instructions of this machine.
+struct Observation<'a, 'b, M: ?Sized> {
+    rolling: &'a Rolling<'b, M>,
+    t: f64,
+    x: &'a [f64],
+    rates: &'a mut [f64],
+}
+
+impl<M: Model + ?Sized> Loops for Observation<'_, '_, M> {
+    type Result = bool;
+
+    #[inline(always)]
+    fn run(self) -> bool {
+        observe(self.rolling, self.t, self.x, self.rates)
+    }
+}
+
 /// Derivative and signals at time `t`, and whether the tyre is on the ground.
-#[inline]
+#[inline(always)]
 fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], rates: &mut [f64]) -> bool {
     let (dx, signals) = rates.split_at_mut(x.len());
     let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);

@@ -113,7 +113,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
 
     /// `dx/dt` and, where there is room for them, the outputs of the model at time `t`, and the contact that they stem
     /// from; none in the air.
-    #[inline]
+    #[inline(always)]
     pub fn motion(&self, t: f64, x: &[f64], dx: &mut [f64], y: &mut [f64]) -> Option<Contact> {
         let contact = self.touch(t, x).map(|touch| self.contact(Some(&touch), x));
         let driven = self.driven(contact.unwrap_or_default());
@@ -129,7 +129,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     }
 
     /// The contact of the tyre with the road at time `t`.
-    #[inline]
+    #[inline(always)]
     pub fn touch(&self, t: f64, x: &[f64]) -> Option<Touch> {
         let mut wheel = self.wheel(t, x);
         // Before a step has become an event, the solver looks ahead as if there were none.

@@ -23,7 +23,7 @@ pub struct Overlap {
 }
 
 /// The contact by area.
-#[inline]
+#[inline(always)]
 pub(super) fn touch(tyre: &Tyre, road: &Road, wheel: &Wheel, piece: &Cell<usize>) -> Option<Touch> {
     let circle = Circle {
         centre: wheel.position,
