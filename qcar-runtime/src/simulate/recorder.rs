@@ -75,15 +75,13 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
 impl<M: Model + ?Sized> System for Recorder<'_, M> {
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]) {
         let rolling = &self.rolling;
-        self.last = (
+        let grounded = widest(Observation {
+            rolling,
             t,
-            widest(Observation {
-                rolling,
-                t,
-                x,
-                rates: dx,
-            }),
-        );
+            x,
+            rates: dx,
+        });
+        self.last = (t, grounded);
     }
 
     fn signals(&self) -> usize {
