@@ -58,6 +58,10 @@ const SIDE: f64 = 0.015;
 /// way out by sides that no car has.
 const MOST: f64 = 3.0;
 
+/// How far a parameter strays from where a search begins for next to nothing: a factor of ten, or the whole of a range
+/// that reaches zero. What a part of the evidence hardly sees stays where all of it looks next.
+const STRAY: f64 = std::f64::consts::LN_10;
+
 impl Refit {
     /// Standard errors of the free parameters.
     pub fn stderr(&self) -> Vec<f64> {
@@ -140,6 +144,18 @@ const ROUNDS: usize = 2;
 /// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
 const TO_SETTLE: usize = 20;
 
+impl Free {
+    /// How far it is from its start, in units of [`STRAY`], and the derivative of that.
+    fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
+        if self.lower > 0.0 {
+            ((value / start.max(self.lower)).ln() / STRAY, 1.0 / (value * STRAY))
+        } else {
+            let width = self.upper - self.lower;
+            ((value - start) / width, 1.0 / width)
+        }
+    }
+}
+
 /// True for a run that records one side of the car.
 fn of_one_side(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Cleat(_))
@@ -177,6 +193,8 @@ struct Posterior<'a> {
     nuisance: Nuisance,
     /// Of the sensors' errors, then of the factors of the recorded side, where there is one.
     sigmas: Vec<f64>,
+    /// Where the search began.
+    start: Vec<f64>,
     residuals: usize,
     /// Why the model cannot say anything of the evidence at all.
     refused: Option<PredictError>,
@@ -195,6 +213,7 @@ impl<'a> Posterior<'a> {
             free: free.to_vec(),
             evidence,
             sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
+            start: Vec::new(),
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
@@ -219,6 +238,7 @@ impl<'a> Posterior<'a> {
             lower: lower.collect(),
             upper: upper.collect(),
         };
+        self.start = start.to_vec();
         let outcome = minimize(self, start, &bounds, &options);
         self.refused.take().map_or(Ok(outcome), Err)
     }
@@ -227,7 +247,12 @@ impl<'a> Posterior<'a> {
     fn refit(&mut self, outcome: Outcome) -> Refit {
         let count = self.free.len();
         let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
-        let information = Information::new(&outcome.jacobian, &inside);
+        // Not knowing where a parameter is tells nothing of where it is.
+        let told = outcome
+            .jacobian
+            .rows(0, self.residuals + self.sigmas.len())
+            .into_owned();
+        let information = Information::new(&told, &inside);
         self.move_to(&outcome.x);
         Refit {
             values: self.values.clone(),
@@ -300,6 +325,8 @@ impl<'a> Posterior<'a> {
         }
         let errors = x[self.free.len()..].iter().zip(&self.sigmas);
         rows.extend(errors.map(|(error, sigma)| error / sigma));
+        let strays = self.free.iter().zip(x.iter().zip(&self.start));
+        rows.extend(strays.map(|(free, (&x, &start))| free.strayed(x, start).0));
         residual.copy_from_slice(&rows);
         columns
     }
@@ -360,7 +387,7 @@ impl Problem for Posterior<'_> {
     }
 
     fn residuals(&self) -> usize {
-        self.residuals + self.sigmas.len()
+        self.residuals + self.sigmas.len() + self.free.len()
     }
 
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
@@ -368,8 +395,9 @@ impl Problem for Posterior<'_> {
         for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
             into.fill(0.0);
             into[..column.len()].copy_from_slice(column);
-            if let Some(k) = k.checked_sub(self.free.len()) {
-                into[self.residuals + k] = 1.0 / self.sigmas[k];
+            match k.checked_sub(self.free.len()) {
+                Some(k) => into[self.residuals + k] = 1.0 / self.sigmas[k],
+                None => into[self.residuals + self.sigmas.len() + k] = self.free[k].strayed(x[k], self.start[k]).1,
             }
         }
     }
