@@ -145,6 +145,20 @@ fn a_progressive_spring_bends_the_middle_of_the_bounce_curve() {
     assert!(error < 2.0, "{error} N");
 }
 
+/// The rig is slow: an inerter pushes nothing, whether it couples the wheel with the body or with a mass between.
+#[test]
+fn an_inerter_is_not_felt_on_a_slow_rig() {
+    for axle in ["axle_c_rigid_tm", "axle_c"] {
+        let folder = tempfile::tempdir().unwrap();
+        let campaign = campaign(folder.path(), "bounce", &cycle(0.08, |x| SPRING * x));
+        let bench = bench(axle).with("inerter", "damper", None).unwrap();
+        let evidence = Evidence::from_campaign(&campaign, bench.model().about()).unwrap();
+        let values = values(bench.model(), &[("inertance", 20.0)]);
+        let error = worst(bench.model(), &values, &evidence);
+        assert!(error < 0.1, "{axle}: {error} N");
+    }
+}
+
 #[test]
 fn the_longitudinal_curve_sees_bushing_and_sub_frame_in_series() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,12 +31,16 @@ pub struct Bench {
     /// Position and velocity of the wheel.
     wheel: usize,
     wheel_speed: usize,
+    /// Velocity of the body.
+    held_speed: usize,
     /// The force on the wheel.
     handle: usize,
     /// The ground under the wheel, which goes with it: the force of the tyre is none of the rig's.
     ground: Vec<(usize, Quantity)>,
     between: Vec<Between>,
     slopes: Vec<Slope>,
+    /// Those in the row of the wheel.
+    of_wheel: Vec<Slope>,
 }
 
 /// A state that the rig does not prescribe.
@@ -50,6 +54,7 @@ struct Between {
 struct Slope {
     /// Its place among the model's nonzeros.
     entry: usize,
+    /// Its row and column among what is between.
     row: usize,
     column: usize,
     /// Whether it belongs to the velocity of its column.
@@ -70,6 +75,7 @@ impl Bench {
         };
         let held = called(StateKind::Position, HELD)?;
         let wheel = called(StateKind::Position, MOVED)?;
+        let wheel_speed = called(StateKind::Velocity, MOVED)?;
         let positions = along(StateKind::Position).filter(|(place, _)| ![wheel, held].contains(place));
         let of_mass = |(place, state): (usize, &crate::model::State)| Between {
             place,
@@ -89,10 +95,12 @@ impl Bench {
             });
         Some(Self {
             wheel,
-            wheel_speed: called(StateKind::Velocity, MOVED)?,
+            wheel_speed,
+            held_speed: called(StateKind::Velocity, HELD)?,
             handle: about.inputs.iter().position(|input| is_force(input.kind))?,
             ground: ground.collect(),
-            slopes: slopes(about, &between),
+            slopes: slopes(about, &between, |row| between.iter().position(|b| b.row() == row)),
+            of_wheel: slopes(about, &between, |row| (row == wheel_speed).then_some(0)),
             between,
         })
     }
@@ -117,9 +125,8 @@ impl Bench {
     }
 }
 
-/// What couples the states between.
-fn slopes(about: &About, between: &[Between]) -> Vec<Slope> {
-    let row = |state: usize| between.iter().position(|b| b.row() == state);
+/// How the states between move what is in some rows of the model.
+fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usize>) -> Vec<Slope> {
     let column = |state: usize| {
         let of_speed = between.iter().position(|b| b.speed == Some(state));
         let of_place = between.iter().position(|b| b.place == state);
@@ -150,8 +157,8 @@ struct Drive<'a> {
     model: &'a dyn Model,
     p: &'a [f64],
     constants: Vec<f64>,
-    /// Acceleration of the wheel for a force of one.
-    of_unit: f64,
+    /// What a force of one on the wheel accelerates, through inerters more than the wheel.
+    of_unit: Vec<f64>,
     x: Vec<f64>,
     u: Vec<f64>,
     dx: Vec<f64>,
@@ -168,15 +175,22 @@ impl<'a> Drive<'a> {
             model,
             p,
             constants,
-            of_unit: 1.0,
+            of_unit: vec![0.0; about.states.len()],
             x: vec![0.0; about.states.len()],
             u: vec![0.0; about.inputs.len()],
             dx: vec![0.0; about.states.len()],
             nonzeros: vec![0.0; about.matrices.len()],
         };
-        let alone = drive.pull();
+        drive.move_on();
+        let alone = drive.dx.clone();
         drive.u[bench.handle] = 1.0;
-        drive.of_unit = drive.pull() - alone;
+        drive.move_on();
+        drive.of_unit = drive
+            .dx
+            .iter()
+            .zip(alone)
+            .map(|(pushed, alone)| pushed - alone)
+            .collect();
         drive.u[bench.handle] = 0.0;
         drive
     }
@@ -196,13 +210,19 @@ impl<'a> Drive<'a> {
 
     /// What the rig pushes with.
     fn force(&mut self) -> f64 {
-        -self.pull() / self.of_unit
+        self.move_on();
+        self.push()
     }
 
-    /// The acceleration of the wheel if it were let go.
-    fn pull(&mut self) -> f64 {
-        self.move_on();
-        self.dx[self.bench.wheel_speed]
+    /// The force that holds the wheel, by what it would do if it were let go.
+    fn push(&self) -> f64 {
+        -self.dx[self.bench.wheel_speed] / self.wheel_of_unit()
+    }
+
+    /// The acceleration of the wheel for a force of one. The body is let go too: what inerters pass on from it to the wheel
+    /// is what they pass on from the wheel to it.
+    fn wheel_of_unit(&self) -> f64 {
+        self.of_unit[self.bench.wheel_speed] - self.of_unit[self.bench.held_speed]
     }
 
     fn move_on(&mut self) {
@@ -264,9 +284,9 @@ impl<'a> Drive<'a> {
     /// What is missing until each of what is between has gone its step: no force on a mass is left then.
     fn missing(&mut self, last: &[f64], h: f64) -> DVector<f64> {
         self.set_speeds(last, h);
-        self.move_on();
+        let push = self.force();
         let missing = |(b, last): (&Between, &f64)| match b.speed {
-            Some(speed) => -self.dx[speed],
+            Some(speed) => -self.dx[speed] - push * self.of_unit[speed],
             None => h * self.dx[b.place] + last - self.x[b.place],
         };
         DVector::from_iterator(last.len(), self.bench.between.iter().zip(last).map(missing))
@@ -277,9 +297,15 @@ impl<'a> Drive<'a> {
         self.model.matrices(self.p, &self.x, &self.u, &mut self.nonzeros);
         let between = &self.bench.between;
         let mut slope = DMatrix::zeros(between.len(), between.len());
+        let along = |of: &Slope| self.nonzeros[of.entry] * if of.of_speed { 1.0 / h } else { 1.0 };
         for of in &self.bench.slopes {
-            let of_place = if of.of_speed { 1.0 / h } else { 1.0 };
-            slope[(of.row, of.column)] += self.nonzeros[of.entry] * of_place;
+            slope[(of.row, of.column)] += along(of);
+        }
+        for (row, b) in between.iter().enumerate() {
+            let share = b.speed.map_or(0.0, |speed| self.of_unit[speed] / self.wheel_of_unit());
+            for of in &self.bench.of_wheel {
+                slope[(row, of.column)] -= share * along(of);
+            }
         }
         for (row, _) in between.iter().enumerate().filter(|(_, b)| b.speed.is_none()) {
             slope.row_mut(row).scale_mut(-h);
