@@ -77,15 +77,15 @@ impl Gap {
 }
 
 impl Gap {
-    /// The gap of each run; NaN of one without series.
-    pub fn by_run(&self, evidence: &Evidence) -> Vec<f64> {
+    /// The gap of each run, and the sum of the squares of its residuals; NaN and zero of one without series.
+    pub fn by_run(&self, evidence: &Evidence) -> Vec<(f64, f64)> {
         let of_run = |run: usize| {
-            let series = evidence
-                .series
-                .iter()
-                .zip(&self.residuals)
-                .filter(move |(s, _)| s.run == run);
-            rms(series.flat_map(|(_, residuals)| residuals.iter().copied()))
+            let series = evidence.series.iter().zip(&self.residuals);
+            let of_run = series.filter(|(series, _)| series.run == run);
+            let residuals: Vec<f64> = of_run.flat_map(|(_, residuals)| residuals.iter().copied()).collect();
+            let gap = rms(residuals.iter().copied());
+            let squares = residuals.iter().map(|residual| residual * residual).sum();
+            (gap, squares)
         };
         (0..evidence.runs.len()).map(of_run).collect()
     }

@@ -126,20 +126,18 @@ pub fn discover(
         before: before.clone(),
         after: after.clone(),
     };
-    if !judge.is_gap(&before) {
-        return Ok(verdict(Verdict::None, Vec::new(), &before));
-    }
     // A strained calibration that nothing explains is an unlucky one.
     let unexplained = if judge.is_clear(&before) {
         Verdict::Unknown
     } else {
         Verdict::None
     };
-    let mut first = base.contenders(evidence, progress)?;
+    let mut first = base.contenders(&judge, evidence, progress)?;
     judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
     for pick in (0..first.contenders.len())
         .filter(|&pick| judge.is_significant(&base, &first.contenders[pick]))
+        .filter(|&pick| judge.comes_close(&base, &first.contenders[pick], &first.contenders[0]))
         .take(FIRST_PICKS)
     {
         let path = Path::begin(&base, &first, pick, &judge);
@@ -217,7 +215,7 @@ impl Path {
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
         while self.findings.len() < MOST_EFFECTS && judge.is_gap(&self.state.explanation) && self.class.len() < 2 {
-            let mut field = self.state.contenders(evidence, progress)?;
+            let mut field = self.state.contenders(judge, evidence, progress)?;
             judge.simplest_first(&mut field.contenders);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {

@@ -24,6 +24,8 @@ pub struct Looks<'a> {
     pub all: &'a Evidence,
     /// The share of every value that is forgiven at first.
     pub tolerance: f64,
+    /// The share of what no change at all leaves that the best must gain, or nobody goes on.
+    pub least: f64,
 }
 
 /// A round of the knock-out.
@@ -44,10 +46,17 @@ struct Stage {
     share: Option<f64>,
 }
 
-/// So many times as many evaluations are for a linear model in a first look.
-const PATIENCE: usize = 3;
-
-const STAGES: [Stage; 4] = [
+const STAGES: [Stage; 5] = [
+    // Of many starts most are far from any use.
+    Stage {
+        first: true,
+        thinned: 6,
+        tolerant: true,
+        evaluations: 1,
+        starts: 3,
+        kept: usize::MAX,
+        share: None,
+    },
     Stage {
         first: true,
         thinned: 6,
@@ -87,7 +96,15 @@ const STAGES: [Stage; 4] = [
     },
 ];
 
+/// So many times as many evaluations are for a linear model in a first look.
+const PATIENCE: usize = 3;
+
 impl Stage {
+    /// The part of a gain that must show by now: where large features alone count, some of it is forgiven.
+    fn credit(&self) -> f64 {
+        if self.tolerant { 0.5 } else { 1.0 }
+    }
+
     /// Evaluations of a fit of this entrant: in a first look a linear model costs little, and one more resonance is not
     /// dropped for want of a few steps.
     fn evaluations(&self, entrant: &Entrant) -> usize {
@@ -162,7 +179,7 @@ pub fn contest(
         });
         let fitted: Vec<Runner> = fitted.collect();
         let before = distances(&fitted);
-        field = best(fitted, entrants, stage);
+        field = best(fitted, entrants, stage, looks.least);
         let stays = |entrant: usize| field.iter().any(|runner| runner.entrant == entrant);
         let left = before.into_iter().filter(|left| !stays(left.entrant));
         dropped.splice(0..0, left);
@@ -248,11 +265,14 @@ fn distances(field: &[Runner]) -> Vec<Dropped> {
 }
 
 /// Of each of the best entrants the best runners, the very best first.
-fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage) -> Vec<Runner> {
+fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain: f64) -> Vec<Runner> {
     field.sort_by(|a, b| a.score.total_cmp(&b.score));
     let unchanged = field.iter().find(|runner| entrants[runner.entrant].unknowns == 0);
     let least = match (field.first(), unchanged, stage.share) {
-        (Some(first), Some(unchanged), Some(share)) => unchanged.score - share * (unchanged.score - first.score),
+        (Some(first), Some(unchanged), Some(share)) => {
+            let gain = (share * (unchanged.score - first.score)).max(stage.credit() * least_gain * unchanged.score);
+            unchanged.score - gain
+        }
         _ => f64::INFINITY,
     };
     let mut passed: BTreeMap<usize, usize> = BTreeMap::new();

@@ -19,6 +19,11 @@ const LOCAL: f64 = 2.5;
 const STRAIN: f64 = 20.0;
 /// An effect must lower the sum of squares by so much, beside the penalty of its parameters, in units of the scatter.
 const SIGNIFICANT: f64 = 60.0;
+/// Where nothing is left but noise, it must lower the sum of squares by this share of it beside: what the errors of sensors
+/// and sides let an effect gain on a clean campaign is a fraction of that.
+pub const FAINT: f64 = 0.1;
+/// A second effect is followed instead of the first where it lowers the sum of squares by this share of what that does.
+const CLOSE: f64 = 0.5;
 /// All effects together must close so much of the excess gap of the held-out runs,
 const CLOSED: f64 = 0.6;
 /// and leave no more than this, or, where it is one effect, close [`ALL_CLOSED`] of the excess.
@@ -69,8 +74,18 @@ impl<'a> Judge<'a> {
 
     /// True where an effect lowers the sum of squares by more than chance.
     pub fn is_significant(&self, state: &State, contender: &Contender) -> bool {
-        let lowered = state.explanation.refit.chi2 - contender.score;
-        lowered > SIGNIFICANT * contender.explanation.scatter()
+        let is_faint = !self.is_gap(&state.explanation);
+        let least = if is_faint {
+            FAINT * state.explanation.refit.chi2
+        } else {
+            0.0
+        };
+        state.lowered(contender) > least.max(SIGNIFICANT * contender.explanation.scatter())
+    }
+
+    /// True where an effect lowers the sum of squares by about as much as the best: a search may go on from it instead.
+    pub fn comes_close(&self, state: &State, contender: &Contender, best: &Contender) -> bool {
+        state.lowered(contender) >= CLOSE * state.lowered(best)
     }
 
     /// True where an effect earns a place beside others that explain enough: it closes as much of what they leave as a
@@ -148,10 +163,12 @@ impl<'a> Judge<'a> {
     }
 
     /// Share of the excess of the squared gap over noise that is gone. Where the gap shows in a part of the values, or in
-    /// the calibrations alone, it is closed if that is gone.
+    /// the calibrations alone, it is closed if that is gone; one that does not show at all, if the fit gains by it.
     fn closed(&self, before: &Explanation, after: &Explanation) -> f64 {
         if self.gap(before) <= NOISE {
-            return if self.is_gap(after) { 0.0 } else { 1.0 };
+            let is_gone = self.is_gap(before) && !self.is_gap(after);
+            let gains = after.refit.chi2 < (1.0 - FAINT) * before.refit.chi2 && !self.is_clear(after);
+            return if is_gone || gains { 1.0 } else { 0.0 };
         }
         let excess = |explanation| (self.gap(explanation).powi(2) - 1.0).max(0.0);
         1.0 - excess(after) / excess(before).max(f64::MIN_POSITIVE)

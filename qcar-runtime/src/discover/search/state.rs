@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
-use super::rules::NOISE;
+use super::rules::{FAINT, Judge, NOISE};
 use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -20,7 +20,8 @@ const TOLERANCE: f64 = 0.1;
 /// The least: what lines differ by from what a smooth response would be.
 const LEAST_TOLERANCE: f64 = 0.003;
 
-/// A run whose gap is more than this share of the largest is worth a first look.
+/// A run whose gap, or sum of squares, is more than this share of the largest is worth a first look: what a few values show
+/// clearly and what many show together.
 const MUCH: f64 = 0.25;
 
 /// What is known so far.
@@ -146,7 +147,12 @@ impl State {
     ///
     /// # Errors
     /// Where a parameter has no value.
-    pub fn contenders(&self, evidence: &Evidence, progress: Progress<'_>) -> Result<Field, PredictError> {
+    pub fn contenders(
+        &self,
+        judge: &Judge,
+        evidence: &Evidence,
+        progress: Progress<'_>,
+    ) -> Result<Field, PredictError> {
         let candidates = self.workshop.candidates();
         let what = format!("trying {} effects at their places", candidates.len());
         progress(News::Doing(&what));
@@ -167,7 +173,7 @@ impl State {
                 entered.push(place);
             }
         }
-        let (finalists, dropped) = contest(&entrants, &self.looks(evidence), progress)?;
+        let (finalists, dropped) = contest(&entrants, &self.looks(judge, evidence), progress)?;
         let nuisance = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
         let finalists: Vec<_> = finalists
             .into_iter()
@@ -234,20 +240,37 @@ impl State {
 
     /// First at the fitted runs in which the present model is wrong most, and with as much tolerance as it needs itself:
     /// what is wrong with it must be seen.
-    fn looks<'e>(&self, evidence: &'e Evidence) -> Looks<'e> {
-        let gaps = self.explanation.gap.by_run(evidence);
-        let fitted = |run: usize| evidence.runs[run].role == Role::Fit;
-        let most = (0..gaps.len())
-            .filter(|&run| fitted(run))
-            .map(|run| gaps[run])
-            .fold(0.0, f64::max);
-        // A run of few values that scatters is no place where a weak effect shows.
-        let is_weak = self.explanation.gap.fit <= NOISE;
+    fn looks<'e>(&self, judge: &Judge, evidence: &'e Evidence) -> Looks<'e> {
+        let telling = self.telling(evidence);
         Looks {
-            first: evidence.only(|run| fitted(run) && (is_weak || gaps[run] > MUCH * most)),
+            first: evidence.only(|run| telling.contains(&run)),
             all: evidence,
             tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
+            least: if judge.is_gap(&self.explanation) { 0.0 } else { FAINT },
         }
+    }
+
+    /// Fitted runs in which the gap is wide or heavy. Where it is next to noise, no run stands out: then one of each
+    /// kind.
+    fn telling(&self, evidence: &Evidence) -> Vec<usize> {
+        let runs = self.explanation.gap.by_run(evidence);
+        let is_fitted = |run: &usize| evidence.runs[*run].role == Role::Fit && runs[*run].0.is_finite();
+        let mut fitted: Vec<usize> = (0..runs.len()).filter(is_fitted).collect();
+        if self.explanation.gap.fit > NOISE {
+            let widest = fitted.iter().map(|&run| runs[run].0).fold(0.0, f64::max);
+            let heaviest = fitted.iter().map(|&run| runs[run].1).fold(0.0, f64::max);
+            fitted.retain(|&run| runs[run].0 > MUCH * widest || runs[run].1 > MUCH * heaviest);
+            return fitted;
+        }
+        fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
+        let mut kinds = Vec::new();
+        fitted.retain(|&run| {
+            let kind = std::mem::discriminant(&evidence.runs[run].stimulus);
+            let is_first = !kinds.contains(&kind);
+            kinds.push(kind);
+            is_first
+        });
+        fitted
     }
 
     /// Sum of squares with the penalty of all that was taken.
@@ -255,6 +278,11 @@ impl State {
         let unknowns: usize = self.taken.iter().map(|taken| taken.unknowns.len()).sum();
         let refit = &self.explanation.refit;
         refit.chi2 + (refit.residuals as f64).ln() * unknowns as f64
+    }
+
+    /// By how much a contender lowers the sum of squares, beside the penalty of its unknowns.
+    pub fn lowered(&self, contender: &Contender) -> f64 {
+        self.explanation.refit.chi2 - contender.score
     }
 
     /// With a contender in the model.
@@ -341,6 +369,7 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
         first: evidence.clone(),
         all: evidence,
         tolerance: TOLERANCE,
+        least: 0.0,
     };
     let best = contest(&[entrant], &looks, progress)?.0.into_iter().next();
     best.map(|finalist| finalist.explanation).ok_or(PredictError::NoNumber)
