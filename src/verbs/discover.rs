@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use clap::Args;
@@ -12,14 +12,14 @@ use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
-use qcar_runtime::discover::search::{Discovery, News, Verdict, discover};
+use qcar_runtime::discover::search::{Discovery, Finding, News, Verdict, discover};
 use qcar_runtime::discover::{Evidence, Sweeps};
 use qcar_runtime::model::About;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
-use crate::interruption::note;
+use crate::interruption::{leave, note};
 use crate::parameters::{check_vehicle, own};
 use crate::progress::Showing;
 use crate::verbs::Format;
@@ -31,6 +31,8 @@ pub(crate) mod places;
 pub(crate) mod render;
 // The gap as a figure.
 mod figure;
+// What a search leaves that is stopped.
+mod unfinished;
 
 /// Find the effect that a campaign has and its model lacks
 ///
@@ -45,7 +47,7 @@ pub struct Arguments {
     /// Start from this model, by name or path, in place of the campaign's
     #[arg(long)]
     model: Option<String>,
-    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder
+    /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
@@ -86,7 +88,7 @@ pub(crate) struct Written {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let mut answer = answer(&campaign, arguments.model.as_deref())?;
+    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref())?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -96,37 +98,47 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Looks for what the model of a campaign lacks.
+/// Looks for what the model of a campaign lacks. Stopped on the way, it leaves what is known by then in `out`.
 ///
 /// # Errors
 /// A campaign that says nothing of the model, or a model that the compiler refuses.
-pub(crate) fn answer(campaign: &Campaign, model: Option<&str>) -> Result<Answer, Failure> {
+pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path>) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
         News::Far(done, of) => showing.far(done, of),
-        News::Known(what) => note(what),
+        News::Known(what, findings, explanation) => {
+            note(what);
+            let before = begun_with.get_or_init(|| explanation.clone());
+            if let Some(folder) = out {
+                let files = unfinished::files(&campaign.name, &bench, findings, [before, explanation]);
+                leave(&folder.join("unfinished"), files);
+            }
+        }
     };
-    let found = discover(
+    let discovery = discover(
         Box::new(bench.clone()),
         &setting(campaign, bench.model().about()),
         &evidence,
         &told,
     );
     drop(showing);
-    let discovery = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    out.inspect(|folder| leave(folder, Vec::new()));
+    let discovery =
+        discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     // A model that cannot be held against the sweeps has no places.
     let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
         base: bench.checked().clone(),
         sweeps,
         units: units(bench.clone(), &discovery),
-        model: patched(bench, &discovery),
+        model: found(bench, &discovery),
         campaign: campaign.name.clone(),
         evidence,
         discovery,
@@ -181,22 +193,27 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 }
 
 /// The model file with all that was found.
-fn patched(mut bench: Bench, discovery: &Discovery) -> Option<Written> {
-    if discovery.verdict != Verdict::Found {
-        return None;
+fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
+    let (before, after) = (&discovery.before.gap, &discovery.after.gap);
+    let evidence = format!(
+        "Evidence: the gap of held-out runs over their uncertainty fell from {:.2} to {:.2}.",
+        before.held_out, after.held_out
+    );
+    match discovery.verdict {
+        Verdict::Found => patched(bench, &discovery.findings, &evidence),
+        _ => None,
     }
+}
+
+/// The model file with effects in it, and a sentence on why; `None` where no effect is in the model.
+fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written> {
     let mut written = None;
-    for finding in &discovery.findings {
+    for finding in findings {
         let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref())?;
         if !patched.signals.is_empty() {
             continue;
         }
-        let (before, after) = (&discovery.before.gap, &discovery.after.gap);
-        let evidence = format!(
-            "Evidence: the gap of held-out runs over their uncertainty fell from {:.2} to {:.2}.",
-            before.held_out, after.held_out
-        );
-        let text = patched.text(&evidence);
+        let text = patched.text(why);
         bench = bench.holding(patched.model);
         let name = bench.checked().name.clone();
         written = Some(Written { name, text, file: None });
@@ -214,8 +231,16 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         put(folder, &name, &model.text)?;
         model.file = Some(folder.join(name));
     }
-    put(folder, "parameters.toml", &render::parameters(answer))?;
-    put(folder, "gap.svg", &figure::gap(answer).svg())?;
+    let (campaign, discovery) = (&answer.campaign, &answer.discovery);
+    let heading = format!("{campaign}: what explains its runs best");
+    put(
+        folder,
+        "parameters.toml",
+        &render::parameters(&heading, &discovery.after),
+    )?;
+    let title = format!("{campaign}: what the model leaves, 0 dB being the noise");
+    let gap = figure::gap(title, [&discovery.before.gap, &discovery.after.gap]);
+    put(folder, "gap.svg", &gap.svg())?;
     put(folder, "discovery.json", &render::json(answer))?;
     Ok(())
 }

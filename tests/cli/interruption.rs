@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::common::{copy, repository};
+use crate::common::{copy, repository, run_line};
 
 /// Starts `qcar` and returns once it listens to Ctrl-C.
 fn started(folder: &Path, line: &str) -> Child {
@@ -40,20 +40,52 @@ fn interrupted(child: Child) -> (Option<i32>, String, String) {
 }
 
 #[test]
-fn a_search_that_is_stopped_says_that_nothing_was_written() {
+fn a_fit_that_is_stopped_says_that_nothing_was_written() {
     let folder = repository();
-    for line in [
-        "discover models/campaigns/axle_a_rig --out results",
+    let child = started(
+        folder.path(),
         "fit models/campaigns/axle_a_rig --starts 10000 --out results",
-    ] {
-        let child = started(folder.path(), line);
-        sleep(Duration::from_millis(300));
+    );
+    sleep(Duration::from_millis(300));
+    let (status, said, told) = interrupted(child);
+    assert_eq!((status, said.as_str()), (Some(130), ""), "{told}");
+    assert!(told.starts_with("interrupted"), "{told}");
+    assert!(told.contains("no file was written"), "{told}");
+    assert!(!folder.path().join("results").exists());
+}
+
+/// What a search tells when it is stopped between the fit of the base model, which takes a part of its time, and its end.
+fn stopped_on_the_way(folder: &Path) -> String {
+    for doubled in 0..8 {
+        let child = started(folder, "discover models/campaigns/axle_c_study --out results");
+        sleep(Duration::from_millis(250 << doubled));
         let (status, said, told) = interrupted(child);
         assert_eq!((status, said.as_str()), (Some(130), ""), "{told}");
-        assert!(told.starts_with("interrupted"), "{told}");
+        if told.contains("so far: the model alone leaves a gap") {
+            return told;
+        }
         assert!(told.contains("no file was written"), "{told}");
-        assert!(!folder.path().join("results").exists());
     }
+    panic!("the base model was not fitted");
+}
+
+#[test]
+fn a_search_that_is_stopped_leaves_what_it_has_come_to() {
+    let folder = repository();
+    let told = stopped_on_the_way(folder.path());
+    let left = folder.path().join("results/unfinished");
+    for name in ["parameters.toml", "gap.svg"] {
+        let text = fs::read_to_string(left.join(name)).unwrap();
+        assert!(text.contains("unfinished, the search was stopped"), "{text}");
+        assert!(told.contains(&format!("results/unfinished/{name}")), "{told}");
+    }
+    assert_eq!(
+        fs::read_dir(folder.path().join("results")).unwrap().count(),
+        1,
+        "{told}"
+    );
+    let again = "simulate models/campaigns/axle_c_study --params results/unfinished/parameters.toml";
+    assert_eq!(run_line(folder.path(), again).status, 0);
 }
 
 #[test]

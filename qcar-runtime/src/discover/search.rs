@@ -86,14 +86,15 @@ const MOST_EFFECTS: usize = 3;
 const FIRST_PICKS: usize = 2;
 
 /// What a search tells of itself meanwhile.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug)]
 pub enum News<'a> {
     /// What is being done.
     Doing(&'a str),
     /// How much of that is done, and of how much.
     Far(usize, usize),
-    /// What is known by now, and stays so if the search is stopped.
-    Known(&'a str),
+    /// What is known by now, and stays so if the search is stopped: in words, the effects that were taken, and the
+    /// explanation with them. The first is that of the base model.
+    Known(&'a str, &'a [Finding], &'a Explanation),
 }
 
 /// Told how the search goes, from any thread.
@@ -115,10 +116,8 @@ pub fn discover(
     progress(News::Doing("fitting the base model"));
     let base = State::base(workshop, setting, evidence, progress)?;
     let before = base.explanation.clone();
-    progress(News::Known(&format!(
-        "the model alone leaves a gap of {}",
-        told(&before)
-    )));
+    let alone = format!("the model alone leaves a gap of {}", told(&before));
+    progress(News::Known(&alone, &[], &before));
     let judge = Judge::new(evidence, &before);
     let verdict = |verdict, findings, after: &Explanation| Discovery {
         verdict,
@@ -141,7 +140,7 @@ pub fn discover(
         .take(FIRST_PICKS)
     {
         let path = Path::begin(&base, &first, pick, &judge);
-        progress(News::Known(&path.told()));
+        path.tell(progress);
         let path = path.follow(&judge, evidence, progress)?;
         let enough = judge.is_enough(&path);
         if best.as_ref().is_none_or(|best| path.score() < best.score()) {
@@ -226,16 +225,17 @@ impl Path {
                 break;
             }
             self = self.taking(&field, 0, judge);
-            progress(News::Known(&self.told()));
+            self.tell(progress);
         }
         Ok(self)
     }
 
-    /// How far it has come.
-    fn told(&self) -> String {
+    /// Tells how far it has come.
+    fn tell(&self, progress: Progress<'_>) {
         let names = self.findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
         let left = told(&self.state.explanation);
-        format!("with {} it leaves {left}", names.collect::<Vec<_>>().join(" and "))
+        let words = format!("with {} it leaves {left}", names.collect::<Vec<_>>().join(" and "));
+        progress(News::Known(&words, &self.findings, &self.state.explanation));
     }
 
     fn score(&self) -> f64 {

@@ -3,24 +3,22 @@
 use qcar_runtime::discover::gap::Gap;
 use qcar_runtime::transmissibility::Point;
 
-use super::Answer;
 use crate::figure::{Curve, Figure, Panel, Style};
 
-pub(super) fn gap(of: &Answer) -> Figure {
-    let tiles = &of.discovery.before.gap.tiles;
-    let mut sensors: Vec<&Point> = tiles.iter().map(|tile| &tile.sensor).collect();
+pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
+    let mut sensors: Vec<&Point> = before.tiles.iter().map(|tile| &tile.sensor).collect();
     sensors.sort();
     sensors.dedup();
     let panel = |sensor: &Point| Panel {
         title: sensor.location.clone(),
         vertical: "gap over uncertainty, dB".into(),
         curves: vec![
-            curve("before", Style::Before, &of.discovery.before.gap, sensor),
-            curve("after", Style::After, &of.discovery.after.gap, sensor),
+            curve("before", Style::Before, before, sensor),
+            curve("after", Style::After, after, sensor),
         ],
     };
     Figure {
-        title: format!("{}: what the model leaves, 0 dB being the noise", of.campaign),
+        title,
         panels: sensors.into_iter().map(panel).collect(),
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::evidence::Kind;
+use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::search::{Finding, Rival, Verdict};
 use qcar_runtime::transmissibility::Point;
@@ -194,9 +195,9 @@ fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
 }
 
 /// A parameter file as `--params` takes it.
-pub(super) fn parameters(of: &Answer) -> String {
-    let mut out = format!("# {}: what explains its runs best\n\n[parameters]\n", of.campaign);
-    for (name, value) in &of.discovery.after.named {
+pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
+    let mut out = format!("# {heading}\n\n[parameters]\n");
+    for (name, value) in &of.named {
         let _ = writeln!(out, "{name} = {value:?}");
     }
     out

@@ -72,8 +72,8 @@ pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, F
     fit::files::write(&fitted, &out.join("fit"))?;
     let campaign = &fitted.campaign;
     let gradients = gradients(campaign, out)?;
-    let mut answer = discover::answer(campaign, model)?;
     let discovery = out.join("discovery");
+    let mut answer = discover::answer(campaign, model, Some(&discovery))?;
     discover::write(&mut answer, &discovery)?;
     let after = after(campaign, &answer)?;
     let track = track(&fitted, after.as_ref(), out)?;
