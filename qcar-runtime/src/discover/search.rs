@@ -219,7 +219,7 @@ impl Path {
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best),
-                false => judge.is_significant(&self.state, best),
+                false => judge.is_step(&self.state, best, MOST_EFFECTS - self.findings.len()),
             };
             if field.contenders.first().filter(helps).is_none() {
                 break;

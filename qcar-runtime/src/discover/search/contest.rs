@@ -53,7 +53,7 @@ const STAGES: [Stage; 5] = [
         thinned: 6,
         tolerant: true,
         evaluations: 1,
-        starts: 3,
+        starts: 2,
         kept: usize::MAX,
         share: None,
     },
@@ -96,8 +96,11 @@ const STAGES: [Stage; 5] = [
     },
 ];
 
-/// So many times as many evaluations are for a linear model in a first look.
+/// So many times as many evaluations are for a model that costs little in a first look.
 const PATIENCE: usize = 3;
+
+/// Starts of one entrant whose scores differ by less than this share have come to the same place.
+const SAME: f64 = 0.005;
 
 impl Stage {
     /// The part of a gain that must show by now: where large features alone count, some of it is forgiven.
@@ -105,10 +108,11 @@ impl Stage {
         if self.tolerant { 0.5 } else { 1.0 }
     }
 
-    /// Evaluations of a fit of this entrant: in a first look a linear model costs little, and one more resonance is not
-    /// dropped for want of a few steps.
-    fn evaluations(&self, entrant: &Entrant) -> usize {
-        let costs_little = self.first && entrant.explanandum.model.about().linear;
+    /// Evaluations of a fit of this entrant: in a first look one that costs no more than no change has time, and one more
+    /// resonance is not dropped for want of a few steps.
+    fn evaluations(&self, entrant: &Entrant, entrants: &[Entrant]) -> usize {
+        let is_linear = |entrant: &Entrant| entrant.explanandum.model.about().linear;
+        let costs_little = self.first && (is_linear(entrant) || !is_linear(&entrants[0]));
         self.evaluations * if costs_little { PATIENCE } else { 1 }
     }
 }
@@ -236,7 +240,7 @@ impl Runner {
         let earlier = self.refit.as_ref();
         let refit = entrant
             .explanandum
-            .refit(&self.values, earlier, evidence, stage.evaluations(entrant))
+            .refit(&self.values, earlier, evidence, stage.evaluations(entrant, entrants))
             .ok()?;
         let score = entrant.score(&refit);
         score.is_finite().then(|| Runner {
@@ -275,14 +279,17 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
         }
         _ => f64::INFINITY,
     };
-    let mut passed: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut passed: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     field.retain(|runner| {
         let is_measure = entrants[runner.entrant].unknowns == 0;
-        let room = passed.contains_key(&runner.entrant) || passed.len() < stage.kept;
-        let starts = passed.get(&runner.entrant).copied().unwrap_or(0);
-        let passes = is_measure || room && starts < stage.starts && runner.score <= least;
-        if passes && !is_measure {
-            passed.insert(runner.entrant, starts + 1);
+        let others = passed.keys().filter(|&&entrant| entrants[entrant].unknowns > 0);
+        let room = passed.contains_key(&runner.entrant) || others.count() < stage.kept;
+        let starts = passed.get(&runner.entrant).map_or(&[][..], Vec::as_slice);
+        let is_there = starts.iter().any(|score| runner.score - score < SAME * score);
+        let is_wanted = is_measure || room && runner.score <= least;
+        let passes = is_wanted && !is_there && starts.len() < stage.starts;
+        if passes {
+            passed.entry(runner.entrant).or_default().push(runner.score);
         }
         passes
     });

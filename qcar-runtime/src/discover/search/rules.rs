@@ -83,6 +83,14 @@ impl<'a> Judge<'a> {
         state.lowered(contender) > least.max(SIGNIFICANT * contender.explanation.scatter())
     }
 
+    /// True where an effect is a step on the way to an explanation: of what the present model leaves, it takes its share, so
+    /// that as many effects as may be taken, itself included, come to what all must close.
+    pub fn is_step(&self, state: &State, contender: &Contender, effects: usize) -> bool {
+        let refit = &state.explanation.refit;
+        let excess = refit.chi2 - refit.residuals as f64;
+        self.is_significant(state, contender) && state.lowered(contender) > CLOSED / effects as f64 * excess
+    }
+
     /// True where an effect lowers the sum of squares by about as much as the best: a search may go on from it instead.
     pub fn comes_close(&self, state: &State, contender: &Contender, best: &Contender) -> bool {
         state.lowered(contender) >= CLOSE * state.lowered(best)
