@@ -163,6 +163,54 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     qcar::catalogue::compiled(model).unwrap_or_else(|failure| panic!("{failure:?}"));
 }
 
+/// All that it changes is less than noise, line by line: only together do the lines tell of it.
+#[test]
+fn a_faint_effect_is_found() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let truth = [("k_maxwell", 150e3), ("relaxation_frequency", 8.0)];
+    let order = Order {
+        cleats: false,
+        noise: 0.06,
+        effects: vec![Hidden::new("bushing_relaxation", "top_mount", &truth)],
+        ..Order::clean("c", 1030)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    for role in ["fit", "held_out"] {
+        assert!(answer["gap"][role]["before"].as_f64().is_some_and(|gap| gap < 1.2));
+    }
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "bushing_relaxation");
+    assert_eq!(answer["effects"][0]["at"], "top_mount");
+}
+
+/// The rig sees nothing of its longitudinal mounts, so that a first look at the rig must not move them.
+#[test]
+fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let truth = [
+        ("m_pwt", 25.0),
+        ("k_pwt_z", 90e3),
+        ("c_pwt_z", 300.0),
+        ("k_pwt_x", 100e3),
+        ("c_pwt_x", 300.0),
+    ];
+    let order = Order {
+        effects: vec![Hidden::new("suspended_mass", "body", &truth)],
+        ..Order::clean("a", 1004)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "suspended_mass");
+    for (name, value) in truth {
+        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
+        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
+    }
+}
+
 /// The sweeps of the shipped rig, with every sample of a column changed.
 fn swept(folder: &Path, changed: &mut dyn FnMut(&str, f64) -> f64) {
     let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
