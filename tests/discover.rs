@@ -22,6 +22,14 @@ fn discover(campaign: &Path, out: Option<&Path>) -> Value {
     serde_json::from_slice(&output.stdout).expect("JSON")
 }
 
+/// The first effect has these parameters, within 15 %.
+fn assert_near(answer: &Value, truth: &[(&str, f64)]) {
+    for (name, value) in truth {
+        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
+        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
+    }
+}
+
 #[test]
 fn what_is_left_of_a_clean_campaign_is_noise() {
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
@@ -72,10 +80,7 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     let best = &answer["places"][0];
     assert!(best["at"] == "damper" || best["at"] == "spring", "{best}");
     assert!(best["explains"].as_f64().is_some_and(|share| share > 0.8), "{best}");
-    for (name, value) in truth {
-        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
-        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
-    }
+    assert_near(&answer, &truth);
 }
 
 /// Its law has a kink where the damper turns, at which no step of a search is sure to help.
@@ -150,10 +155,7 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "suspended_mass");
     assert_eq!(answer["effects"][0]["at"], "body");
-    for (name, value) in &truth[..3] {
-        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
-        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
-    }
+    assert_near(&answer, &truth[..3]);
     let gap = |role: &str, when: &str| answer["gap"][role][when].as_f64().expect("a number");
     assert!(
         gap("held_out", "before") > 10.0 && gap("held_out", "after") < 1.5,
@@ -205,10 +207,7 @@ fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
     let answer = discover(&campaign, None);
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "suspended_mass");
-    for (name, value) in truth {
-        let found = answer["effects"][0]["parameters"][name].as_f64().expect("a number");
-        assert!((found / value - 1.0).abs() < 0.15, "{name} is {found}, not {value}");
-    }
+    assert_near(&answer, &truth);
 }
 
 /// The sweeps of the shipped rig, with every sample of a column changed.
