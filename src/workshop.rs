@@ -83,7 +83,7 @@ fn candidates(patched: Patched) -> Vec<Candidate> {
             at: patched.place,
             form: patched.form,
             change: Change::Model {
-                parameters: patched.parameters.iter().map(added).collect(),
+                parameters: patched.parameters.iter().filter(|p| p.is_new || !p.known).map(added).collect(),
                 model: Box::new(Evaluated::new(&derive(patched.model))),
             },
         }];
@@ -118,5 +118,6 @@ fn added(parameter: &NewParameter) -> Added {
         effect_name: parameter.effect_name.clone(),
         start: parameter.start,
         range: parameter.range,
+        known: parameter.known,
     }
 }

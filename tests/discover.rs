@@ -165,6 +165,30 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     qcar::catalogue::compiled(model).unwrap_or_else(|failure| panic!("{failure:?}"));
 }
 
+/// The distance of the axles scales the pitch angle alone, which nothing shows: it stays what it is given as.
+#[test]
+fn what_is_known_of_an_effect_is_not_estimated() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let truth = [
+        ("wheelbase", 2.7),
+        ("dynamic_index", 0.8),
+        ("k_wheel_z_other", 24e3),
+        ("c_wheel_z_other", 1500.0),
+    ];
+    let order = Order {
+        cleats: false,
+        effects: vec![Hidden::new("apparent_mass", "body", &truth)],
+        ..Order::clean("c", 25)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["effects"][0]["name"], "apparent_mass", "{answer}");
+    assert_eq!(answer["effects"][0]["parameters"]["wheelbase"], 2.7);
+    assert_eq!(answer["effects"][0]["stderr"]["wheelbase"], 0.0);
+    assert_near(&answer, &truth);
+}
+
 /// All that it changes is less than noise, line by line: only together do the lines tell of it.
 #[test]
 fn a_faint_effect_is_found() {

@@ -23,7 +23,7 @@ pub enum Change {
     Model {
         /// The changed model.
         model: Box<dyn Model>,
-        /// What is to be found beside the parameters of the base model.
+        /// What it brings along beside the parameters of the base model.
         parameters: Vec<Added>,
     },
     /// What a sensor shows.
@@ -50,6 +50,8 @@ pub struct Added {
     pub start: f64,
     /// What is plausible, SI, lower below upper.
     pub range: (f64, f64),
+    /// Given, not to be found: it stays at its start, or at what the vehicle says.
+    pub known: bool,
 }
 
 impl Candidate {
@@ -58,12 +60,17 @@ impl Candidate {
         matches!(self.change, Change::Sensor { .. })
     }
 
-    /// What is to be found.
-    pub fn unknowns(&self) -> &[Added] {
+    /// The parameters that it brings along.
+    pub fn parameters(&self) -> &[Added] {
         match &self.change {
             Change::Model { parameters, .. } => parameters,
             Change::Sensor { parameter, .. } => std::slice::from_ref(parameter),
         }
+    }
+
+    /// How many of them are to be found.
+    pub fn unknowns(&self) -> usize {
+        self.parameters().iter().filter(|parameter| !parameter.known).count()
     }
 }
 

@@ -153,7 +153,7 @@ impl Explanandum<'_> {
     pub fn starts(&self) -> Result<Vec<Values>, PredictError> {
         let given = self.setting.given.iter();
         let campaign: BTreeMap<String, f64> = given.map(|p| (p.name.clone(), p.value)).collect();
-        let plain = vec![0.0; self.added.len()];
+        let plain = vec![0.0; self.unknown().count()];
         let mut starts = vec![self.start(campaign, &plain)?];
         if let Some(known) = self.known {
             let known = within(known, self.setting);
@@ -167,24 +167,30 @@ impl Explanandum<'_> {
     fn start(&self, mut given: BTreeMap<String, f64>, shifts: &[f64]) -> Result<Values, PredictError> {
         // An effect may replace a law, and its parameters with it.
         given.retain(|name, _| self.model.about().parameters.iter().any(|p| p.name == *name));
-        let added = self.added.iter().zip(shifts);
+        let added = self.unknown().zip(shifts);
         given.extend(added.map(|(p, &shift)| (p.name.clone(), towards(p, shift))));
         Values::resolve(self.model.about(), &given, &self.setting.vehicle).map_err(PredictError::Parameters)
     }
 
-    /// Where in their ranges the added parameters begin: all at their starts, all low, all high, and, where a model
-    /// costs little, each alone low or high too, since a mode that is sought far from where it is is not found.
+    /// The added parameters that are to be found.
+    fn unknown(&self) -> impl Iterator<Item = &Added> {
+        self.added.iter().filter(|added| !added.known)
+    }
+
+    /// Where in their ranges the added parameters that are to be found begin: all at their starts, all low, all high, and,
+    /// where a model costs little, each alone low or high too, since a mode that is sought far from where it is is not
+    /// found.
     fn shifts(&self) -> Vec<Vec<f64>> {
-        let count = self.added.len();
+        let count = self.unknown().count();
         let all = |shift: f64| vec![shift; count];
         let mut shifts = vec![all(0.0)];
         if count > 0 {
             shifts.extend([all(-HALF_WAY), all(HALF_WAY)]);
         }
         // Where an effect may vanish, from next to there the way to either side is open.
-        if self.added.iter().any(|p| p.range.0 <= 0.0) {
+        if self.unknown().any(|p| p.range.0 <= 0.0) {
             let weak = |p: &Added| if p.range.0 <= 0.0 { WEAK } else { 0.0 };
-            shifts.push(self.added.iter().map(weak).collect());
+            shifts.push(self.unknown().map(weak).collect());
         }
         if count > 1 && self.model.about().linear {
             let alone = |k: usize, shift: f64| (0..count).map(|i| if i == k { shift } else { 0.0 }).collect();
@@ -200,7 +206,7 @@ impl Explanandum<'_> {
             .given
             .iter()
             .filter_map(|p| Some((p.name.as_str(), p.range?)));
-        let added = self.added.iter().map(|p| (p.name.as_str(), p.range));
+        let added = self.unknown().map(|p| (p.name.as_str(), p.range));
         let free = |(name, (lower, upper))| {
             place(name).map(|parameter| Free {
                 parameter,

@@ -43,7 +43,7 @@ pub struct Finding {
     pub at: String,
     /// Which of its forms fits best; `None` where it has only one.
     pub form: Option<String>,
-    /// Its parameters: name, value and standard error, SI.
+    /// Its parameters: name, value and standard error, SI. The error is 0 for one that is given.
     pub parameters: Vec<(String, f64, f64)>,
     /// By how much it lowers the sum of squares of the fitted runs.
     pub evidence: f64,

@@ -101,13 +101,13 @@ pub struct Contender {
 impl Contender {
     /// Number of its unknowns.
     pub fn unknowns(&self) -> usize {
-        self.candidate.unknowns().len()
+        self.candidate.unknowns()
     }
 
     /// True where all it says of its unknowns lies in their ranges: a fit may be free to leave that of a sensor.
     fn is_plausible(&self) -> bool {
-        let ranges = self.candidate.unknowns().iter();
-        let mut values = ranges.zip(&self.parameters);
+        let ranges = self.candidate.parameters().iter();
+        let mut values = ranges.zip(&self.parameters).filter(|(own, _)| !own.known);
         values.all(|(unknown, (_, value, _))| (unknown.range.0..=unknown.range.1).contains(value))
     }
 }
@@ -167,7 +167,7 @@ impl State {
             if let Some(explanandum) = self.explanandum(candidate, &known) {
                 entrants.push(Entrant {
                     explanandum,
-                    unknowns: candidate.unknowns().len(),
+                    unknowns: candidate.unknowns(),
                     name: format!("{} at {}", candidate.effect, candidate.at),
                 });
                 entered.push(place);
@@ -302,7 +302,8 @@ impl State {
             state.workshop = Arc::from(workshop);
         }
         if let Change::Model { parameters, .. } = &candidate.change {
-            state.setting.given.extend(parameters.iter().map(|p| Given {
+            let unknown = parameters.iter().filter(|p| !p.known);
+            state.setting.given.extend(unknown.map(|p| Given {
                 name: p.name.clone(),
                 value: p.start,
                 range: Some(p.range),
@@ -406,16 +407,17 @@ impl Taken {
         }
     }
 
-    /// What an explanation says of the effect: name, value, standard error. Where more than noise is left, the errors
-    /// grow with it.
+    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given. Where
+    /// more than noise is left, the errors grow with it.
     fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
         let refit = &explanation.refit;
         let errors = refit.stderr();
         let scatter = explanation.scatter().sqrt();
         let of = |unknown: &Unknown| match unknown {
             Unknown::Parameter(effect_name, name) => {
-                let free = free_of(explanation, name)?;
-                Some((effect_name.clone(), refit.estimate[free], scatter * errors[free]))
+                let (_, value) = explanation.named.iter().find(|(known, _)| known == name)?;
+                let error = free_of(explanation, name).map_or(0.0, |free| scatter * errors[free]);
+                Some((effect_name.clone(), *value, error))
             }
             Unknown::Coefficient(effect_name, place, form) => {
                 let coefficient = refit.coefficients[*place];
