@@ -321,14 +321,21 @@ const BODY: f64 = 430.0 - 42.0 - 60.0;
 
 #[test]
 fn a_progressive_spring_has_its_rate_at_40_mm_of_wheel_travel() {
-    let model = patched(&model("axle_b_rigid_tm"), "progressive_spring", "spring");
-    let running = Running::new(&model, &[("rate_increase_at_40mm", 0.5)]);
-    for travel in [-0.04, 0.04] {
-        let rate = slope(|z| on_body(&running, BODY, z, 0.0), travel);
-        assert!((rate / (1.5 * 26e3) - 1.0).abs() < 1e-6, "{rate}");
+    let forms = [
+        ("both_ways", 1.5),
+        ("both_ways_evenly", 1.5),
+        ("in_compression", 1.0),
+        ("throughout", 0.5),
+    ];
+    for (form, in_rebound) in forms {
+        let model = in_form(&model("axle_b_rigid_tm"), "progressive_spring", form, "spring");
+        let running = Running::new(&model, &[("rate_increase_at_40mm", 0.5)]);
+        // The wheel at 40 mm of compression, at rest, and at 40 mm of rebound.
+        for (travel, expected) in [(0.04, 1.5), (0.0, 1.0), (-0.04, in_rebound)] {
+            let rate = slope(|z| on_body(&running, BODY, z, 0.0), travel);
+            assert!((rate / (expected * 26e3) - 1.0).abs() < 1e-4, "{form} at {travel} m: {rate}");
+        }
     }
-    let rest = slope(|z| on_body(&running, BODY, z, 0.0), 0.0);
-    assert!((rest / 26e3 - 1.0).abs() < 1e-6, "{rest}");
 }
 
 #[test]

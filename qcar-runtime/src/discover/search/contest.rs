@@ -282,8 +282,11 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
     let mut passed: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     field.retain(|runner| {
         let is_measure = entrants[runner.entrant].unknowns == 0;
-        let others = passed.keys().filter(|&&entrant| entrants[entrant].unknowns > 0);
-        let room = passed.contains_key(&runner.entrant) || others.count() < stage.kept;
+        let changes = passed.keys().filter(|&&entrant| entrants[entrant].unknowns > 0);
+        // Forms of one effect at one place are one explanation, and take the room of one.
+        let names: BTreeSet<&str> = changes.map(|&entrant| entrants[entrant].name.as_str()).collect();
+        let has_passed = names.contains(entrants[runner.entrant].name.as_str());
+        let room = has_passed || names.len() < stage.kept;
         let starts = passed.get(&runner.entrant).map_or(&[][..], Vec::as_slice);
         let is_there = starts.iter().any(|score| runner.score - score < SAME * score);
         let is_wanted = is_measure || room && runner.score <= least;
