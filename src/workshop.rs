@@ -83,7 +83,12 @@ fn candidates(patched: Patched) -> Vec<Candidate> {
             at: patched.place,
             form: patched.form,
             change: Change::Model {
-                parameters: patched.parameters.iter().filter(|p| p.is_new || !p.known).map(added).collect(),
+                parameters: patched
+                    .parameters
+                    .iter()
+                    .filter(|p| p.is_new || !p.known)
+                    .map(added)
+                    .collect(),
                 model: Box::new(Evaluated::new(&derive(patched.model))),
             },
         }];

@@ -333,7 +333,10 @@ fn a_progressive_spring_has_its_rate_at_40_mm_of_wheel_travel() {
         // The wheel at 40 mm of compression, at rest, and at 40 mm of rebound.
         for (travel, expected) in [(0.04, 1.5), (0.0, 1.0), (-0.04, in_rebound)] {
             let rate = slope(|z| on_body(&running, BODY, z, 0.0), travel);
-            assert!((rate / (expected * 26e3) - 1.0).abs() < 1e-4, "{form} at {travel} m: {rate}");
+            assert!(
+                (rate / (expected * 26e3) - 1.0).abs() < 1e-4,
+                "{form} at {travel} m: {rate}"
+            );
         }
     }
 }
