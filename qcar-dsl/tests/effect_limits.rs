@@ -342,11 +342,18 @@ fn a_progressive_spring_has_its_rate_at_40_mm_of_wheel_travel() {
 }
 
 #[test]
-fn a_digressive_damper_has_half_its_damping_at_v0_of_the_wheel() {
-    let model = patched(&model("axle_b_rigid_tm"), "digressive_damper", "damper");
-    let running = Running::new(&model, &[("c0", 3000.0), ("v0", 0.5)]);
-    let force = on_body(&running, BODY, 0.0, 0.5);
-    assert!((force - 3000.0 * 0.5 / 2.0).abs() < 1e-9 * force, "{force}");
+fn a_digressive_damper_begins_with_c0_and_tends_to_the_force_of_v0_at_the_wheel() {
+    for (form, share_at_v0) in [("gradual", 0.5), ("blow_off", 1f64.tanh())] {
+        let model = in_form(&model("axle_b_rigid_tm"), "digressive_damper", form, "damper");
+        let running = Running::new(&model, &[("c0", 3000.0), ("v0", 0.5)]);
+        for (speed, share) in [(1e-4, 2e-4), (0.5, share_at_v0), (5e3, 1.0)] {
+            let force = on_body(&running, BODY, 0.0, speed);
+            assert!(
+                (force / (3000.0 * 0.5 * share) - 1.0).abs() < 1e-3,
+                "{form} at {speed} m/s: {force}"
+            );
+        }
+    }
 }
 
 #[test]
