@@ -53,7 +53,8 @@ impl Gap {
         let late = refit.nuisance.lateness(evidence, &refit.coefficients);
         for role in [Role::Fit, Role::HeldOut] {
             let unsteady = unsteady(model, &refit.values, evidence, role)?;
-            for mut prediction in predict_sides(model, [&refit.values, &refit.side], &late, &[], evidence, role)? {
+            let sides = [&refit.values, &refit.side];
+            for mut prediction in predict_sides(model, sides, &late, &[], evidence, &|run| run.role == role)? {
                 let series = &evidence.series[prediction.series];
                 prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);

@@ -25,7 +25,7 @@ use nalgebra::Complex;
 use rayon::prelude::*;
 use thiserror::Error;
 
-use super::evidence::{Evidence, Stimulus, excitation_of};
+use super::evidence::{Evidence, Run, Stimulus, excitation_of};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::{ParameterError, Values};
@@ -124,11 +124,11 @@ pub fn predict(
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
-    predict_sides(model, [values, values], &[], free, evidence, role)
+    predict_sides(model, [values, values], &[], free, evidence, &|run| run.role == role)
 }
 
-/// The same of a car whose recorded side has parameters of its own (the second set): cleat runs see these. Series over
-/// time are as `late` (s, series by series) as their sensors; without entries none is.
+/// The same of the runs that are `wanted`, of a car whose recorded side has parameters of its own (the second set): cleat
+/// runs see these. Series over time are as `late` (s, series by series) as their sensors; without entries none is.
 ///
 /// # Errors
 /// As [`predict`].
@@ -138,10 +138,11 @@ pub fn predict_sides(
     late: &[f64],
     free: &[Free],
     evidence: &Evidence,
-    role: Role,
+    wanted: &dyn Fn(&Run) -> bool,
 ) -> Result<Vec<Prediction>, PredictError> {
-    let runs = (0..evidence.runs.len()).filter(|&run| evidence.runs[run].role == role);
-    let runs: Vec<usize> = runs.collect();
+    let runs: Vec<usize> = (0..evidence.runs.len())
+        .filter(|&run| wanted(&evidence.runs[run]))
+        .collect();
     let of_runs = runs
         .into_par_iter()
         .map(|run| of_run(model, [values, side], late, free, evidence, run));

@@ -183,6 +183,11 @@ pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>
     }
 }
 
+/// True for a run whose derivatives cost little beside its prediction: a sweep's come from the same factorisation.
+fn is_swept(run: &Run) -> bool {
+    matches!(run.stimulus, Stimulus::Sweep { .. })
+}
+
 /// The least-squares problem.
 struct Posterior<'a> {
     model: &'a dyn Model,
@@ -200,6 +205,8 @@ struct Posterior<'a> {
     refused: Option<PredictError>,
     /// What the sweeps add to their balance, series by series.
     unsteady: Vec<Vec<Complex<f64>>>,
+    /// Where the residual was looked at last, and what sweeps show there: a step that is taken asks for it again.
+    looked: Option<(Vec<f64>, Vec<Prediction>)>,
 }
 
 impl<'a> Posterior<'a> {
@@ -218,6 +225,7 @@ impl<'a> Posterior<'a> {
             nuisance,
             refused: None,
             unsteady: vec![Vec::new(); evidence.series.len()],
+            looked: None,
         }
     }
 
@@ -239,6 +247,7 @@ impl<'a> Posterior<'a> {
             upper: upper.collect(),
         };
         self.start = start.to_vec();
+        self.looked = None;
         let outcome = minimize(self, start, &bounds, &options);
         self.refused.take().map_or(Ok(outcome), Err)
     }
@@ -304,13 +313,30 @@ impl<'a> Posterior<'a> {
         &x[self.free.len() + self.nuisance.len()..]
     }
 
-    /// Writes the residual; the columns of the Jacobian, of the data alone, are those along `free`, the first of all that
-    /// are free, and along the sensors' errors and sides.
-    fn look(&mut self, x: &[f64], residual: &mut [f64], free: &[Free]) -> Vec<Vec<f64>> {
+    /// What the model says of the fitted runs: of the sweeps, and of all others, these differentiated along `free`.
+    fn predictions(&mut self, x: &[f64], free: &[Free]) -> Result<[Vec<Prediction>; 2], PredictError> {
         self.move_to(x);
         let both = [&self.values, &self.side];
         let late = self.nuisance.lateness(self.evidence, &x[self.free.len()..]);
-        let predictions = match predict_sides(self.model, both, &late, free, self.evidence, Role::Fit) {
+        let predict = |free: &[Free], swept: bool| {
+            let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
+            predict_sides(self.model, both, &late, free, self.evidence, &wanted)
+        };
+        let swept = match self.looked.take().filter(|(at, _)| at == x) {
+            Some((_, swept)) => swept,
+            None => {
+                let mut swept = predict(&self.free, true)?;
+                swept.iter_mut().for_each(|own| own.add(&self.unsteady[own.series]));
+                swept
+            }
+        };
+        Ok([swept, predict(free, false)?])
+    }
+
+    /// Writes the residual; the columns of the Jacobian, of the data alone, are those along `free`, the first of all that
+    /// are free, and along the sensors' errors and sides.
+    fn look(&mut self, x: &[f64], residual: &mut [f64], free: &[Free]) -> Vec<Vec<f64>> {
+        let [swept, others] = match self.predictions(x, free) {
             Ok(predictions) => predictions,
             Err(error) => {
                 self.refused = Some(error);
@@ -318,11 +344,13 @@ impl<'a> Posterior<'a> {
                 return Vec::new();
             }
         };
+        let mut predictions: Vec<&Prediction> = swept.iter().chain(&others).collect();
+        predictions.sort_by_key(|own| own.series);
         let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
-        for mut prediction in predictions {
-            prediction.add(&self.unsteady[prediction.series]);
-            self.rows(&prediction, x, &mut rows, &mut columns);
+        for prediction in predictions {
+            self.rows(prediction, x, &mut rows, &mut columns);
         }
+        self.looked = Some((x.to_vec(), swept));
         let errors = x[self.free.len()..].iter().zip(&self.sigmas);
         rows.extend(errors.map(|(error, sigma)| error / sigma));
         let strays = self.free.iter().zip(x.iter().zip(&self.start));

@@ -102,8 +102,7 @@ impl<'a> Balance<'a> {
                 return (x.as_slice().to_vec(), length < SETTLED.sqrt());
             };
             (x, residual) = point;
-            let is_settled = if is_monotonic { length * share } else { next } < SETTLED;
-            if is_settled {
+            if next < SETTLED {
                 self.residual(&x);
                 return (x.as_slice().to_vec(), true);
             }
