@@ -68,21 +68,27 @@ const COLUMN: f64 = 5e-4;
 fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Overlap {
     let mut sum = Overlap::default();
     let columns = (2.0 * radius / COLUMN) as usize;
+    let reach = |dx: f64| (radius * radius - dx * dx).max(0.0).sqrt();
+    let depth = |dx: f64| road.height(centre[0] + dx) - centre[1] + reach(dx);
+    let mut left = depth(-radius);
     for k in 0..columns {
         let dx = -radius + (k as f64 + 0.5) * COLUMN;
-        let reach = (radius * radius - dx * dx).sqrt();
-        let (bottom, ground) = (centre[1] - reach, road.height(centre[0] + dx));
-        let depth = (ground - bottom).min(2.0 * reach);
-        if depth <= 0.0 {
+        let right = depth(dx + COLUMN / 2.0);
+        let inside = left.max(0.0) + right.max(0.0);
+        // Of the column at an edge only a part is in the ground. Counted as a whole, it would come and go with a jolt.
+        let share = inside / (left.abs() + right.abs()).max(f64::MIN_POSITIVE);
+        left = right;
+        if inside <= 0.0 {
             continue;
         }
-        let area = depth * COLUMN;
+        let (reach, depth) = (reach(dx), inside / 2.0);
+        let area = depth * share * COLUMN;
         sum.area += area;
         sum.moment[0] += area * dx;
-        sum.moment[1] += area * (bottom + depth / 2.0 - centre[1]);
+        sum.moment[1] += area * (depth / 2.0 - reach);
         // The arc over this column moves with the wheel: normal speed times arc length is the area it sweeps.
         let (nx, nz) = (dx / radius, -reach / radius);
-        let swept = (velocity[0] * nx + velocity[1] * nz) * COLUMN * radius / reach;
+        let swept = (velocity[0] * nx + velocity[1] * nz) * share * COLUMN * radius / reach;
         let part = if swept > 0.0 {
             &mut sum.growth
         } else {
