@@ -254,7 +254,7 @@ fn about() -> About {
             axes: vec![axis("z", 1, 3), axis("x", 5, 7)].into(),
         }),
         constants: PARAMETERS.len(),
-        linear: true,
+        linear: false,
         matrices: Cow::Borrowed(&[]),
         sensitivities: Cow::Borrowed(&[]),
         parameter_jacobian: Cow::Borrowed(&[]),
