@@ -131,7 +131,7 @@ pub fn discover(
     } else {
         Verdict::None
     };
-    let mut first = base.contenders(&judge, evidence, progress)?;
+    let mut first = base.contenders(&judge.wanted_first(&base), evidence, progress)?;
     judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
     for pick in (0..first.contenders.len())
@@ -214,12 +214,14 @@ impl Path {
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
         while self.findings.len() < MOST_EFFECTS && judge.is_gap(&self.state.explanation) && self.class.len() < 2 {
-            let mut field = self.state.contenders(judge, evidence, progress)?;
+            let more = MOST_EFFECTS - self.findings.len();
+            let wanted = judge.wanted_beside(&self, more);
+            let mut field = self.state.contenders(&wanted, evidence, progress)?;
             judge.simplest_first(&mut field.contenders);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best),
-                false => judge.is_step(&self.state, best, MOST_EFFECTS - self.findings.len()),
+                false => judge.is_step(&self.state, best, more),
             };
             if field.contenders.first().filter(helps).is_none() {
                 break;

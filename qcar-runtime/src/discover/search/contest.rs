@@ -187,6 +187,10 @@ pub fn contest(
         let stays = |entrant: usize| field.iter().any(|runner| runner.entrant == entrant);
         let left = before.into_iter().filter(|left| !stays(left.entrant));
         dropped.splice(0..0, left);
+        let is_measure = |runner: &Runner| entrants[runner.entrant].unknowns == 0;
+        if entrants.len() > 1 && field.iter().all(is_measure) {
+            return Ok((Vec::new(), dropped));
+        }
         progress(News::Doing(&told(entrants, &field)));
     }
     let finalists = field.into_par_iter().map(|runner| {

@@ -21,7 +21,7 @@ const STRAIN: f64 = 20.0;
 const SIGNIFICANT: f64 = 60.0;
 /// Where nothing is left but noise, it must lower the sum of squares by this share of it beside: what the errors of sensors
 /// and sides let an effect gain on a clean campaign is a fraction of that.
-pub const FAINT: f64 = 0.1;
+const FAINT: f64 = 0.1;
 /// A second effect is followed instead of the first where it lowers the sum of squares by this share of what that does.
 const CLOSE: f64 = 0.5;
 /// All effects together must close so much of the excess gap of the held-out runs,
@@ -41,6 +41,14 @@ const BY_CHANCE: f64 = 4.0;
 const VAGUE: f64 = 0.05;
 /// So many rivals are told of at least, those that were left behind early among them.
 const RIVALS: usize = 3;
+
+/// What would be of use.
+pub struct Wanted {
+    /// The share of the sum of squares that it must take.
+    pub least: f64,
+    /// Whether only a sensor can be it.
+    pub sensor: bool,
+}
 
 /// Holds explanations against the base model's, on runs that no fit has seen where there are any.
 pub struct Judge<'a> {
@@ -81,6 +89,27 @@ impl<'a> Judge<'a> {
             0.0
         };
         state.lowered(contender) > least.max(SIGNIFICANT * contender.explanation.scatter())
+    }
+
+    /// What may be the first effect. Where there is no gap, little is worth a look.
+    pub fn wanted_first(&self, state: &State) -> Wanted {
+        Wanted {
+            least: if self.is_gap(&state.explanation) { 0.0 } else { FAINT },
+            sensor: false,
+        }
+    }
+
+    /// What may come beside the effects of a path: a step, or, where these are enough, what closes as much again. If it is
+    /// the calibrations alone that are strained then, nothing but a sensor is to blame.
+    pub fn wanted_beside(&self, path: &Path, effects: usize) -> Wanted {
+        let explanation = &path.state.explanation;
+        let enough = self.is_enough(path);
+        let excess = 1.0 - explanation.refit.residuals as f64 / explanation.refit.chi2;
+        let share = if enough { CLOSED } else { CLOSED / effects as f64 };
+        Wanted {
+            least: share * excess.max(0.0),
+            sensor: enough && !self.is_clear(explanation),
+        }
     }
 
     /// True where an effect is a step on the way to an explanation: of what the present model leaves, it takes its share, so

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use super::contest::{Entrant, Finalist, Looks, contest};
-use super::rules::{FAINT, Judge, NOISE};
+use super::rules::{NOISE, Wanted};
 use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -143,17 +143,18 @@ impl State {
         })
     }
 
-    /// The best of all candidates, the very best first.
+    /// The best of all candidates that are wanted, the very best first.
     ///
     /// # Errors
     /// Where a parameter has no value.
     pub fn contenders(
         &self,
-        judge: &Judge,
+        wanted: &Wanted,
         evidence: &Evidence,
         progress: Progress<'_>,
     ) -> Result<Field, PredictError> {
-        let candidates = self.workshop.candidates();
+        let mut candidates = self.workshop.candidates();
+        candidates.retain(|candidate| candidate.is_sensor() || !wanted.sensor);
         let what = format!("trying {} effects at their places", candidates.len());
         progress(News::Doing(&what));
         let known = self.known();
@@ -173,7 +174,7 @@ impl State {
                 entered.push(place);
             }
         }
-        let (finalists, dropped) = contest(&entrants, &self.looks(judge, evidence), progress)?;
+        let (finalists, dropped) = contest(&entrants, &self.looks(wanted, evidence), progress)?;
         let nuisance = |finalist: &Finalist| entrants[finalist.entrant].explanandum.nuisance.clone();
         let finalists: Vec<_> = finalists
             .into_iter()
@@ -240,13 +241,13 @@ impl State {
 
     /// First at the fitted runs in which the present model is wrong most, and with as much tolerance as it needs itself:
     /// what is wrong with it must be seen.
-    fn looks<'e>(&self, judge: &Judge, evidence: &'e Evidence) -> Looks<'e> {
+    fn looks<'e>(&self, wanted: &Wanted, evidence: &'e Evidence) -> Looks<'e> {
         let telling = self.telling(evidence);
         Looks {
             first: evidence.only(|run| telling.contains(&run)),
             all: evidence,
             tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
-            least: if judge.is_gap(&self.explanation) { 0.0 } else { FAINT },
+            least: wanted.least,
         }
     }
 
