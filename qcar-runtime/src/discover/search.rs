@@ -225,7 +225,7 @@ impl Path {
             judge.simplest_first(&mut field.contenders);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
-                true => judge.adds_much(&self.state, best),
+                true => judge.adds_much(&self.state, best, self.findings.len() + 1),
                 false => judge.is_step(&self.state, best, more),
             };
             if field.contenders.first().filter(helps).is_none() {

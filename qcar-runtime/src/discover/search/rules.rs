@@ -26,7 +26,8 @@ const FAINT: f64 = 0.1;
 const CLOSE: f64 = 0.5;
 /// All effects together must close so much of the excess gap of the held-out runs,
 const CLOSED: f64 = 0.6;
-/// and leave no more than this, or, where it is one effect, close [`ALL_CLOSED`] of the excess.
+/// and leave no more than this, or close [`ALL_CLOSED`] of the excess, where it is one effect; several bend to much that
+/// they are not the cause of, and must leave no more than noise.
 const LEFT: f64 = 1.5;
 /// See [`LEFT`].
 const ALL_CLOSED: f64 = 0.97;
@@ -126,11 +127,12 @@ impl<'a> Judge<'a> {
     }
 
     /// True where an effect earns a place beside others that explain enough: it closes as much of what they leave as a
-    /// first one must, and the data determine all of its parameters.
-    pub fn adds_much(&self, state: &State, contender: &Contender) -> bool {
+    /// first one must, the data determine all of its parameters, and it makes one of so many `effects` that explain enough.
+    pub fn adds_much(&self, state: &State, contender: &Contender, effects: usize) -> bool {
         let determined = contender.parameters.iter().all(|(_, _, error)| error.is_finite());
         let closes = self.closed(&state.explanation, &contender.explanation) > CLOSED;
-        determined && closes && self.is_significant(state, contender)
+        let explains = self.leaves_enough(&contender.explanation, effects);
+        determined && closes && explains && self.is_significant(state, contender)
     }
 
     /// True where what is left does not matter any more.
@@ -142,8 +144,11 @@ impl<'a> Judge<'a> {
         let closed = self.closed(self.before, after);
         let missed = after.gap.missed(self.evidence, self.role);
         let is_good = missed.is_some_and(|missed| 1.0 - missed > ACCOUNTED);
-        let little = self.gap(after) < LEFT || effects < 2 && closed > ALL_CLOSED || is_good;
-        effects > 0 && little && closed > CLOSED
+        let little = match effects {
+            0 | 1 => self.gap(after) < LEFT || closed > ALL_CLOSED,
+            _ => self.gap(after) < NOISE,
+        };
+        effects > 0 && (little || is_good) && closed > CLOSED
     }
 
     /// True where the effects that are left do much worse.
