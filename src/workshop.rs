@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
+use qcar_dsl::difference::difference;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::Axis;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -64,7 +65,7 @@ impl Workshop for Bench {
     fn candidates(&self) -> Vec<Candidate> {
         let values = |name: &str| self.values.get(name).copied();
         let patched = self.catalogue.par_iter();
-        let patched = patched.flat_map_iter(|patch| patch.candidates(&self.model, &values));
+        let patched = patched.flat_map_iter(|patch| told_apart(patch.candidates(&self.model, &values)));
         patched.flat_map_iter(candidates).collect()
     }
 
@@ -73,6 +74,25 @@ impl Workshop for Bench {
         let changes_model = patched.signals.is_empty();
         changes_model.then(|| Box::new(self.holding(patched.model)) as Box<dyn Workshop>)
     }
+}
+
+/// Without the forms that come to the same in this model as one before them: past a strut on the upright, friction is
+/// friction between wheel and body.
+fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
+    let mut apart: Vec<Patched> = Vec::new();
+    for own in patched {
+        let is_same = |other: &Patched| other.place == own.place && moves_alike(other, &own);
+        if own.form.is_none() || !apart.iter().any(is_same) {
+            apart.push(own);
+        }
+    }
+    apart
+}
+
+/// True where the models have the same equations, however their links are written.
+fn moves_alike(one: &Patched, other: &Patched) -> bool {
+    let parts = difference(&one.model, &other.model).parts;
+    parts.iter().all(|part| part.heading != "equations")
 }
 
 /// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.

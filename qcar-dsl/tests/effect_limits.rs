@@ -447,6 +447,21 @@ fn friction_across_the_strut_leaves_the_top_mount_alone() {
 }
 
 #[test]
+fn friction_beside_all_levers_leaves_arms_and_top_mount_alone() {
+    let beside = in_form(&model("axle_d"), "coulomb_friction", "between_wheel_and_body", "damper");
+    let running = Running::new(&beside, &[("f_coulomb", 100.0), ("k_presliding", 1e5)]);
+    let slipping = |name: &str| match name {
+        "z_friction_f_dry" => 100.0,
+        _ => 0.0,
+    };
+    let on_wheel = 42.0 * running.rate("vz_wheel", &slipping);
+    assert!((on_wheel - 100.0).abs() < 1e-9, "{on_wheel}");
+    for at_rest in ["vz_tm", "vz_sf"] {
+        assert_eq!(running.rate(at_rest, &slipping), 0.0, "{at_rest}");
+    }
+}
+
+#[test]
 fn a_tyre_that_relaxes_while_rolling_stands_as_it_was() {
     let tyre = in_form(&model("axle_c"), "tire_dynamic_stiffness", "rolling", "tire");
     let running = Running::new(&tyre, &[("stiffness_ratio", 2.0), ("relaxation_frequency", 10.0)]);

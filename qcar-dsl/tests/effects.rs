@@ -117,8 +117,10 @@ fn an_effect_is_tried_in_each_form_that_the_model_allows() {
         candidates.into_iter().map(|patched| patched.form).collect()
     };
     let named = |form: &str| Some(form.to_string());
-    assert_eq!(forms("axle_c"), [named("in_damper"), named("across_strut")]);
-    assert_eq!(forms("axle_c_rigid_tm"), [named("in_damper")]);
+    let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
+    assert_eq!(forms("axle_c"), [inside, across, beside].map(named));
+    assert_eq!(forms("axle_c_rigid_tm"), [inside, beside].map(named));
+    assert_eq!(forms("one_mass"), [inside].map(named));
     assert_eq!(friction.places(&model("axle_c")), ["damper"]);
     assert!(friction.in_form("sideways").is_none());
 }
