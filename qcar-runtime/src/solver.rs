@@ -16,8 +16,12 @@ mod fastest;
 // The two methods.
 mod dormand_prince;
 mod rk4;
+// For what is linear but for its forces.
+mod exponential;
+mod matrix;
 
 pub use dormand_prince::{DormandPrince, Settings};
+pub use exponential::{Driven, ExponentialAdams, PAST};
 pub use rk4::Rk4;
 pub use step::Step;
 
@@ -155,6 +159,15 @@ pub struct Effort {
     pub rejected: usize,
     /// Events that were located.
     pub events: usize,
+}
+
+impl std::ops::AddAssign for Effort {
+    fn add_assign(&mut self, other: Self) {
+        self.evaluations += other.evaluations;
+        self.accepted += other.accepted;
+        self.rejected += other.rejected;
+        self.events += other.events;
+    }
 }
 
 /// The smooth legs of a span: its ends and the breaks inside it, pairwise.
