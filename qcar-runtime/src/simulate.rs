@@ -8,6 +8,8 @@
 mod failure;
 // What both kinds of simulation are held to.
 mod settings;
+// Signals between the samples of a smooth motion.
+mod gap;
 // Signals sampled without aliases.
 mod sampling;
 // Where a model comes to rest.
@@ -18,6 +20,8 @@ mod car;
 mod rolling;
 // What is recorded meanwhile.
 mod recorder;
+// The rest of a ride on level ground.
+mod level;
 // Rides over a road.
 mod ride;
 // Those that a campaign has measured.

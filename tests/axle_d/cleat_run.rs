@@ -48,3 +48,33 @@ fn every_signal_is_right_through_the_whole_transient() {
         }
     }
 }
+
+#[test]
+fn steps_from_sample_to_sample_agree_with_short_ones() {
+    let (parameters, road) = (cleat::parameters(), cleat::cleat(0.1));
+    let car = cleat::car(&parameters);
+    // So high and fast that the tyre leaves the ground.
+    let drive = cleat::drive(&road, 42.0 / 3.6);
+    let ridden = |method| {
+        let settings = Settings {
+            method,
+            ..Settings::default()
+        };
+        ride(&car, &drive, &settings).expect("it rides")
+    };
+    let exact = ridden(Method::Fixed(2e-5));
+    assert_eq!((exact.lift_offs.len(), exact.landings.len()), (1, 1));
+    // At the smaller tolerance the motion is handed back and forth between the two methods.
+    for (tolerance, most) in [(1e-6, 1200), (1e-7, 3000)] {
+        let found = ridden(Method::Adaptive(tolerance));
+        assert!(found.effort.evaluations < most, "{:?}", found.effort);
+        assert!((found.lift_offs[0] - exact.lift_offs[0]).abs() < 1e-6);
+        assert!((found.landings[0] - exact.landings[0]).abs() < 1e-6);
+        for (found, exact) in found.outputs.iter().zip(&exact.outputs) {
+            assert!(error(found, exact) < 1e-3, "{}", error(found, exact));
+        }
+        for (found, exact) in found.force.iter().zip(&exact.force) {
+            assert!(error(found, exact) < 1e-5, "{}", error(found, exact));
+        }
+    }
+}

@@ -3,7 +3,7 @@
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
 use crate::model::{About, Contact, Model};
-use crate::solver::{After, Event, Step, System};
+use crate::solver::{After, Event, PAST, Step, System};
 use crate::vectors::{Loops, widest};
 
 /// A rolling model with its records.
@@ -24,6 +24,8 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     pub landings: Vec<f64>,
     /// Time of the last evaluation, and whether the tyre was on the ground.
     last: (f64, bool),
+    /// What the contact did to the axle at the beginnings of the last legs on level ground, with their times, s.
+    noted: Vec<(f64, [f64; 2])>,
 }
 
 /// What is told of a contact, at the end of each row: force of the tyre in z and x, and its deflection.
@@ -47,6 +49,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             lift_offs: Vec::new(),
             landings: Vec::new(),
             last: (f64::NAN, true),
+            noted: Vec::new(),
         }
     }
 
@@ -56,6 +59,42 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         while self.tape.next(until.next_down()).is_some() {
             self.tape.record(&self.rates[self.first..]);
         }
+    }
+
+    /// What rolls.
+    pub fn rolling(&self) -> &Rolling<'a, M> {
+        &self.rolling
+    }
+
+    /// Notes what the contact does to the axle at time `t`, if the tyre is on level ground.
+    pub fn note_force(&mut self, t: f64, x: &[f64]) {
+        if let Some(contact) = self.rolling.level_contact(t, x) {
+            self.noted.push((t, self.rolling.driven(contact).force));
+        }
+    }
+
+    /// The forces that were noted last, if it was at these times.
+    pub fn past_forces(&self, times: &[f64]) -> Option<[[f64; 2]; PAST]> {
+        let (_, noted) = self.noted.split_last_chunk::<PAST>()?;
+        let at_these = noted.iter().map(|(time, _)| time).eq(times);
+        at_these.then(|| noted.map(|(_, force)| force))
+    }
+
+    /// Records a sample at time `t`, under a contact; what lies between it and the last one is left to
+    /// [`Recorder::finish`].
+    pub fn record_step(&mut self, t: f64, x: &[f64], contact: Contact) {
+        if self.tape.next(t).is_some() {
+            self.tape.skip_to(t);
+            let (dx, outputs, of_contact) = parts(&mut self.rates, x.len());
+            self.rolling.move_by(&self.rolling.driven(contact), x, dx, outputs);
+            tell(&contact, of_contact);
+            self.tape.record(&self.rates[self.first..]);
+        }
+    }
+
+    /// Fills in what lies between the steps of which only the ends were recorded.
+    pub fn finish(&mut self) {
+        self.tape.fill_in();
     }
 
     /// Each output at the samples.
@@ -90,6 +129,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
         self.rolling.pass_steps(t, x);
+        self.note_force(t, x);
     }
 
     fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
@@ -156,10 +196,21 @@ impl<M: Model + ?Sized> Loops for Observation<'_, '_, M> {
 /// Derivative and signals at time `t`, and whether the tyre is on the ground.
 #[inline(always)]
 fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], rates: &mut [f64]) -> bool {
-    let (dx, signals) = rates.split_at_mut(x.len());
-    let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);
+    let (dx, outputs, of_contact) = parts(rates, x.len());
     let contact = rolling.motion(t, x, dx, outputs);
-    let Contact { s, force, .. } = contact.unwrap_or_default();
-    of_contact.copy_from_slice(&[force[0], force[1], -s]);
+    tell(&contact.unwrap_or_default(), of_contact);
     contact.is_some()
+}
+
+/// The rates of the states, the outputs, and what is told of the contact.
+#[inline(always)]
+fn parts(rates: &mut [f64], states: usize) -> (&mut [f64], &mut [f64], &mut [f64]) {
+    let (dx, signals) = rates.split_at_mut(states);
+    let (outputs, of_contact) = signals.split_at_mut(signals.len() - OF_CONTACT);
+    (dx, outputs, of_contact)
+}
+
+#[inline(always)]
+fn tell(contact: &Contact, of_contact: &mut [f64]) {
+    of_contact.copy_from_slice(&[contact.force[0], contact.force[1], -contact.s]);
 }

@@ -2,8 +2,9 @@
 
 use super::car::Car;
 use super::failure::{SimulateError, positive};
+use super::level::Rest;
 use super::recorder::Recorder;
-use super::rolling::Rolling;
+use super::rolling::{Rolling, level_from};
 use super::sampling::{AntiAlias, Grid};
 use super::settings::Settings;
 use crate::model::Model;
@@ -78,11 +79,13 @@ pub fn ride<M: Model + ?Sized>(
         mut x,
         span,
         grid,
-    } = Departure::new(car, drive)?;
+        rest,
+    } = Departure::new(car, drive, settings)?;
     let (static_deflection, traction) = (rolling.deflection(span.0, &x), rolling.traction);
     let mut recorder = Recorder::new(rolling, grid, car.model.about());
     recorder.rest(span.0, &x);
-    let effort = drive.integrate(car, settings, &mut recorder, span, &mut x)?;
+    let effort = drive.integrate(car, settings, &mut recorder, (span, rest), &mut x)?;
+    recorder.finish();
     let [vertical, longitudinal, area] = recorder.contact();
     Ok(Ride {
         time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
@@ -111,9 +114,10 @@ pub fn end_of_ride<M: Model + ?Sized>(
         mut x,
         span,
         grid,
-    } = Departure::new(car, drive)?;
+        rest,
+    } = Departure::new(car, drive, settings)?;
     let mut unrecorded = Recorder::new(rolling, grid.without_points(), car.model.about());
-    let effort = drive.integrate(car, settings, &mut unrecorded, span, &mut x)?;
+    let effort = drive.integrate(car, settings, &mut unrecorded, (span, rest), &mut x)?;
     Ok((x, effort))
 }
 
@@ -124,17 +128,27 @@ struct Departure<'a, M: ?Sized> {
     /// When the road begins to move it, and when the record ends, s.
     span: (f64, f64),
     grid: Grid,
+    /// How the ride is stepped when the ground is level again, if that can be foreseen.
+    rest: Option<Rest>,
 }
 
 impl<'a, M: Model + ?Sized> Departure<'a, M> {
-    fn new(car: &Car<'a, M>, drive: &Drive<'a>) -> Result<Self, SimulateError> {
+    fn new(car: &Car<'a, M>, drive: &Drive<'a>, settings: &Settings) -> Result<Self, SimulateError> {
         let tyre = car.rolling_tyre();
         drive.check(&tyre)?;
         let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
         let start = drive.start(&tyre).min(grid.start());
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
-        Ok(Self { rolling, x, span, grid })
+        let levels = drive.levels(&tyre) < span.1;
+        let rest = levels.then(|| Rest::new(&rolling, car.model.about(), settings, &grid.sample_times()));
+        Ok(Self {
+            rolling,
+            x,
+            span,
+            grid,
+            rest: rest.flatten(),
+        })
     }
 }
 
@@ -166,11 +180,18 @@ impl Drive<'_> {
         car: &Car<'_, M>,
         settings: &Settings,
         recorder: &mut Recorder<'_, M>,
-        span: (f64, f64),
+        (span, rest): ((f64, f64), Option<Rest>),
         x: &mut [f64],
     ) -> Result<Effort, SimulateError> {
-        let longest_step = self.longest_step(&car.rolling_tyre());
-        settings.integrate(car.model.about(), recorder, span, (longest_step, &[]), x)
+        let tyre = car.rolling_tyre();
+        let longest_step = self.longest_step(&tyre);
+        let general = |recorder: &mut Recorder<'_, M>, span: (f64, f64), breaks: &[f64], x: &mut [f64]| {
+            settings.integrate(car.model.about(), recorder, span, (longest_step, breaks), x)
+        };
+        match rest {
+            Some(mut rest) => rest.integrate(recorder, (span.0, self.levels(&tyre)), x, general),
+            None => general(recorder, span, &[], x),
+        }
     }
 
     /// When the whole circle of the tyre stands before the first point of the road, s.
@@ -178,11 +199,20 @@ impl Drive<'_> {
         (self.road.extent()[0] - tyre.radius()) / self.speed
     }
 
-    /// When the circle of the tyre comes over ground that is not level any more, s: until then a car at rest rests.
+    /// When the circle of the tyre may meet ground that is not level any more, s: until then a car at rest rests.
     /// On a road that is level for ever it never does, and nothing is taken for granted.
     fn reaches(&self, tyre: &Tyre) -> f64 {
-        let uneven = self.road.vertices().windows(2).find(|pair| pair[0][1] != pair[1][1]);
-        uneven.map_or(f64::NEG_INFINITY, |pair| (pair[0][0] - tyre.radius()) / self.speed)
+        let vertices = self.road.vertices();
+        let uneven = vertices.windows(2).find(|pair| pair[0][1] != pair[1][1]);
+        // However high the road rises further on, the circle at rest meets it no earlier than at that height.
+        let clearance = tyre.radius() - tyre.static_deflection() - (self.road.bounds().highest - vertices[0][1]);
+        let reach = (tyre.radius().powi(2) - clearance.max(0.0).powi(2)).sqrt();
+        uneven.map_or(f64::NEG_INFINITY, |pair| (pair[0][0] - reach) / self.speed)
+    }
+
+    /// When the circle of the tyre stands on ground that stays level, s.
+    fn levels(&self, tyre: &Tyre) -> f64 {
+        (level_from(self.road) + tyre.radius()) / self.speed
     }
 
     /// The longest step that cannot pass over any part of the road unseen, s.

@@ -35,6 +35,8 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     smooth_until: f64,
     /// Where the road turns sharply. The force of a circle bends when its rim comes over one of these points.
     edges: Vec<[f64; 2]>,
+    /// Where the circle of the tyre has left the last uneven ground behind, m.
+    level_from: f64,
 }
 
 /// Places of the wheel's position and velocity, in z and, where it moves, in x.
@@ -78,6 +80,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             piece: Cell::new(0),
             smooth_until: f64::INFINITY,
             edges: edges(tyre.geometry(), road),
+            level_from: level_from(road) + tyre.radius(),
         };
         let mut x = vec![0.0; about.states.len()];
         let scales: Vec<f64> = scales(about).collect();
@@ -116,16 +119,43 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     #[inline(always)]
     pub fn motion(&self, t: f64, x: &[f64], dx: &mut [f64], y: &mut [f64]) -> Option<Contact> {
         let contact = self.touch(t, x).map(|touch| self.contact(Some(&touch), x));
-        let driven = self.driven(contact.unwrap_or_default());
+        self.move_by(&self.driven(contact.unwrap_or_default()), x, dx, y);
+        contact
+    }
+
+    /// `dx/dt` and, where there is room for them, the outputs of the model under forces.
+    #[inline(always)]
+    pub fn move_by(&self, driven: &Contact, x: &[f64], dx: &mut [f64], y: &mut [f64]) {
         self.model
-            .rolling_derivative(&self.constants, x, &self.inputs, &driven, dx);
+            .rolling_derivative(&self.constants, x, &self.inputs, driven, dx);
         for &place in &self.locked {
             dx[place] = 0.0;
         }
         if !y.is_empty() {
-            self.model.rolling_outputs(&self.constants, x, &self.inputs, &driven, y);
+            self.model.rolling_outputs(&self.constants, x, &self.inputs, driven, y);
         }
-        contact
+    }
+
+    /// True where but for the force of the contact all is linear: in a linear model whose tyre has no states of its own.
+    pub fn is_linear(&self) -> bool {
+        let about = self.model.about();
+        let states = vec![0.0; about.states.len()];
+        let mut rate = states.clone();
+        let moving = Contact {
+            s: 1.0,
+            v: 1.0,
+            force: [0.0; 2],
+        };
+        self.move_by(&moving, &states, &mut rate, &mut []);
+        about.linear && rate == states
+    }
+
+    /// The contact at time `t` with level ground that goes on for ever; none elsewhere, and in the air.
+    #[inline(always)]
+    pub fn level_contact(&self, t: f64, x: &[f64]) -> Option<Contact> {
+        let level = self.wheel(t, x).position[0] >= self.level_from;
+        let touch = self.touch(t, x).filter(|_| level)?;
+        Some(self.contact(Some(&touch), x))
     }
 
     /// The contact of the tyre with the road at time `t`.
@@ -189,7 +219,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// The forces that move the wheel from its rest: beside the contact's, the static load, which the preloads of the
     /// suspension put on it, and the traction.
     #[inline]
-    fn driven(&self, mut contact: Contact) -> Contact {
+    pub fn driven(&self, mut contact: Contact) -> Contact {
         contact.force[0] -= self.load;
         contact.force[1] += self.traction;
         contact
@@ -202,6 +232,12 @@ fn edges(geometry: Geometry, road: &Road) -> Vec<[f64; 2]> {
         // A point feels a step as an event, and nothing else before it is on it.
         Geometry::Point => Vec::new(),
     }
+}
+
+/// Where the ground of a road becomes level for good, m; minus infinity where it always is.
+pub(super) fn level_from(road: &Road) -> f64 {
+    let uneven = road.vertices().windows(2).rfind(|pair| pair[0][1] != pair[1][1]);
+    uneven.map_or(f64::NEG_INFINITY, |pair| pair[1][0])
 }
 
 /// After which times the rim of a circle comes over a point and leaves it, s; not numbers where it does not.

@@ -1,5 +1,6 @@
 //! Signals as a recorder would take them: on a fine grid, through an anti-alias filter, at the sample rate.
 
+use super::gap::Gap;
 use crate::vectors::{Loops, widest};
 
 /// The anti-alias filter: linear phase, without delay, flat within 0.02 % up to 0.4 of the sample rate.
@@ -126,6 +127,12 @@ impl Grid {
         Self { samples: 0, ..self }
     }
 
+    /// The samples with those that the filter needs before the first and behind the last, s.
+    pub fn sample_times(&self) -> Vec<f64> {
+        let points = (0..self.points()).step_by(self.filter.oversampling);
+        points.map(|point| self.time(point)).collect()
+    }
+
     /// Number of points.
     fn points(&self) -> usize {
         match self.samples {
@@ -152,6 +159,8 @@ pub(super) struct Tape {
     next: usize,
     /// Each phase of each signal, one behind the other.
     tracks: Vec<f64>,
+    /// What was left out.
+    gaps: Vec<Gap>,
 }
 
 impl Tape {
@@ -161,6 +170,7 @@ impl Tape {
         Self {
             next: 0,
             tracks: vec![0.0; tracks * grid.points_of_phase()],
+            gaps: Vec::new(),
             grid,
         }
     }
@@ -182,10 +192,52 @@ impl Tape {
         self.next += 1;
     }
 
+    /// Leaves out what lies before a sample at time `t` (s).
+    pub fn skip_to(&mut self, t: f64) {
+        let every = self.grid.filter.oversampling;
+        let from = self.next.saturating_sub(1) / every;
+        while self.next(t.next_down()).is_some() {
+            self.next += 1;
+        }
+        let to = self.next / every;
+        match self.gaps.last_mut() {
+            Some(gap) if gap.to == from && gap.stride == to - from => gap.to = to,
+            _ => self.gaps.push(Gap {
+                from,
+                to,
+                stride: to - from,
+                reach: AntiAlias::REACH,
+            }),
+        }
+    }
+
+    /// Fills in what was left out.
+    pub fn fill_in(&mut self) {
+        let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
+        for signal in self.tracks.chunks_exact_mut(every * length) {
+            for gap in &self.gaps {
+                gap.fill(signal, (every, length), self.next.div_ceil(every));
+            }
+        }
+    }
+
     /// The samples of a signal through the filter.
     pub fn filtered(&self, signal: usize) -> Vec<f64> {
-        let filter = &self.grid.filter;
-        filter.decimate_phases(|phase| self.track(signal, phase), self.grid.samples)
+        let (filter, samples) = (&self.grid.filter, self.grid.samples);
+        let mut out = Vec::with_capacity(samples);
+        let filter_to = |out: &mut Vec<f64>, end: usize| {
+            let from = out.len();
+            out.extend(filter.decimate_phases(|phase| &self.track(signal, phase)[from..], end - from));
+        };
+        for gap in &self.gaps {
+            // What is smooth passes the filter as it is.
+            let smooth = gap.all_smooth();
+            let (start, end) = (smooth.start.min(samples), smooth.end.min(samples));
+            filter_to(&mut out, start);
+            out.extend_from_slice(&self.plain(signal)[start..end]);
+        }
+        filter_to(&mut out, samples);
+        out
     }
 
     /// The samples of a signal as it is.
