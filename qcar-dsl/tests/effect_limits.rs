@@ -397,6 +397,20 @@ fn a_progressive_tyre_has_its_tangent_at_twice_the_static_deflection() {
 }
 
 #[test]
+fn a_tyre_that_stiffens_beyond_its_static_deflection_is_as_it_was_below() {
+    let axle = model("axle_c");
+    let stiffer = in_form(&axle, "tire_progressive_stiffness", "rolling_beyond_static", "tire");
+    let of = |increase: f64| Running::new(&stiffer, &[("tangent_increase_at_twice_static", increase)]);
+    let (plain, stiffer) = (of(0.0), of(0.4));
+    let force = |of: &Running, s: f64| of.rates(&|name| if name == "s" { s } else { 0.0 }, true)[0].1;
+    let added = |deflection: f64| (force(&stiffer, -deflection) - force(&plain, -deflection)).abs();
+    let static_def = 0.019;
+    assert_eq!(added(0.5 * static_def), 0.0);
+    let tangent = slope(added, 2.0 * static_def);
+    assert!((tangent / (0.4 * 230e3) - 1.0).abs() < 1e-6, "{tangent}");
+}
+
+#[test]
 fn a_rigid_body_over_two_axles_has_its_own_pitch_inertia() {
     let model = patched(&model("axle_c_rigid_tm"), "apparent_mass", "body");
     let index = 0.8;
