@@ -7,6 +7,8 @@
 
 // Fourier series by their samples.
 mod basis;
+// Its Jacobian without the positions.
+mod factors;
 // The balance at one excitation, and its solution.
 mod balance;
 

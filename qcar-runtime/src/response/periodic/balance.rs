@@ -1,9 +1,10 @@
 //! `ω dx/dθ = f(x, u)` in Fourier coefficients, and Newton's method for it.
 
-use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::basis::Basis;
-use crate::model::{Matrix, Model};
+use super::factors::{Factors, Integral};
+use crate::model::{Matrix, Model, StateKind};
 
 /// The balance of a model at one drive.
 pub struct Balance<'a> {
@@ -24,7 +25,7 @@ pub struct Balance<'a> {
     /// The nonzeros of ∂f/∂p and ∂h/∂p there.
     by_parameter: Vec<Vec<f64>>,
     /// The factorised Jacobian of the present point.
-    factors: Option<LU<f64, Dyn, Dyn>>,
+    factors: Option<Factors>,
 }
 
 /// Newton steps before the search gives up.
@@ -78,7 +79,7 @@ impl<'a> Balance<'a> {
         let mut residual = self.residual(&x);
         let mut kept = None;
         for _ in 0..ITERATIONS {
-            let factors = kept.take().unwrap_or_else(|| self.jacobian().lu());
+            let factors = kept.take().unwrap_or_else(|| self.factorise());
             let Some(step) = factors.solve(&residual) else {
                 return (x.as_slice().to_vec(), false);
             };
@@ -119,7 +120,7 @@ impl<'a> Balance<'a> {
 
     /// Makes the present point ready for derivatives.
     pub fn linearise(&mut self) {
-        self.factors = Some(self.jacobian().lu());
+        self.factors = Some(self.factorise());
         let points = self.samples.iter().zip(&self.inputs);
         let by_parameter = points.map(|(x, u)| {
             let mut nonzeros = vec![0.0; self.model.about().parameter_jacobian.len()];
@@ -232,6 +233,40 @@ impl<'a> Balance<'a> {
                 .map(|(partner, factor)| -factor * x[place * terms + partner]);
             -self.omega * turned.unwrap_or(0.0) - forced[(term, place)]
         })
+    }
+
+    /// The factors of the Jacobian at the present point.
+    fn factorise(&mut self) -> Factors {
+        let jacobian = self.jacobian();
+        let inverse = |term| match self.basis.derivative(term) {
+            Some((partner, factor)) => (partner, 1.0 / (self.omega * factor)),
+            None => (term, 1.0 / (self.omega * RETURN)),
+        };
+        let moves = (0..self.basis.terms()).map(inverse).collect();
+        Factors::new(jacobian, self.integrals(), moves)
+    }
+
+    /// The positions whose rate is a velocity and nothing else.
+    fn integrals(&self) -> Vec<Integral> {
+        let about = self.model.about();
+        let integral = |(place, &state): (usize, &usize)| {
+            let is_of_it = |entry: &usize| {
+                about.matrices[*entry].matrix == Matrix::A && usize::from(about.matrices[*entry].row) == state
+            };
+            let mut entries = (0..about.matrices.len()).filter(is_of_it);
+            let entry = entries.next()?;
+            let of = usize::from(about.matrices[entry].column);
+            let is_rate = about.states[state].kind == StateKind::Position
+                && about.states[of].kind == StateKind::Velocity
+                && entries.next().is_none()
+                && self.matrices.iter().all(|at| at[entry] == 1.0);
+            let velocity = self.places[of].filter(|_| is_rate)?;
+            Some(Integral {
+                position: place,
+                velocity,
+            })
+        };
+        self.states.iter().enumerate().filter_map(integral).collect()
     }
 
     /// The Jacobian of [`Self::residual`] at the present point.
