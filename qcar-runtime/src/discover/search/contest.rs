@@ -96,8 +96,10 @@ const STAGES: [Stage; 5] = [
     },
 ];
 
-/// So many times as many evaluations are for a model that costs little in a first look.
+/// So many times as many evaluations are for a linear model in a first look, which costs little,
 const PATIENCE: usize = 3;
+/// and for one beside a bent law, where all cost alike.
+const LESS_PATIENCE: usize = 2;
 
 /// Starts of one entrant whose scores differ by less than this share have come to the same place.
 const SAME: f64 = 0.005;
@@ -112,8 +114,12 @@ impl Stage {
     /// resonance is not dropped for want of a few steps.
     fn evaluations(&self, entrant: &Entrant, entrants: &[Entrant]) -> usize {
         let is_linear = |entrant: &Entrant| entrant.explanandum.model.about().linear;
-        let costs_little = self.first && (is_linear(entrant) || !is_linear(&entrants[0]));
-        self.evaluations * if costs_little { PATIENCE } else { 1 }
+        let times = match (self.first, is_linear(entrant), is_linear(&entrants[0])) {
+            (true, true, _) => PATIENCE,
+            (true, false, false) => LESS_PATIENCE,
+            _ => 1,
+        };
+        self.evaluations * times
     }
 }
 

@@ -258,9 +258,12 @@ impl State {
         let is_fitted = |run: &usize| evidence.runs[*run].role == Role::Fit && runs[*run].0.is_finite();
         let mut fitted: Vec<usize> = (0..runs.len()).filter(is_fitted).collect();
         if self.explanation.gap.fit > NOISE {
-            let widest = fitted.iter().map(|&run| runs[run].0).fold(0.0, f64::max);
-            let heaviest = fitted.iter().map(|&run| runs[run].1).fold(0.0, f64::max);
-            fitted.retain(|&run| runs[run].0 > MUCH * widest || runs[run].1 > MUCH * heaviest);
+            // What is no more than noise tells nothing, however much of it there is.
+            let width = |run: usize| (runs[run].0.powi(2) - 1.0).max(0.0).sqrt();
+            let weight = |run: usize| runs[run].1 * (1.0 - runs[run].0.powi(-2)).max(0.0);
+            let widest = fitted.iter().map(|&run| width(run)).fold(0.0, f64::max);
+            let heaviest = fitted.iter().map(|&run| weight(run)).fold(0.0, f64::max);
+            fitted.retain(|&run| width(run) > MUCH * widest || weight(run) > MUCH * heaviest);
             return fitted;
         }
         fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
