@@ -12,8 +12,6 @@ mod rules;
 // A model with effects in it, and what is tried on it.
 mod state;
 
-use std::collections::BTreeSet;
-
 use super::candidate::Workshop;
 use super::evidence::Evidence;
 use super::explain::{Explanation, Setting};
@@ -84,8 +82,7 @@ pub struct Discovery {
 
 /// Effects that are looked for one after the other.
 const MOST_EFFECTS: usize = 3;
-/// First effects from which a search goes on, each at a place of its own: of two effects the stronger need not be the one
-/// that shows first, but two at one place stand for the same.
+/// First effects from which a search goes on: of two effects the stronger need not be the one that shows first.
 const FIRST_PICKS: usize = 2;
 
 /// What a search tells of itself meanwhile.
@@ -137,11 +134,9 @@ pub fn discover(
     let mut first = base.contenders(&judge.wanted_first(&base), evidence, progress)?;
     judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
-    let mut places = BTreeSet::new();
     for pick in (0..first.contenders.len())
         .filter(|&pick| judge.is_significant(&base, &first.contenders[pick]))
         .filter(|&pick| judge.comes_close(&base, &first.contenders[pick], &first.contenders[0]))
-        .filter(|&pick| places.insert(&first.contenders[pick].candidate.at))
         .take(FIRST_PICKS)
     {
         let path = Path::begin(&base, &first, pick, &judge);
