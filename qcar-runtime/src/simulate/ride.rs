@@ -74,17 +74,11 @@ pub fn ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<Ride, SimulateError> {
-    let Departure {
-        rolling,
-        mut x,
-        span,
-        grid,
-        rest,
-    } = Departure::new(car, drive, settings)?;
-    let (static_deflection, traction) = (rolling.deflection(span.0, &x), rolling.traction);
-    let mut recorder = Recorder::new(rolling, grid, car.model.about());
-    recorder.rest(span.0, &x);
-    let effort = drive.integrate(car, settings, &mut recorder, (span, rest), &mut x)?;
+    let mut journey = Journey::new(car, drive, settings, |grid| grid)?;
+    let rolling = journey.recorder.rolling();
+    let (static_deflection, traction) = (rolling.deflection(journey.span.0, &journey.x), rolling.traction);
+    let effort = journey.integrate(car, drive, settings)?;
+    let mut recorder = journey.recorder;
     recorder.finish();
     let [vertical, longitudinal, area] = recorder.contact();
     Ok(Ride {
@@ -109,46 +103,58 @@ pub fn end_of_ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<(Vec<f64>, Effort), SimulateError> {
-    let Departure {
-        rolling,
-        mut x,
-        span,
-        grid,
-        rest,
-    } = Departure::new(car, drive, settings)?;
-    let mut unrecorded = Recorder::new(rolling, grid.without_points(), car.model.about());
-    let effort = drive.integrate(car, settings, &mut unrecorded, (span, rest), &mut x)?;
-    Ok((x, effort))
+    let mut journey = Journey::new(car, drive, settings, Grid::without_points)?;
+    let effort = journey.integrate(car, drive, settings)?;
+    Ok((journey.x, effort))
 }
 
 /// A car at rest on flat ground, about to move.
-struct Departure<'a, M: ?Sized> {
-    rolling: Rolling<'a, M>,
+struct Journey<'a, M: ?Sized> {
+    recorder: Recorder<'a, M>,
     x: Vec<f64>,
     /// When the road begins to move it, and when the record ends, s.
     span: (f64, f64),
-    grid: Grid,
-    /// How the ride is stepped when the ground is level again, if that can be foreseen.
+    /// How it is stepped when the ground is level again, if that can be foreseen.
     rest: Option<Rest>,
 }
 
-impl<'a, M: Model + ?Sized> Departure<'a, M> {
-    fn new(car: &Car<'a, M>, drive: &Drive<'a>, settings: &Settings) -> Result<Self, SimulateError> {
-        let tyre = car.rolling_tyre();
+impl<'a, M: Model + ?Sized> Journey<'a, M> {
+    /// Of the grid of the samples that points are recorded which `recorded` leaves.
+    fn new(
+        car: &Car<'a, M>,
+        drive: &Drive<'a>,
+        settings: &Settings,
+        recorded: impl Fn(Grid) -> Grid,
+    ) -> Result<Self, SimulateError> {
+        let (tyre, about) = (car.rolling_tyre(), car.model.about());
         drive.check(&tyre)?;
         let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
         let start = drive.start(&tyre).min(grid.start());
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
         let levels = drive.levels(&tyre) < span.1;
-        let rest = levels.then(|| Rest::new(&rolling, car.model.about(), settings, &grid.sample_times()));
+        let rest = levels.then(|| Rest::new(&rolling, about, settings, &grid.sample_times()));
+        let mut recorder = Recorder::new(rolling, recorded(grid), about);
+        recorder.rest(span.0, &x);
         Ok(Self {
-            rolling,
+            recorder,
             x,
             span,
-            grid,
             rest: rest.flatten(),
         })
+    }
+
+    fn integrate(&mut self, car: &Car<'_, M>, drive: &Drive<'_>, settings: &Settings) -> Result<Effort, SimulateError> {
+        let tyre = car.rolling_tyre();
+        let longest_step = drive.longest_step(&tyre);
+        let general = |recorder: &mut Recorder<'_, M>, span: (f64, f64), breaks: &[f64], x: &mut [f64]| {
+            settings.integrate(car.model.about(), recorder, span, (longest_step, breaks), x)
+        };
+        let (start, end) = self.span;
+        match &mut self.rest {
+            Some(rest) => rest.integrate(&mut self.recorder, (start, drive.levels(&tyre)), &mut self.x, general),
+            None => general(&mut self.recorder, (start, end), &[], &mut self.x),
+        }
     }
 }
 
@@ -172,25 +178,6 @@ impl Drive<'_> {
             })
         } else {
             Ok(())
-        }
-    }
-
-    fn integrate<M: Model + ?Sized>(
-        &self,
-        car: &Car<'_, M>,
-        settings: &Settings,
-        recorder: &mut Recorder<'_, M>,
-        (span, rest): ((f64, f64), Option<Rest>),
-        x: &mut [f64],
-    ) -> Result<Effort, SimulateError> {
-        let tyre = car.rolling_tyre();
-        let longest_step = self.longest_step(&tyre);
-        let general = |recorder: &mut Recorder<'_, M>, span: (f64, f64), breaks: &[f64], x: &mut [f64]| {
-            settings.integrate(car.model.about(), recorder, span, (longest_step, breaks), x)
-        };
-        match rest {
-            Some(mut rest) => rest.integrate(recorder, (span.0, self.levels(&tyre)), x, general),
-            None => general(recorder, span, &[], x),
         }
     }
 
