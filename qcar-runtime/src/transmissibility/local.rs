@@ -5,6 +5,7 @@
 //! across it cannot; the last term is the leakage of what rings on beyond the end of the record, which has the same
 //! poles. Multiplied by the denominator this is linear in b₀, b₁, t₀ and a₁, and b₀ is the response at f.
 
+use nalgebra::linalg::SVD;
 use nalgebra::{Complex, DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -99,18 +100,40 @@ fn fit(reference: &[Complex<f64>], response: &[Complex<f64>], offsets: &[f64]) -
 }
 
 /// By way of unit columns; where the response is flat, b₁ and a₁ cannot be told apart and share the part that they explain.
+///
+/// Not numbers where the regressors are not, as those of a simulation that has diverged: a decomposition of such a matrix
+/// never ends.
 pub(super) fn pseudo_inverse(regressors: &DMatrix<Complex<f64>>) -> DMatrix<Complex<f64>> {
     const SAME: f64 = 1e-10;
+    const MOST_ITERATIONS: usize = 10_000;
     let norm = |column: usize| regressors.column(column).norm().max(f64::MIN_POSITIVE);
     let norms: Vec<f64> = (0..regressors.ncols()).map(norm).collect();
     let mut unit = regressors.clone();
     unit.column_iter_mut()
         .zip(&norms)
         .for_each(|(mut column, norm)| column.unscale_mut(*norm));
-    let mut inverse = unit.pseudo_inverse(SAME).expect("the tolerance is positive");
+    let finite = unit.iter().all(|entry| entry.is_finite());
+    let parts = finite.then(|| SVD::try_new_unordered(unit, true, true, 5.0 * f64::EPSILON, MOST_ITERATIONS));
+    let inverse = parts.flatten().and_then(|parts| parts.pseudo_inverse(SAME).ok());
+    let nothing = || DMatrix::from_element(regressors.ncols(), regressors.nrows(), Complex::from(f64::NAN));
+    let mut inverse = inverse.unwrap_or_else(nothing);
     inverse
         .row_iter_mut()
         .zip(&norms)
         .for_each(|(mut row, norm)| row.unscale_mut(*norm));
     inverse
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_a_number_has_no_inverse_and_the_search_for_it_ends() {
+        for wrong in [f64::NAN, f64::INFINITY] {
+            let entry = |row: usize, column: usize| Complex::from(if row == column { wrong } else { 1.0 });
+            let inverse = pseudo_inverse(&DMatrix::from_fn(6, 3, entry));
+            assert!(inverse.iter().all(|entry| entry.re.is_nan()));
+        }
+    }
 }
