@@ -76,13 +76,9 @@ impl Rest {
             sample = sample.min(last);
             let breaks = &self.times[sample.saturating_sub(PAST - 1)..sample];
             effort += general(recorder, (time, self.times[sample]), breaks, x)?;
-            let steps = self.advance(recorder, sample, x);
-            effort += Effort {
-                evaluations: steps,
-                accepted: steps,
-                ..Effort::default()
-            };
-            sample += steps;
+            let advance = self.advance(recorder, sample, x);
+            effort += advance;
+            sample += advance.accepted;
             if sample == last {
                 return Ok(effort);
             }
@@ -92,20 +88,27 @@ impl Rest {
         }
     }
 
-    /// Steps on from a sample as far as the motion is smooth: the number of steps.
-    fn advance<M: Model + ?Sized>(&mut self, recorder: &mut Recorder<'_, M>, sample: usize, x: &mut [f64]) -> usize {
+    /// Steps on from a sample as far as the motion is smooth: what that cost.
+    fn advance<M: Model + ?Sized>(&mut self, recorder: &mut Recorder<'_, M>, sample: usize, x: &mut [f64]) -> Effort {
         recorder.note_force(self.times[sample], x);
         let Some(past) = recorder.past_forces(&self.times[(sample + 1).saturating_sub(PAST)..=sample]) else {
-            return 0;
+            return Effort::default();
         };
         self.adams.begin(x, &past);
-        let steps = widest(Steps {
+        let accepted = widest(Steps {
             rest: self,
             recorder,
             sample,
         });
         x.copy_from_slice(self.adams.state());
-        steps
+        // It ends with a step that was refused, or with the last sample.
+        let rejected = usize::from(sample + accepted + 1 < self.times.len());
+        Effort {
+            evaluations: accepted + rejected,
+            accepted,
+            rejected,
+            events: 0,
+        }
     }
 
     /// One step to a time, s; false where it cannot be made.
