@@ -18,10 +18,10 @@ mod equilibrium;
 mod car;
 // What moves it while the tyre rolls over a road.
 mod rolling;
+// What is faster for a linear axle.
+mod shortcut;
 // What is recorded meanwhile.
 mod recorder;
-// The rest of a ride on level ground.
-mod level;
 // Rides over a road.
 mod ride;
 // Those that a campaign has measured.

@@ -56,6 +56,12 @@ pub trait System {
         f64::INFINITY
     }
 
+    /// Goes on from an accepted step that ended at `t`, by a method of its own that takes less than this one: to what time,
+    /// inside the leg, and what that cost. It leaves the state there in `x`, and a new leg begins.
+    fn shortcut(&mut self, _t: f64, _x: &mut [f64], _most_steps: usize) -> Option<(f64, Effort)> {
+        None
+    }
+
     /// The number of event functions.
     fn events(&self) -> usize {
         0

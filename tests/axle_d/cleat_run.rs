@@ -2,7 +2,9 @@
 
 use models::axle_d::AxleD;
 use qcar_runtime::model::Model;
-use qcar_runtime::simulate::{Method, Ride, Settings, ride};
+use qcar_runtime::road::{Class, Random, Road};
+use qcar_runtime::simulate::{Method, Ride, Settings, SimulateError, ride};
+use qcar_runtime::solver::Reason;
 
 use crate::cleat;
 
@@ -34,18 +36,70 @@ fn every_signal_is_right_through_the_whole_transient() {
         {
             let error = error(found, exact);
             assert!(
-                error < 1e-3,
+                error < 3e-4,
                 "{kmh} km/h, {height} m: {} is off by {error} of its peak",
                 output.name
             );
         }
         for (found, exact) in found.force.iter().zip(&exact.force) {
             assert!(
-                error(found, exact) < 1e-5,
+                error(found, exact) < 3e-6,
                 "{kmh} km/h, {height} m: {}",
                 error(found, exact)
             );
         }
+    }
+}
+
+#[test]
+fn a_rough_road_takes_hardly_more_than_a_step_a_sample() {
+    let parameters = cleat::parameters();
+    let random = Random {
+        class: Class::C,
+        seed: 3,
+        length: 20.0,
+        spacing: 0.01,
+    };
+    let road = Road::from_random(&random).expect("a road");
+    let drive = cleat::drive(&road, 30.0 / 3.6);
+    let ridden = |tolerance| {
+        let settings = Settings {
+            method: Method::Adaptive(tolerance),
+            ..Settings::default()
+        };
+        ride(&cleat::car(&parameters), &drive, &settings).expect("it rides")
+    };
+    let (found, exact) = (ridden(1e-6), ridden(1e-11));
+    assert!(found.effort.evaluations < 1300, "{:?}", found.effort);
+    for (found, exact) in found.outputs.iter().zip(&exact.outputs) {
+        assert!(error(found, exact) < 3e-4, "{}", error(found, exact));
+    }
+    for (found, exact) in found.force.iter().zip(&exact.force) {
+        assert!(error(found, exact) < 3e-6, "{}", error(found, exact));
+    }
+}
+
+#[test]
+fn a_ride_attempts_no_more_steps_than_allowed_by_all_methods_together() {
+    let (parameters, road) = (cleat::parameters(), cleat::cleat(0.03));
+    let (car, drive) = (cleat::car(&parameters), cleat::drive(&road, 30.0 / 3.6));
+    let with = |most_steps| {
+        let settings = Settings {
+            most_steps,
+            ..Settings::default()
+        };
+        ride(&car, &drive, &settings)
+    };
+    let effort = with(10_000).expect("it rides").effort;
+    let steps = effort.accepted + effort.rejected;
+    assert!(with(steps).is_ok());
+    // The shortcut takes most of them, and the last.
+    for most in [steps / 2, steps - 1] {
+        let Err(SimulateError::Stopped { report, .. }) = with(most) else {
+            panic!("{most} of {steps} steps are not enough");
+        };
+        assert_eq!(report.reason, Reason::TooManySteps);
+        assert_eq!(report.effort.accepted + report.effort.rejected, most);
     }
 }
 

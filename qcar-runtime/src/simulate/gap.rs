@@ -2,6 +2,7 @@
 
 use std::ops::Range;
 
+use crate::solver::PAST;
 use crate::vectors::{Loops, widest};
 
 /// Of the samples from one to another those a stride apart are known, and of what is between nothing.
@@ -15,15 +16,18 @@ pub(super) struct Gap {
 
 /// So many known samples make a polynomial, half of them before the point where there are as many. What vibrates with a
 /// period of ten strides is exact to 3e-5.
-pub(super) const AROUND: usize = 8;
+const AROUND: usize = 8;
 const BEFORE: usize = AROUND / 2 - 1;
 
 impl Gap {
-    /// Fills in the points of a signal that stands in `phases` of some length; the first phase has the samples, of which
-    /// so many are `recorded`.
-    pub fn fill(&self, signal: &mut [f64], (phases, length): (usize, usize), recorded: usize) {
-        let known = signal[self.from % self.stride..recorded].iter().step_by(self.stride);
-        let known: Vec<f64> = known.copied().collect();
+    /// Fills in the points of a signal that stands in `phases` of some length; the first phase has the samples.
+    ///
+    /// The signal is smooth in the gap, and for so many strides before it as the method that left the gap has looked back.
+    /// What lies further away is left out of account.
+    pub fn fill(&self, signal: &mut [f64], (phases, length): (usize, usize)) {
+        let before = (PAST - 1).min(self.from / self.stride);
+        let known = signal[self.from - before * self.stride..=self.to].iter();
+        let known: Vec<f64> = known.step_by(self.stride).copied().collect();
         let mut filled = vec![0.0; (self.to - self.from) / self.stride];
         for point in 1..self.stride * phases {
             let part = point as f64 / (self.stride * phases) as f64;
@@ -36,7 +40,7 @@ impl Gap {
                 let filled = &mut filled[..range.len() / self.stride];
                 widest(Between {
                     known: &known,
-                    first: range.start / self.stride,
+                    first: before + (range.start - self.from) / self.stride,
                     part,
                     filled,
                 });
@@ -78,25 +82,30 @@ impl Loops for Between<'_> {
 
     #[inline(always)]
     fn run(self) {
-        let value = |weights: &[f64; AROUND], around: &[f64]| (0..AROUND).map(|i| weights[i] * around[i]).sum();
-        let weights = lagrange(BEFORE as f64 + self.part);
-        // Near the ends of the record there are fewer samples on one side.
-        let (early, late) = (BEFORE, self.known.len() - AROUND / 2);
+        let value = |weights: &[f64; AROUND], known: &[f64]| weights.iter().zip(known).map(|(w, y)| w * y).sum();
+        let around = AROUND.min(self.known.len());
+        let weights = lagrange(BEFORE as f64 + self.part, around);
+        // Near the ends of the gap there are fewer samples on one side.
+        let central = BEFORE..self.known.len() - around / 2;
         for (k, filled) in (self.first..).zip(self.filled.iter_mut()) {
-            if (early..late).contains(&k) {
+            if central.contains(&k) && around == AROUND {
                 *filled = value(&weights, &self.known[k - BEFORE..][..AROUND]);
             } else {
-                let start = k.saturating_sub(BEFORE).min(self.known.len() - AROUND);
-                *filled = value(&lagrange((k - start) as f64 + self.part), &self.known[start..]);
+                let start = k.saturating_sub(BEFORE).min(self.known.len() - around);
+                *filled = value(&lagrange((k - start) as f64 + self.part, around), &self.known[start..]);
             }
         }
     }
 }
 
-/// The weights at `x` of values at 0, 1, 2, ….
-fn lagrange(x: f64) -> [f64; AROUND] {
-    let others = |i: usize| (0..AROUND).filter(move |&j| j != i);
-    std::array::from_fn(|i| others(i).map(|j| (x - j as f64) / (i as f64 - j as f64)).product())
+/// The weights at `x` of so many values at 0, 1, 2, ….
+fn lagrange(x: f64, count: usize) -> [f64; AROUND] {
+    let mut weights = [0.0; AROUND];
+    for (i, weight) in weights[..count].iter_mut().enumerate() {
+        let others = (0..count).filter(|&j| j != i);
+        *weight = others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product();
+    }
+    weights
 }
 
 #[cfg(test)]
@@ -119,7 +128,7 @@ mod tests {
         let mut signal: Vec<f64> = (0..full.len())
             .map(|i| if known(i) { full[i] } else { f64::NAN })
             .collect();
-        gap.fill(&mut signal, (phases, length), length);
+        gap.fill(&mut signal, (phases, length));
         let needed = |i: usize| i < length || !(57..173).contains(&(i % length));
         for i in (0..full.len()).filter(|&i| needed(i) && i != full.len() - 1) {
             let error = (signal[i] - full[i]).abs();

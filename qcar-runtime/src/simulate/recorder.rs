@@ -2,13 +2,15 @@
 
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
+use super::shortcut::Shortcut;
 use crate::model::{About, Contact, Model};
-use crate::solver::{After, Event, PAST, Step, System};
+use crate::solver::{After, Effort, Event, Step, System};
 use crate::vectors::{Loops, widest};
 
 /// A rolling model with its records.
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
+    shortcut: Option<Shortcut>,
     /// Room for a state.
     state: Vec<f64>,
     /// Room for its rate, behind that the outputs where the model is asked for them, and what is told of the contact.
@@ -24,15 +26,13 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     pub landings: Vec<f64>,
     /// Time of the last evaluation, and whether the tyre was on the ground.
     last: (f64, bool),
-    /// What the contact did to the axle at the beginnings of the last legs on level ground, with their times, s.
-    noted: Vec<(f64, [f64; 2])>,
 }
 
 /// What is told of a contact, at the end of each row: force of the tyre in z and x, and its deflection.
 const OF_CONTACT: usize = 3;
 
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
-    pub fn new(rolling: Rolling<'a, M>, grid: Grid, about: &About) -> Self {
+    pub fn new(rolling: Rolling<'a, M>, shortcut: Option<Shortcut>, grid: Grid, about: &About) -> Self {
         let (states, outputs) = (about.states.len(), &about.outputs);
         let rates: Option<Vec<_>> = outputs.iter().map(|output| about.rate(&output.signal)).collect();
         let asked = if rates.is_some() { 0 } else { outputs.len() };
@@ -41,6 +41,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         let room = states + asked + OF_CONTACT;
         Self {
             rolling,
+            shortcut,
             state: vec![0.0; states],
             rates: vec![0.0; room],
             places,
@@ -49,7 +50,6 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             lift_offs: Vec::new(),
             landings: Vec::new(),
             last: (f64::NAN, true),
-            noted: Vec::new(),
         }
     }
 
@@ -66,18 +66,20 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         &self.rolling
     }
 
-    /// Notes what the contact does to the axle at time `t`, if the tyre is on level ground.
-    pub fn note_force(&mut self, t: f64, x: &[f64]) {
-        if let Some(contact) = self.rolling.level_contact(t, x) {
-            self.noted.push((t, self.rolling.driven(contact).force));
-        }
-    }
-
-    /// The forces that were noted last, if it was at these times.
-    pub fn past_forces(&self, times: &[f64]) -> Option<[[f64; 2]; PAST]> {
-        let (_, noted) = self.noted.split_last_chunk::<PAST>()?;
-        let at_these = noted.iter().map(|(time, _)| time).eq(times);
-        at_these.then(|| noted.map(|(_, force)| force))
+    /// Notes what the contact does to the axle where a step ends, for the shortcut.
+    fn note(&mut self, step: &Step<'_>) {
+        let Some(shortcut) = &mut self.shortcut else {
+            return;
+        };
+        let force = step.end_rates().and_then(|rates| {
+            let [vertical, longitudinal, deflection] = *rates.last_chunk::<OF_CONTACT>()?;
+            let contact = Contact {
+                force: [vertical, longitudinal],
+                ..Contact::default()
+            };
+            (deflection > 0.0).then(|| self.rolling.driven(contact).force)
+        });
+        shortcut.note(&self.rolling, step.end, step.end_state(), force);
     }
 
     /// Records a sample at time `t`, under a contact; what lies between it and the last one is left to
@@ -129,14 +131,34 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
 
     fn enter(&mut self, t: f64, x: &mut [f64]) {
         self.rolling.pass_steps(t, x);
-        self.note_force(t, x);
+        if let Some(shortcut) = &mut self.shortcut {
+            shortcut.pass(t);
+        }
     }
 
     fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
-        self.rolling.next_bend(t, x, dx, from)
+        let wanted = self.shortcut.as_ref().map_or(f64::INFINITY, Shortcut::next_time);
+        self.rolling.next_bend(t, x, dx, from).min(wanted)
+    }
+
+    fn shortcut(&mut self, t: f64, x: &mut [f64], most_steps: usize) -> Option<(f64, Effort)> {
+        let mut shortcut = self.shortcut.take()?;
+        let begins = shortcut.begin(t, x);
+        let end = begins.then(|| {
+            widest(Steps {
+                shortcut: &mut shortcut,
+                recorder: self,
+                most: most_steps,
+            });
+            x.copy_from_slice(shortcut.state());
+            shortcut.end()
+        });
+        self.shortcut = Some(shortcut);
+        end
     }
 
     fn accept(&mut self, step: &Step<'_>) {
+        self.note(step);
         let smooth = step.has_rates();
         while let Some(t) = self.tape.next(step.end) {
             let record = &mut self.rates[self.first..];
@@ -190,6 +212,27 @@ impl<M: Model + ?Sized> Loops for Observation<'_, '_, M> {
     #[inline(always)]
     fn run(self) -> bool {
         observe(self.rolling, self.t, self.x, self.rates)
+    }
+}
+
+/// Steps of a shortcut, with the instructions of this machine.
+struct Steps<'s, 'r, 'a, M: ?Sized> {
+    shortcut: &'s mut Shortcut,
+    recorder: &'r mut Recorder<'a, M>,
+    most: usize,
+}
+
+impl<M: Model + ?Sized> Loops for Steps<'_, '_, '_, M> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for _ in 0..self.most {
+            let Some((time, contact)) = self.shortcut.step(&self.recorder.rolling) else {
+                break;
+            };
+            self.recorder.record_step(time, self.shortcut.state(), contact);
+        }
     }
 }
 

@@ -2,11 +2,11 @@
 
 use super::car::Car;
 use super::failure::{SimulateError, positive};
-use super::level::Rest;
 use super::recorder::Recorder;
-use super::rolling::{Rolling, level_from};
+use super::rolling::Rolling;
 use super::sampling::{AntiAlias, Grid};
 use super::settings::Settings;
+use super::shortcut::Shortcut;
 use crate::model::Model;
 use crate::progress::{self, Told};
 use crate::road::Road;
@@ -114,8 +114,6 @@ struct Journey<'a, M: ?Sized> {
     x: Vec<f64>,
     /// When the road begins to move it, and when the record ends, s.
     span: (f64, f64),
-    /// How it is stepped when the ground is level again, if that can be foreseen.
-    rest: Option<Rest>,
 }
 
 impl<'a, M: Model + ?Sized> Journey<'a, M> {
@@ -132,29 +130,21 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         let start = drive.start(&tyre).min(grid.start());
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
-        let levels = drive.levels(&tyre) < span.1;
-        let rest = levels.then(|| Rest::new(&rolling, about, settings, &grid.sample_times()));
-        let mut recorder = Recorder::new(rolling, recorded(grid), about);
+        let shortcut = Shortcut::new(&rolling, about, settings, &grid);
+        let mut recorder = Recorder::new(rolling, shortcut, recorded(grid), about);
         recorder.rest(span.0, &x);
-        Ok(Self {
-            recorder,
-            x,
-            span,
-            rest: rest.flatten(),
-        })
+        Ok(Self { recorder, x, span })
     }
 
     fn integrate(&mut self, car: &Car<'_, M>, drive: &Drive<'_>, settings: &Settings) -> Result<Effort, SimulateError> {
-        let tyre = car.rolling_tyre();
-        let longest_step = drive.longest_step(&tyre);
-        let general = |recorder: &mut Recorder<'_, M>, span: (f64, f64), breaks: &[f64], x: &mut [f64]| {
-            settings.integrate(car.model.about(), recorder, span, (longest_step, breaks), x)
-        };
-        let (start, end) = self.span;
-        match &mut self.rest {
-            Some(rest) => rest.integrate(&mut self.recorder, (start, drive.levels(&tyre)), &mut self.x, general),
-            None => general(&mut self.recorder, (start, end), &[], &mut self.x),
-        }
+        let longest_step = drive.longest_step(&car.rolling_tyre());
+        settings.integrate(
+            car.model.about(),
+            &mut self.recorder,
+            self.span,
+            (longest_step, &[]),
+            &mut self.x,
+        )
     }
 }
 
@@ -195,11 +185,6 @@ impl Drive<'_> {
         let clearance = tyre.radius() - tyre.static_deflection() - (self.road.bounds().highest - vertices[0][1]);
         let reach = (tyre.radius().powi(2) - clearance.max(0.0).powi(2)).sqrt();
         uneven.map_or(f64::NEG_INFINITY, |pair| (pair[0][0] - reach) / self.speed)
-    }
-
-    /// When the circle of the tyre stands on ground that stays level, s.
-    fn levels(&self, tyre: &Tyre) -> f64 {
-        (level_from(self.road) + tyre.radius()) / self.speed
     }
 
     /// The longest step that cannot pass over any part of the road unseen, s.

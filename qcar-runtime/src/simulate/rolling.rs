@@ -150,12 +150,41 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         about.linear && rate == states
     }
 
-    /// The contact at time `t` with level ground that goes on for ever; none elsewhere, and in the air.
+    /// The contact at time `t`; none in the air.
     #[inline(always)]
-    pub fn level_contact(&self, t: f64, x: &[f64]) -> Option<Contact> {
-        let level = self.wheel(t, x).position[0] >= self.level_from;
-        let touch = self.touch(t, x).filter(|_| level)?;
+    pub fn contact_at(&self, t: f64, x: &[f64]) -> Option<Contact> {
+        let touch = self.touch(t, x)?;
         Some(self.contact(Some(&touch), x))
+    }
+
+    /// Where the wheel's centre is at time `t`, m.
+    pub fn centre(&self, t: f64, x: &[f64]) -> [f64; 2] {
+        self.wheel(t, x).position
+    }
+
+    /// True where a wheel with this centre is on level ground that goes on for ever.
+    pub fn is_level(&self, centre: [f64; 2]) -> bool {
+        centre[0] >= self.level_from
+    }
+
+    /// True where the force of the tyre is not smooth between two places of the wheel's centre: its rim has come over an
+    /// edge of the road, or what it feels is no area but a single point of ground that is not level.
+    #[inline(always)]
+    pub fn bends_between(&self, from: [f64; 2], to: [f64; 2]) -> bool {
+        let squared = self.tyre.radius() * self.tyre.radius();
+        let inside = |centre: [f64; 2], edge: &[f64; 2]| {
+            let [x, z] = [centre[0] - edge[0], centre[1] - edge[1]];
+            x * x + z * z < squared
+        };
+        let point = self.tyre.geometry() == Geometry::Point;
+        !self.is_level(from) && (point || self.edges_near(to).any(|edge| inside(from, edge) != inside(to, edge)))
+    }
+
+    /// The edges of the road that are not far from a wheel with this centre.
+    fn edges_near(&self, centre: [f64; 2]) -> impl Iterator<Item = &[f64; 2]> {
+        let [behind, ahead] = [-2.0, 2.0].map(|radii| centre[0] + radii * self.tyre.radius());
+        let first = self.edges.partition_point(|edge| edge[0] < behind);
+        self.edges[first..].iter().take_while(move |edge| edge[0] <= ahead)
     }
 
     /// The contact of the tyre with the road at time `t`.
@@ -190,9 +219,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     pub fn next_bend(&self, t: f64, x: &[f64], dx: &[f64], from: f64) -> f64 {
         let (wheel, radius) = (self.wheel(t, x), self.tyre.radius());
         let acceleration = [self.wheel.x.map_or(0.0, |x| dx[x[1]]), dx[self.wheel.z[1]]];
-        let [behind, ahead] = [-2.0, 2.0].map(|radii| wheel.position[0] + radii * radius);
-        let near = self.edges.partition_point(|edge| edge[0] < behind)..;
-        let near = self.edges[near].iter().take_while(|edge| edge[0] <= ahead);
+        let near = self.edges_near(wheel.position);
         let crossings = near.flat_map(|edge| crossings(&wheel, acceleration, radius, edge));
         let times = crossings.map(|after| t + after).filter(|&time| time > from);
         times.fold(f64::INFINITY, f64::min)
@@ -235,7 +262,7 @@ fn edges(geometry: Geometry, road: &Road) -> Vec<[f64; 2]> {
 }
 
 /// Where the ground of a road becomes level for good, m; minus infinity where it always is.
-pub(super) fn level_from(road: &Road) -> f64 {
+fn level_from(road: &Road) -> f64 {
     let uneven = road.vertices().windows(2).rfind(|pair| pair[0][1] != pair[1][1]);
     uneven.map_or(f64::NEG_INFINITY, |pair| pair[1][0])
 }

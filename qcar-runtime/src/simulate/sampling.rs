@@ -127,9 +127,19 @@ impl Grid {
         Self { samples: 0, ..self }
     }
 
-    /// The samples with those that the filter needs before the first and behind the last, s.
-    pub fn sample_times(&self) -> Vec<f64> {
-        let points = (0..self.points()).step_by(self.filter.oversampling);
+    /// Times that are as many samples apart as fit into `longest` (s), and one at least; half a sample, where points are no
+    /// closer and a whole one is longer. The last point is among every other of them.
+    pub fn steps(&self, longest: f64) -> Vec<f64> {
+        let every = self.filter.oversampling;
+        // A hair more, so that rounding loses no sample.
+        let samples = (longest / (self.spacing * every as f64) + 1e-6) as usize;
+        let stride = if samples == 0 && every == AntiAlias::CONTINUOUS {
+            every / 2
+        } else {
+            samples.max(1) * every
+        };
+        let first = (self.points() - 1) % (2 * stride);
+        let points = (first..self.points()).step_by(stride);
         points.map(|point| self.time(point)).collect()
     }
 
@@ -194,6 +204,9 @@ impl Tape {
 
     /// Leaves out what lies before a sample at time `t` (s).
     pub fn skip_to(&mut self, t: f64) {
+        if self.next(t.next_down()).is_none() {
+            return;
+        }
         let every = self.grid.filter.oversampling;
         let from = self.next.saturating_sub(1) / every;
         while self.next(t.next_down()).is_some() {
@@ -216,7 +229,7 @@ impl Tape {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
         for signal in self.tracks.chunks_exact_mut(every * length) {
             for gap in &self.gaps {
-                gap.fill(signal, (every, length), self.next.div_ceil(every));
+                gap.fill(signal, (every, length));
             }
         }
     }

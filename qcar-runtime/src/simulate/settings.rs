@@ -9,7 +9,7 @@ use crate::solver::{self, DormandPrince, Effort, Rk4, System};
 pub struct Settings {
     /// How time is stepped.
     pub method: Method,
-    /// The most steps that the integration may attempt.
+    /// The most steps that the whole of a simulation may attempt, by whichever method.
     pub most_steps: usize,
 }
 

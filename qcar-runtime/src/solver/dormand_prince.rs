@@ -137,10 +137,25 @@ impl DormandPrince {
                 Some((After::Stop, crossing)) => return (Reason::Event(crossing.index), t),
                 Some(_) if crowd > MOST_AT_ONCE => return (Reason::Crowded, t),
                 Some(_) => fresh = true,
-                None => {}
+                None => {
+                    if let Some(end) = self.shortcut(system, t) {
+                        (t, fresh) = (end, true);
+                    }
+                }
             }
         }
         (Reason::End, t)
+    }
+
+    /// Leaves the motion to the system, as far as it can do with less: to what time.
+    fn shortcut<S: System>(&mut self, system: &mut S, t: f64) -> Option<f64> {
+        let left = self
+            .settings
+            .most_steps
+            .saturating_sub(self.effort.accepted + self.effort.rejected);
+        let (end, effort) = system.shortcut(t, &mut self.x, left)?;
+        self.effort += effort;
+        Some(end)
     }
 
     /// Enters a leg: its first slope, and a first step where none is known. False where it is not finite.

@@ -1,4 +1,4 @@
-//! Linear systems that forces drive, in steps of one length: an exponential Adams method.
+//! Linear systems that forces drive, in steps of one length and of its doubles: an exponential Adams method.
 //!
 //! In `dx/dt = A x + B f(t, x)` what is linear is integrated exactly, however fast it decays or vibrates. The forces are
 //! taken from the polynomial through their past; one evaluation at the end of a step tells how far that is off, which
@@ -7,7 +7,7 @@
 
 use std::array;
 
-use super::matrix::{Lanes, Matrix, Panel};
+use super::matrix::{Lanes, Matrix};
 use crate::vectors::{Loops, widest};
 
 /// A linear system `dx/dt = A x + B f(t, x)`, and the forces `f` that drive it.
@@ -22,64 +22,106 @@ pub trait Driven<const F: usize> {
 /// The forces at so many points of the past make the polynomial that extrapolates them.
 pub const PAST: usize = 5;
 
+/// So many are kept, so that the step can be doubled.
+const KEPT: usize = 2 * PAST - 1;
+
 /// The integrator, with the state and the past of the forces.
 pub struct ExponentialAdams<const F: usize> {
-    /// What the next state is of each entry of `from`: columns of four rows, block of rows by block of rows.
-    propagator: Vec<Lanes>,
-    /// How each state is corrected for a unit of each force that was not foreseen.
-    corrections: [Vec<f64>; F],
+    parts: Vec<Part>,
+    /// For the shortest step, for twice that, and so on.
+    corrections: Vec<Corrections<F>>,
+    /// Which of these steps is taken.
+    rung: usize,
+    /// The state.
+    state: Vec<f64>,
+    /// The next one, as it is foreseen.
+    ahead: Vec<f64>,
+    /// By how much the error of each state is more than allowed.
+    excess: Vec<f64>,
+    /// Each force at the points of the past, the last first.
+    past: [[f64; KEPT]; F],
+    /// At so many points they are known.
+    known: usize,
+}
+
+/// How each state is corrected for a unit of each force that was not foreseen.
+struct Corrections<const F: usize> {
+    whole: [Vec<f64>; F],
     /// How much of that is by the last point of the past, without which the polynomial would be one order lower: the
     /// error that is judged.
-    errors: [Vec<f64>; F],
-    /// The state, and behind it the forces, those of the last point first.
-    from: Vec<f64>,
-    /// The next state, as it is foreseen.
-    ahead: Vec<f64>,
-    states: usize,
+    last_order: [Vec<f64>; F],
+}
+
+impl<const F: usize> Corrections<F> {
+    fn none(states: usize) -> Self {
+        let none = || array::from_fn(|_| vec![0.0; states]);
+        Self {
+            whole: none(),
+            last_order: none(),
+        }
+    }
 }
 
 impl<const F: usize> ExponentialAdams<F> {
-    /// For steps of `step` (s) of a system of `states` states. None where a system moves so much within a step that the
-    /// series of its exponential is of no use.
-    pub fn new(system: &impl Driven<F>, states: usize, step: f64) -> Option<Self> {
-        widest(Construction::<_, F> { system, states, step })
-    }
-
-    #[inline(always)]
-    fn build(system: &impl Driven<F>, states: usize, step: f64) -> Option<Self> {
-        const { assert!(F <= 4, "the forces are the lanes of one panel") };
-        let matrix = matrix(system, states, step);
-        let panels = matrix.exponential()?;
-        let [_, means @ ..]: [_; PAST + 2] = matrix.means(answers(system, states, step))?;
-        let weighted = |polynomial: &Polynomial, force: usize, state: usize| -> f64 {
-            let terms = polynomial.iter().zip(&means);
-            terms.map(|(weight, mean)| weight * mean[state][force]).sum()
-        };
-        let of_states = |polynomial, force| (0..states).map(|state| weighted(polynomial, force, state)).collect();
-        let columns = (states + F * PAST).next_multiple_of(4);
-        let entry = |row: usize, column: usize| match column.checked_sub(states) {
-            _ if row >= states => 0.0,
-            None => panels[column / 4][row][column % 4],
-            Some(past) if past < F * PAST => weighted(&THROUGH[past / F], past % F, row),
-            Some(_) => 0.0,
-        };
-        let block = |first| (0..columns).map(move |column| array::from_fn(|lane| entry(first + lane, column)));
+    /// For steps of `step` (s) of a system of `states` states, which may be doubled so many times. None where the system is
+    /// not finite, or moves a million times too much in a step.
+    pub fn new(system: &impl Driven<F>, states: usize, step: f64, doublings: usize) -> Option<Self> {
+        let linear = Linear::new(system, states, step);
+        let mut parts = linear.parts();
+        let mut corrections: Vec<Corrections<F>> = (0..=doublings).map(|_| Corrections::none(states)).collect();
+        for part in &mut parts {
+            let mut flow = linear.matrix(part).exponential()?;
+            for (rung, corrections) in corrections.iter_mut().enumerate() {
+                if rung > 0 {
+                    flow = flow.times(&flow);
+                }
+                part.add_rung(&flow, 0.5_f64.powi(rung as i32), corrections);
+            }
+        }
         Some(Self {
-            propagator: (0..states).step_by(4).flat_map(block).collect(),
-            corrections: array::from_fn(|force| of_states(&UNFORESEEN, force)),
-            errors: array::from_fn(|force| of_states(&LAST_ORDER, force)),
-            from: vec![0.0; columns],
-            ahead: vec![0.0; states.next_multiple_of(4)],
-            states,
+            parts,
+            corrections,
+            rung: 0,
+            state: vec![0.0; states],
+            ahead: vec![0.0; states],
+            excess: vec![0.0; states],
+            past: [[0.0; KEPT]; F],
+            known: 0,
         })
     }
 
-    /// Begins at state `x` with the forces of points a step apart, the present ones last.
+    /// Begins at state `x`, with the shortest step and the forces of points that far apart, the present ones last.
     pub fn begin(&mut self, x: &[f64], past: &[[f64; F]; PAST]) {
-        let (state, forces) = self.from.split_at_mut(self.states);
-        state.copy_from_slice(x);
-        for (known, force) in forces.chunks_exact_mut(F).zip(past.iter().rev()) {
-            known.copy_from_slice(force);
+        (self.rung, self.known) = (0, PAST);
+        self.state.copy_from_slice(x);
+        for (point, forces) in past.iter().rev().enumerate() {
+            for (known, force) in self.past.iter_mut().zip(forces) {
+                known[point] = *force;
+            }
+        }
+        self.prepare();
+    }
+
+    /// Doubles the step, and says whether it did: where that was planned, and enough of the past is known.
+    pub fn lengthen(&mut self) -> bool {
+        let longer = self.rung + 1 < self.corrections.len() && self.known == KEPT;
+        if longer {
+            (self.rung, self.known) = (self.rung + 1, PAST);
+            for known in &mut self.past {
+                *known = array::from_fn(|point| known[(2 * point).min(KEPT - 1)]);
+            }
+            self.prepare();
+        }
+        longer
+    }
+
+    /// Prepares a step from the state as it is.
+    fn prepare(&mut self) {
+        for part in &mut self.parts {
+            for (from, &place) in part.from.iter_mut().zip(&part.states) {
+                *from = self.state[place];
+            }
+            part.take_forces(&self.past, &[0.0; F]);
         }
     }
 
@@ -87,77 +129,233 @@ impl<const F: usize> ExponentialAdams<F> {
     /// of a state and `absolute`, all stays as it was.
     #[inline(always)]
     pub fn advance(&mut self, system: &mut impl Driven<F>, t: f64, relative: f64, absolute: &[f64]) -> bool {
-        widest(Product {
-            blocks: &self.propagator,
-            by: &self.from,
-            result: &mut self.ahead,
-        });
-        let ahead = &mut self.ahead[..self.states];
-        let Some(force) = system.force(t, ahead) else {
+        for part in &mut self.parts {
+            part.foresee(self.rung, &mut self.ahead);
+        }
+        let Some(force) = system.force(t, &self.ahead) else {
             return false;
         };
-        let past = &self.from[self.states..];
-        let off: [f64; F] = array::from_fn(|f| {
-            let foreseen = EXTRAPOLATION
-                .iter()
-                .enumerate()
-                .map(|(point, weight)| weight * past[point * F + f]);
-            force[f] - foreseen.sum::<f64>()
+        let off = array::from_fn(|f| {
+            let foreseen = EXTRAPOLATION.iter().zip(&self.past[f]);
+            force[f] - foreseen.map(|(weight, force)| weight * force).sum::<f64>()
         });
-        let n = ahead.len();
-        let (absolute, corrections) = (&absolute[..n], self.corrections.each_ref().map(|c| &c[..n]));
-        let errors = self.errors.each_ref().map(|e| &e[..n]);
-        let mut missed = 0.0;
-        for i in 0..n {
-            let by = |weights: [&[f64]; F]| (0..F).fold(0.0, |sum, f| sum + weights[f][i] * off[f]);
-            // What is not a number is not within the tolerance either.
-            let within = by(errors).abs() <= absolute[i] + relative * ahead[i].abs();
-            missed += if within { 0.0 } else { 1.0 };
-            ahead[i] += by(corrections);
-        }
-        let good = missed == 0.0;
+        let good = self.is_within(off, relative, absolute);
         if good {
-            let last = self.states + F * PAST;
-            self.from.copy_within(self.states..last - F, self.states + F);
-            self.from[..self.states].copy_from_slice(ahead);
-            self.from[self.states..][..F].copy_from_slice(&force);
+            self.go_on(force, off);
         }
         good
     }
 
+    /// True where the error of no state is larger than allowed; what is not a number is larger.
+    #[inline(always)]
+    fn is_within(&mut self, off: [f64; F], relative: f64, absolute: &[f64]) -> bool {
+        let n = self.state.len();
+        let (ahead, excess, absolute) = (&self.ahead[..n], &mut self.excess[..n], &absolute[..n]);
+        let errors = self.corrections[self.rung]
+            .last_order
+            .each_ref()
+            .map(|error| &error[..n]);
+        for i in 0..n {
+            let error = (0..F).fold(0.0, |sum, f| sum + errors[f][i] * off[f]);
+            excess[i] = error.abs() - (absolute[i] + relative * ahead[i].abs());
+        }
+        excess.iter().all(|excess| *excess <= 0.0)
+    }
+
+    /// Makes what was foreseen the last state, with the forces as they are there, and by how much they are off.
+    #[inline(always)]
+    fn go_on(&mut self, force: [f64; F], off: [f64; F]) {
+        let n = self.state.len();
+        let (ahead, state) = (&self.ahead[..n], &mut self.state[..n]);
+        let corrections = self.corrections[self.rung]
+            .whole
+            .each_ref()
+            .map(|correction| &correction[..n]);
+        for i in 0..n {
+            state[i] = (0..F).fold(ahead[i], |sum, f| sum + corrections[f][i] * off[f]);
+        }
+        for (past, force) in self.past.iter_mut().zip(force) {
+            past.copy_within(..KEPT - 1, 1);
+            past[0] = force;
+        }
+        self.known = KEPT.min(self.known + 1);
+        for part in &mut self.parts {
+            part.go_on();
+            part.take_forces(&self.past, &off);
+        }
+    }
+
     /// The state.
     pub fn state(&self) -> &[f64] {
-        &self.from[..self.states]
+        &self.state
     }
 }
 
-/// The matrix A times the step.
-fn matrix<const F: usize>(system: &impl Driven<F>, states: usize, step: f64) -> Matrix {
-    let columns: Vec<Vec<f64>> = (0..states)
-        .map(|i| {
-            let (mut unit, mut rate) = (vec![0.0; states], vec![0.0; states]);
-            unit[i] = step;
-            system.rate(&unit, [0.0; F], &mut rate);
-            rate
-        })
-        .collect();
-    Matrix::new(states, |row, column| columns[column][row])
+/// States that do not depend on any others, and the forces that drive them.
+///
+/// The next state is foreseen from the last as that was foreseen; what corrects it comes with the forces. So a step need
+/// not wait for the forces of the last one to be known before it begins.
+struct Part {
+    states: Vec<usize>,
+    forces: Vec<usize>,
+    /// For each rung what the next state is of each entry of `from`: columns of four rows, block of rows by block.
+    propagators: Vec<Vec<Lanes>>,
+    /// The last state, as it was foreseen; of each force those at the points of the past, the last first, and by how much
+    /// that is not what was foreseen.
+    from: Vec<f64>,
+    /// The next state, as it is foreseen.
+    ahead: Vec<f64>,
 }
 
-/// The matrix B times the step, a column for each force.
-fn answers<const F: usize>(system: &impl Driven<F>, states: usize, step: f64) -> Panel {
-    let rest = vec![0.0; states];
-    let columns: [Vec<f64>; F] = array::from_fn(|force| {
-        let mut rate = vec![0.0; states];
-        system.rate(
-            &rest,
-            array::from_fn(|f| if f == force { step } else { 0.0 }),
-            &mut rate,
-        );
-        rate
-    });
-    let row = |row: usize| array::from_fn(|lane| columns.get(lane).map_or(0.0, |column| column[row]));
-    (0..states).map(row).collect()
+impl Part {
+    fn new(states: Vec<usize>, forces: Vec<usize>) -> Self {
+        let entries = states.len() + (PAST + 1) * forces.len();
+        Self {
+            from: vec![0.0; entries.next_multiple_of(4)],
+            ahead: vec![0.0; states.len().next_multiple_of(4)],
+            propagators: Vec::new(),
+            states,
+            forces,
+        }
+    }
+
+    /// Adds what a step does, by the flow of states and derivatives of forces over it; `unit` of the step is that of their
+    /// time.
+    fn add_rung<const F: usize>(&mut self, flow: &Matrix, unit: f64, corrections: &mut Corrections<F>) {
+        let n = self.states.len();
+        let mut made_of = Matrix::zero(flow.size());
+        for state in 0..n {
+            *made_of.entry_mut(state, state) = 1.0;
+        }
+        for (place, &force) in (n..).step_by(PAST + 1).zip(&self.forces) {
+            for (point, polynomial) in THROUGH.iter().enumerate() {
+                for (power, derivative) in derivatives(polynomial, unit).into_iter().enumerate() {
+                    *made_of.entry_mut(place + power, place + point) = derivative;
+                }
+            }
+            let answer = |polynomial: &Polynomial, row: usize| -> f64 {
+                let derivatives = derivatives(polynomial, unit).into_iter().enumerate();
+                derivatives
+                    .map(|(power, derivative)| flow.entry(row, place + power) * derivative)
+                    .sum()
+            };
+            for (row, &state) in self.states.iter().enumerate() {
+                let whole = answer(&UNFORESEEN, row);
+                *made_of.entry_mut(row, place + PAST) = whole;
+                corrections.whole[force][state] = whole;
+                corrections.last_order[force][state] = answer(&LAST_ORDER, row);
+            }
+        }
+        let next = flow.times(&made_of);
+        let block = |first: usize| {
+            let next = &next;
+            (0..next.size()).map(move |column| array::from_fn(|lane| next.entry(first + lane, column)))
+        };
+        self.propagators.push((0..n).step_by(4).flat_map(block).collect());
+    }
+
+    /// Foresees the next state.
+    #[inline(always)]
+    fn foresee(&mut self, rung: usize, ahead: &mut [f64]) {
+        widest(Product {
+            blocks: &self.propagators[rung],
+            by: &self.from,
+            result: &mut self.ahead,
+        });
+        for (&place, value) in self.states.iter().zip(&self.ahead) {
+            ahead[place] = *value;
+        }
+    }
+
+    /// Makes what was foreseen the last state.
+    #[inline(always)]
+    fn go_on(&mut self) {
+        let n = self.states.len();
+        self.from[..n].copy_from_slice(&self.ahead[..n]);
+    }
+
+    /// Takes the forces at the points of the past, and by how much those at the last are off.
+    #[inline(always)]
+    fn take_forces<const F: usize>(&mut self, past: &[[f64; KEPT]; F], off: &[f64; F]) {
+        let places = self.from[self.states.len()..].as_chunks_mut::<{ PAST + 1 }>().0;
+        for (places, &force) in places.iter_mut().zip(&self.forces) {
+            places[..PAST].copy_from_slice(&past[force][..PAST]);
+            places[PAST] = off[force];
+        }
+    }
+}
+
+/// `dx/dt = A x + B f`, times a step.
+struct Linear<const F: usize> {
+    /// Columns of A.
+    states: Vec<Vec<f64>>,
+    /// Columns of B.
+    forces: [Vec<f64>; F],
+}
+
+impl<const F: usize> Linear<F> {
+    fn new(system: &impl Driven<F>, states: usize, step: f64) -> Self {
+        let rate = |x: &[f64], force: [f64; F]| {
+            let mut rate = vec![0.0; states];
+            system.rate(x, force, &mut rate);
+            rate
+        };
+        let rest = vec![0.0; states];
+        let unit = |state: usize| {
+            let mut x = rest.clone();
+            x[state] = step;
+            rate(&x, [0.0; F])
+        };
+        Self {
+            states: (0..states).map(unit).collect(),
+            forces: array::from_fn(|force| rate(&rest, array::from_fn(|f| if f == force { step } else { 0.0 }))),
+        }
+    }
+
+    /// The parts that do not depend on each other.
+    fn parts(&self) -> Vec<Part> {
+        let n = self.states.len();
+        let mut group: Vec<usize> = (0..n).collect();
+        for (column, rates) in self.states.iter().enumerate() {
+            for row in (0..n).filter(|&row| rates[row] != 0.0) {
+                let (one, other) = (group[row], group[column]);
+                if one != other {
+                    group
+                        .iter_mut()
+                        .filter(|group| **group == other)
+                        .for_each(|group| *group = one);
+                }
+            }
+        }
+        let part = |name: usize| {
+            let states: Vec<usize> = (0..n).filter(|&state| group[state] == name).collect();
+            let drives = |force: &usize| states.iter().any(|&state| self.forces[*force][state] != 0.0);
+            let forces = (0..F).filter(drives).collect();
+            (!states.is_empty()).then(|| Part::new(states, forces))
+        };
+        (0..n).filter_map(part).collect()
+    }
+
+    /// What makes the rate of a part, and of the derivatives of the forces that drive it: each is the rate of the one
+    /// before. So its exponential says what a step does under forces that are polynomials (C. F. Van Loan, "Computing
+    /// integrals involving the matrix exponential", IEEE Trans. Autom. Control 23, 1978).
+    fn matrix(&self, part: &Part) -> Matrix {
+        let mut matrix = Matrix::zero(part.from.len());
+        for (row, &to) in part.states.iter().enumerate() {
+            for (column, &from) in part.states.iter().enumerate() {
+                *matrix.entry_mut(row, column) = self.states[from][to];
+            }
+            for (place, &force) in (part.states.len()..).step_by(PAST + 1).zip(&part.forces) {
+                *matrix.entry_mut(row, place) = self.forces[force][to];
+            }
+        }
+        for place in (part.states.len()..).step_by(PAST + 1).take(part.forces.len()) {
+            for power in place..place + PAST {
+                *matrix.entry_mut(power, power + 1) = 1.0;
+            }
+        }
+        matrix
+    }
 }
 
 /// Coefficients of the powers of the part of a step that is over.
@@ -169,6 +367,17 @@ const THROUGH: [Polynomial; PAST] = through();
 const UNFORESEEN: Polynomial = rising(0.0);
 /// By how much it would be less if the last point of the past were left out of the polynomial.
 const LAST_ORDER: Polynomial = rising(-1.0);
+
+/// The derivatives of a polynomial where a step begins, by a time of which the step has `1 / unit`.
+fn derivatives(polynomial: &Polynomial, unit: f64) -> Polynomial {
+    let mut factor = 1.0;
+    array::from_fn(|power| {
+        if power > 0 {
+            factor *= power as f64 * unit;
+        }
+        polynomial[power] * factor
+    })
+}
 
 const fn through() -> [Polynomial; PAST] {
     let mut all = [[0.0; PAST + 1]; PAST];
@@ -214,23 +423,7 @@ const fn times(polynomial: &Polynomial, root: f64, over: f64) -> Polynomial {
 /// How the polynomial through the past goes on for a step: binomial coefficients with alternating signs.
 const EXTRAPOLATION: [f64; PAST] = [5.0, -10.0, 10.0, -5.0, 1.0];
 
-/// The construction with its arguments: its sums gain by wide vectors.
-struct Construction<'a, D, const F: usize> {
-    system: &'a D,
-    states: usize,
-    step: f64,
-}
-
-impl<D: Driven<F>, const F: usize> Loops for Construction<'_, D, F> {
-    type Result = Option<ExponentialAdams<F>>;
-
-    #[inline(always)]
-    fn run(self) -> Self::Result {
-        ExponentialAdams::build(self.system, self.states, self.step)
-    }
-}
-
-/// A matrix in blocks times a vector, whose length is a multiple of four.
+/// A matrix in blocks of four rows times a vector, whose length is a multiple of four.
 struct Product<'a> {
     blocks: &'a [Lanes],
     by: &'a [f64],

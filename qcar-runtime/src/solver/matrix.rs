@@ -1,107 +1,156 @@
-//! The matrix of a linear system over a step: its exponential, and what forces that change during the step give.
+//! The exponential of a small matrix.
 
-use std::array;
+use crate::vectors::{Loops, widest};
 
 /// Four numbers that are computed together.
 pub(super) type Lanes = [f64; 4];
 
-/// Four columns, row by row.
-pub(super) type Panel = Vec<Lanes>;
-
-/// A square matrix: of each row the entries that are not zero, with their columns.
-pub(super) struct Matrix(Vec<Vec<(usize, f64)>>);
+/// A square matrix of a size that is a multiple of four.
+#[derive(Clone)]
+pub(super) struct Matrix {
+    size: usize,
+    /// Four columns, row by row, then the next four.
+    panels: Vec<Lanes>,
+}
 
 impl Matrix {
-    /// A matrix of so many rows and columns by its entries.
-    #[inline(always)]
-    pub fn new(size: usize, entry: impl Fn(usize, usize) -> f64) -> Self {
-        let row = |row: usize| {
-            let mut entries = Vec::with_capacity(size);
-            entries.extend(
-                (0..size)
-                    .map(|column| (column, entry(row, column)))
-                    .filter(|(_, entry)| *entry != 0.0),
-            );
-            entries
-        };
-        Self((0..size).map(row).collect())
+    /// Zero, of this size or the next multiple of four.
+    pub fn zero(size: usize) -> Self {
+        let size = size.next_multiple_of(4);
+        Self {
+            size,
+            panels: vec![[0.0; 4]; size * size / 4],
+        }
     }
 
-    /// `e^Z`, `Z` being this matrix, in panels: the square of the square of that of a quarter, whose series is short.
-    /// None where even that does not converge.
-    #[inline(always)]
-    pub fn exponential(&self) -> Option<Vec<Panel>> {
-        const TERMS: usize = 16;
-        let size = self.0.len();
-        let unit =
-            |first: usize| (0..size).map(move |row| array::from_fn(|lane| f64::from(u8::from(first + lane == row))));
-        let mut panels: Vec<Panel> = Vec::with_capacity(size.div_ceil(4));
-        for first in (0..size).step_by(4) {
-            let [quarter] = self.series(0.25, unit(first).collect(), TERMS)?;
-            panels.push(quarter);
-        }
-        let mut next = vec![[0.0; 4]; size];
-        for _ in 0..2 {
-            let factor = Self::new(size, |row, column| panels[column / 4][row][column % 4]);
-            for panel in &mut panels {
-                factor.multiply(1.0, panel, &mut next);
-                std::mem::swap(panel, &mut next);
+    /// Rows, and columns.
+    pub fn size(&self) -> usize {
+        self.size
+    }
+
+    /// An entry.
+    #[inline]
+    pub fn entry(&self, row: usize, column: usize) -> f64 {
+        self.panels[column / 4 * self.size + row][column % 4]
+    }
+
+    /// An entry, to be changed.
+    #[inline]
+    pub fn entry_mut(&mut self, row: usize, column: usize) -> &mut f64 {
+        &mut self.panels[column / 4 * self.size + row][column % 4]
+    }
+
+    /// Its exponential: the series for a small part of it, squared again and again (N. J. Higham, A. H. Al-Mohy,
+    /// "Computing matrix functions", Acta Numerica 19, 2010, section 4). None where it is not finite, or the matrix far too
+    /// large.
+    pub fn exponential(&self) -> Option<Self> {
+        let powers = [self.clone(), self.times(self)];
+        let fourth = powers[1].times(&powers[1]);
+        // By the norm of a power: the states have units, and what a force does to a velocity says little of speeds.
+        let size = fourth.norm().powf(0.25);
+        let squarings = (size / SMALL).log2().ceil().max(0.0) as i32;
+        (size <= LARGE).then(|| {
+            let part = self.series(powers, fourth, 0.5_f64.powi(squarings));
+            (0..squarings).fold(part, |part, _| part.times(&part))
+        })
+    }
+
+    /// The series of the exponential of `scale` times the matrix, by its first, second and fourth powers.
+    fn series(&self, [first, second]: [Self; 2], fourth: Self, scale: f64) -> Self {
+        let third = first.times(&second);
+        let four_terms = |from: usize| {
+            let mut sum = Self::zero(self.size);
+            for row in 0..self.size {
+                *sum.entry_mut(row, row) = over_factorial(scale, from);
+            }
+            for (power, matrix) in [(1, &first), (2, &second), (3, &third)] {
+                sum.add(over_factorial(scale, from + power), matrix);
+            }
+            sum
+        };
+        (0..TERMS - 4)
+            .step_by(4)
+            .rev()
+            .fold(four_terms(TERMS - 4), |later, from| {
+                let mut sum = four_terms(from);
+                sum.add(1.0, &fourth.times(&later));
+                sum
+            })
+    }
+
+    /// Adds `factor` times another matrix.
+    fn add(&mut self, factor: f64, other: &Self) {
+        for (sum, entries) in self.panels.iter_mut().zip(&other.panels) {
+            for lane in 0..4 {
+                sum[lane] += factor * entries[lane];
             }
         }
-        Some(panels)
     }
 
-    /// With `Z` the matrix, for each column of `v`: `∫ e^(Z (1 - s)) s^j ds v` over s from 0 to 1, for j = 0, 1, … (of
-    /// which the first is what is not asked for, `e^Z v`). None where the series do not converge.
-    #[inline(always)]
-    pub fn means<const N: usize>(&self, v: Panel) -> Option<[Panel; N]> {
-        const TERMS: usize = 28;
-        self.series(1.0, v, TERMS)
+    /// The product with another matrix of the same size.
+    pub fn times(&self, other: &Self) -> Self {
+        let mut product = Self::zero(self.size);
+        widest(Product {
+            size: self.size,
+            left: &self.panels,
+            right: &other.panels,
+            product: &mut product.panels,
+        });
+        product
     }
 
-    /// The first terms of `e^Z v`, with `Z` the matrix times `scale`, and behind it of [`Matrix::means`]. None where the
-    /// last is not negligible.
+    /// The largest sum of a row.
+    fn norm(&self) -> f64 {
+        let row = |row: usize| (0..self.size).map(|column| self.entry(row, column).abs()).sum();
+        // What is not a number is not lost.
+        (0..self.size)
+            .map(row)
+            .fold(0.0, |most, sum: f64| if sum <= most { most } else { sum })
+    }
+}
+
+/// The panels of two matrices and of their product.
+struct Product<'a> {
+    size: usize,
+    left: &'a [Lanes],
+    right: &'a [Lanes],
+    product: &'a mut [Lanes],
+}
+
+impl Loops for Product<'_> {
+    type Result = ();
+
     #[inline(always)]
-    fn series<const N: usize>(&self, scale: f64, v: Panel, terms: usize) -> Option<[Panel; N]> {
-        let mut sums: [Panel; N] = array::from_fn(|_| vec![[0.0; 4]; v.len()]);
-        // Those of the term Zⁱ v: 1/i!, and (j - 1)!/(i + j)!.
-        let mut weights: [f64; N] = array::from_fn(|j| 1.0 / j.max(1) as f64);
-        let (mut term, mut next) = (v.clone(), v);
-        for i in 0..terms {
-            for (sum, weight) in sums.iter_mut().zip(weights) {
-                for (sum, term) in sum.iter_mut().zip(&term) {
-                    for lane in 0..4 {
-                        sum[lane] += weight * term[lane];
+    fn run(self) {
+        let right = self.right.chunks_exact(self.size);
+        for (product, panel) in self.product.chunks_exact_mut(self.size).zip(right) {
+            for (tile, product) in product.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+                // Four rows of four, which stay in registers.
+                let mut sums = [[0.0; 4]; 4];
+                for (left, right) in self.left.chunks_exact(self.size).zip(panel.as_chunks::<4>().0) {
+                    let left = &left.as_chunks::<4>().0[tile];
+                    for k in 0..4 {
+                        for row in 0..4 {
+                            for lane in 0..4 {
+                                sums[row][lane] += left[row][k] * right[k][lane];
+                            }
+                        }
                     }
                 }
+                *product = sums;
             }
-            self.multiply(scale, &term, &mut next);
-            std::mem::swap(&mut term, &mut next);
-            weights = array::from_fn(|j| weights[j] / (i + j + 1) as f64);
-        }
-        let converged = weights[0] * largest(&term) <= NEGLIGIBLE * largest(&sums[0]);
-        converged.then_some(sums)
-    }
-
-    /// `product` = `scale` times the matrix times `panel`.
-    #[inline(always)]
-    fn multiply(&self, scale: f64, panel: &[Lanes], product: &mut [Lanes]) {
-        for (row, product) in self.0.iter().zip(product) {
-            let mut sum = [0.0; 4];
-            for &(i, factor) in row {
-                let (factor, entries) = (scale * factor, &panel[i]);
-                for lane in 0..4 {
-                    sum[lane] += factor * entries[lane];
-                }
-            }
-            *product = sum;
         }
     }
 }
 
-/// What the last term of a series may be of its sum.
-const NEGLIGIBLE: f64 = 1e-12;
+/// So many terms of the series are summed up,
+const TERMS: usize = 16;
+/// and the first that is left out is below 1e-13 for what is no larger than this.
+const SMALL: f64 = 1.0;
+/// Nothing is left of what decays so fast, or it turns so often that no digit is right.
+const LARGE: f64 = 1e6;
 
-fn largest(panel: &[Lanes]) -> f64 {
-    panel.iter().flatten().fold(0.0, |largest, v| v.abs().max(largest))
+/// `xⁿ / n!`.
+fn over_factorial(x: f64, n: usize) -> f64 {
+    (1..=n).fold(1.0, |value, i| value * x / i as f64)
 }

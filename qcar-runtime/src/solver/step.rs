@@ -35,6 +35,16 @@ impl<'a> Step<'a> {
         self.states[0]
     }
 
+    /// The state where the method's step ends.
+    pub fn end_state(&self) -> &'a [f64] {
+        self.states[1]
+    }
+
+    /// The rates of the states where the step ends, and behind them the signals; none where an event has cut it short.
+    pub fn end_rates(&self) -> Option<&'a [f64]> {
+        self.error.is_finite().then_some(self.slopes[1])
+    }
+
     /// Writes the state at time `t` of the step.
     pub fn at(&self, t: f64, state: &mut [f64]) {
         let n = state.len();

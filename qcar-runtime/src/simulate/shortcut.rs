@@ -1,0 +1,190 @@
+//! A shortcut for linear axles: an exponential method wherever the force of the tyre is smooth.
+//!
+//! The steps of the general method are limited by the stability of the fastest mode, and each takes six evaluations. The
+//! exponential method has no such limit and takes one: it goes from sample to sample while its polynomials meet the
+//! force, and leaves the rest to the general one.
+
+use super::rolling::Rolling;
+use super::sampling::Grid;
+use super::settings::{Method, Settings, scales};
+use crate::model::{About, Contact, Model};
+use crate::solver::{Driven, Effort, ExponentialAdams, PAST};
+
+/// The exponential method, and what it needs to know before it can begin.
+pub(super) struct Shortcut {
+    adams: ExponentialAdams<2>,
+    relative: f64,
+    absolute: Vec<f64>,
+    /// Ends of the shortest steps, s.
+    times: Vec<f64>,
+    /// The first of them that is ahead.
+    next: usize,
+    /// In a step of the exponential method.
+    stride: usize,
+    /// The forces at the last times, with nothing between them that is not smooth.
+    past: Vec<[f64; 2]>,
+    /// Where the wheel's centre was at the last time, m.
+    centre: [f64; 2],
+    /// So many times are left out before the next attempt, if that one leads no further than the last.
+    patience: usize,
+    effort: Effort,
+}
+
+/// A step on uneven ground, s, or a little less; on level ground it is twice that.
+const STEP: f64 = 1e-3;
+
+impl Shortcut {
+    /// For a ride that is recorded on a grid. None where the axle is not linear, or where steps of a given length were
+    /// asked for.
+    pub fn new<M: Model + ?Sized>(
+        rolling: &Rolling<'_, M>,
+        about: &About,
+        settings: &Settings,
+        grid: &Grid,
+    ) -> Option<Self> {
+        let (Method::Adaptive(relative), true) = (settings.method, rolling.is_linear()) else {
+            return None;
+        };
+        let times = grid.steps(STEP);
+        let step = times.get(1)? - times[0];
+        let doublings = usize::from(step < 1.5 * STEP);
+        Some(Self {
+            adams: ExponentialAdams::new(&Smooth::new(rolling), about.states.len(), step, doublings)?,
+            relative,
+            absolute: scales(about).map(|scale| relative * scale).collect(),
+            times,
+            next: 0,
+            stride: 1,
+            past: Vec::with_capacity(PAST),
+            centre: [f64::NAN; 2],
+            patience: 1,
+            effort: Effort::default(),
+        })
+    }
+
+    /// The first time at which it wants to know the force, s.
+    pub fn next_time(&self) -> f64 {
+        self.times.get(self.next).copied().unwrap_or(f64::INFINITY)
+    }
+
+    /// Leaves out the times up to `t`.
+    pub fn pass(&mut self, t: f64) {
+        while self.next_time() <= t {
+            self.next += 1;
+            self.past.clear();
+        }
+    }
+
+    /// Notes that the general method has come to time `t`, where the force is what it is.
+    pub fn note<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>, t: f64, x: &[f64], force: Option<[f64; 2]>) {
+        self.pass(t.next_down());
+        if self.next_time() > t {
+            return;
+        }
+        self.next += 1;
+        let centre = rolling.centre(t, x);
+        if self.past.len() == PAST {
+            self.past.remove(0);
+        }
+        if force.is_none() || rolling.bends_between(self.centre, centre) {
+            self.past.clear();
+        }
+        self.past.extend(force);
+        self.centre = centre;
+    }
+
+    /// Begins at time `t`, if enough is known of what was before.
+    pub fn begin(&mut self, t: f64, x: &[f64]) -> bool {
+        let known = self
+            .past
+            .as_array()
+            .filter(|_| self.next > 0 && self.times[self.next - 1] == t);
+        let Some(past) = known else {
+            return false;
+        };
+        self.adams.begin(x, past);
+        (self.stride, self.effort) = (1, Effort::default());
+        true
+    }
+
+    /// A step: when it ends, and under which contact. None where it cannot be made, or there is no more to make.
+    #[inline(always)]
+    pub fn step<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>) -> Option<(f64, Contact)> {
+        let left = self.times.len() - self.next;
+        if self.stride == 1 && left.is_multiple_of(2) && rolling.is_level(self.centre) && self.adams.lengthen() {
+            self.stride = 2;
+        }
+        let end = self.next + self.stride - 1;
+        let &time = self.times.get(end)?;
+        let mut smooth = Smooth {
+            rolling,
+            centre: self.centre,
+            contact: Contact::default(),
+        };
+        self.effort.evaluations += 1;
+        if self.adams.advance(&mut smooth, time, self.relative, &self.absolute) {
+            self.effort.accepted += 1;
+            (self.next, self.centre) = (end + 1, smooth.centre);
+            Some((time, smooth.contact))
+        } else {
+            self.effort.rejected += 1;
+            None
+        }
+    }
+
+    /// The state.
+    pub fn state(&self) -> &[f64] {
+        self.adams.state()
+    }
+
+    /// Ends: at which time, s, and what it cost.
+    pub fn end(&mut self) -> (f64, Effort) {
+        self.past.clear();
+        let ended = self.times[self.next - 1];
+        if self.effort.accepted < PAST {
+            self.next += self.patience;
+            self.patience *= 2;
+        } else {
+            self.patience = 1;
+        }
+        (ended, self.effort)
+    }
+}
+
+/// An axle under a force that is smooth from a point of the wheel's centre on.
+struct Smooth<'r, 'a, M: ?Sized> {
+    rolling: &'r Rolling<'a, M>,
+    centre: [f64; 2],
+    /// The last that was asked for.
+    contact: Contact,
+}
+
+impl<'r, 'a, M: Model + ?Sized> Smooth<'r, 'a, M> {
+    fn new(rolling: &'r Rolling<'a, M>) -> Self {
+        Self {
+            rolling,
+            centre: [f64::NAN; 2],
+            contact: Contact::default(),
+        }
+    }
+}
+
+impl<M: Model + ?Sized> Driven<2> for Smooth<'_, '_, M> {
+    fn rate(&self, x: &[f64], force: [f64; 2], dx: &mut [f64]) {
+        let contact = Contact {
+            force,
+            ..Contact::default()
+        };
+        self.rolling.move_by(&contact, x, dx, &mut []);
+    }
+
+    #[inline(always)]
+    fn force(&mut self, t: f64, x: &[f64]) -> Option<[f64; 2]> {
+        let before = std::mem::replace(&mut self.centre, self.rolling.centre(t, x));
+        if self.rolling.bends_between(before, self.centre) {
+            return None;
+        }
+        self.contact = self.rolling.contact_at(t, x)?;
+        Some(self.rolling.driven(self.contact).force)
+    }
+}
