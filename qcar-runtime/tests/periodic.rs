@@ -148,6 +148,34 @@ fn the_slopes_are_those_of_differences() {
 }
 
 #[test]
+fn the_slopes_by_amplitude_are_those_of_differences() {
+    let model = Strut::new(DRY);
+    let periodic = Periodic::new(&model, 0, 5);
+    let drive = drive(3.0, 0.1);
+    let cycle = periodic.cycle(&P, &drive, &[0, 1], &[vec![0]], None);
+    let at = |louder: f64| {
+        let drive = Drive {
+            amplitude: drive.amplitude * louder,
+            ..drive
+        };
+        periodic
+            .cycle(&P, &drive, &[0, 1], &[], Some(&cycle.coefficients))
+            .outputs
+    };
+    let (up, down) = (at(1.0 + 1e-4), at(1.0 - 1e-4));
+    for output in 0..2 {
+        for order in [1, 3] {
+            let expected = (up[output][order] - down[output][order]) / 2e-4;
+            let found = cycle.louder[output][order];
+            assert!(
+                (found - expected).norm() < 0.02 * expected.norm(),
+                "{found}, not {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_linear_model_answers_in_its_first_harmonic_alone() {
     let model = Strut::new(Parts { friction: false, ..DRY });
     let cycle = Periodic::new(&model, 0, 3).cycle(&P[..9], &drive(5.0, 0.1), &[0], &[], None);

@@ -12,7 +12,7 @@ use std::path::Path;
 
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::predict::{predict, unsteady};
+use qcar_runtime::discover::predict::{Misread, predict, unsteady};
 use qcar_runtime::discover::refit::{refit, settle};
 use qcar_runtime::discover::{Evidence, Free, Gap};
 use qcar_runtime::model::Model;
@@ -116,7 +116,7 @@ fn values(model: &Strut, off: f64) -> Values {
 /// The worst difference from the first harmonics, relative to these, with and without what is unsteady.
 fn worst(model: &Strut, evidence: &Evidence, role: Role) -> [f64; 2] {
     let values = values(model, 1.0);
-    let added = unsteady(model, &values, evidence, role).expect("the model has the sensors");
+    let added = unsteady(model, &values, &Misread::default(), evidence, role).expect("the model has the sensors");
     let mut worst = [0.0; 2];
     for mut prediction in predict(model, &values, &[], evidence, role).expect("the model has the sensors") {
         let series = &evidence.series[prediction.series];

@@ -50,11 +50,11 @@ impl Gap {
     /// Where the model lacks what was measured.
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
-        let late = refit.nuisance.lateness(evidence, &refit.coefficients);
+        let misread = refit.nuisance.misread(evidence, &refit.coefficients);
         for role in [Role::Fit, Role::HeldOut] {
-            let unsteady = unsteady(model, &refit.values, evidence, role)?;
+            let unsteady = unsteady(model, &refit.values, &misread, evidence, role)?;
             let sides = [&refit.values, &refit.side];
-            for mut prediction in predict_sides(model, sides, &late, &[], evidence, &|run| run.role == role)? {
+            for mut prediction in predict_sides(model, sides, &misread, &[], evidence, &|run| run.role == role)? {
                 let series = &evidence.series[prediction.series];
                 prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);

@@ -11,8 +11,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Kind, Series, Stimulus};
-use super::predict::Prediction;
+use super::evidence::{Evidence, Kind, Run, Series, Stimulus};
+use super::predict::{Misread, Prediction};
 use crate::campaign::Axis;
 use crate::transmissibility::Point;
 
@@ -178,17 +178,45 @@ impl Nuisance {
             .collect()
     }
 
-    /// How late the sensor of each series is against what drove its run, s, where that is no phase.
-    pub fn lateness(&self, evidence: &Evidence, coefficients: &[f64]) -> Vec<f64> {
+    /// How late the sensor of each series is against what drove its run, where that is no phase, and how much harder each
+    /// run was driven than its reference shows: in proportion to the amplitude nothing would come of that, but laws bend.
+    pub fn misread(&self, evidence: &Evidence, coefficients: &[f64]) -> Misread {
         let late = |series: &Series| {
             let delays = self.late_by(evidence, series).into_iter();
             delays.map(|(k, times)| times * coefficients[k]).sum()
         };
-        evidence.series.iter().map(late).collect()
+        let louder = |run: &Run| {
+            let gains = self.reference_gains(run);
+            (-gains.map(|k| coefficients[k]).sum::<f64>()).exp()
+        };
+        Misread {
+            late: evidence.series.iter().map(late).collect(),
+            louder: evidence.runs.iter().map(louder).collect(),
+        }
+    }
+
+    /// The derivatives of a prediction along the coefficients by which it is misread, by place.
+    pub fn misread_slopes(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
+        let mut slopes = self.delays(evidence, prediction);
+        if let Some(louder) = &prediction.louder {
+            let run = &evidence.runs[evidence.series[prediction.series].run];
+            let along = |k| (k, louder.iter().map(|slope| -slope).collect());
+            slopes.extend(self.reference_gains(run).map(along));
+        }
+        slopes
+    }
+
+    /// The coefficients of the mean gain of a run's reference.
+    fn reference_gains(&self, run: &Run) -> impl Iterator<Item = usize> {
+        let of = |sensor| {
+            let own = self.coefficient(sensor, Form::Gain(0));
+            own.into_iter().chain(self.suspected(sensor, Form::Gain(0)))
+        };
+        run.stimulus.reference().into_iter().flat_map(of)
     }
 
     /// The derivatives of a prediction along the coefficients that make its series late, by place.
-    pub fn delays(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
+    fn delays(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
         let Some(delay) = &prediction.delay else {
             return Vec::new();
         };

@@ -55,6 +55,24 @@ pub struct Prediction {
     pub slopes: Vec<Vec<Complex<f64>>>,
     /// What a delay of sensors does to values over time; `None` where it only turns their phase, or nothing.
     pub delay: Option<Delay>,
+    /// The derivatives of the values by the logarithm of the amplitude that drove the run; `None` where they do not
+    /// depend on it.
+    pub louder: Option<Vec<Complex<f64>>>,
+}
+
+/// What errors of sensors change in a prediction itself, not only in what they show of it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Misread {
+    /// How late the sensor of each series is, s; without entries none is.
+    pub late: Vec<f64>,
+    /// By what factor each run was driven harder than its reference shows; without entries none was.
+    pub louder: Vec<f64>,
+}
+
+impl Misread {
+    fn louder(&self, run: usize) -> f64 {
+        self.louder.get(run).copied().unwrap_or(1.0)
+    }
 }
 
 /// What delays do to a series over time.
@@ -124,18 +142,21 @@ pub fn predict(
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Prediction>, PredictError> {
-    predict_sides(model, [values, values], &[], free, evidence, &|run| run.role == role)
+    let misread = Misread::default();
+    predict_sides(model, [values, values], &misread, free, evidence, &|run| {
+        run.role == role
+    })
 }
 
 /// The same of the runs that are `wanted`, of a car whose recorded side has parameters of its own (the second set): cleat
-/// runs see these. Series over time are as `late` (s, series by series) as their sensors; without entries none is.
+/// runs see these. Sensors are `misread`.
 ///
 /// # Errors
 /// As [`predict`].
 pub fn predict_sides(
     model: &dyn Model,
     [values, side]: [&Values; 2],
-    late: &[f64],
+    misread: &Misread,
     free: &[Free],
     evidence: &Evidence,
     wanted: &dyn Fn(&Run) -> bool,
@@ -145,7 +166,7 @@ pub fn predict_sides(
         .collect();
     let of_runs = runs
         .into_par_iter()
-        .map(|run| of_run(model, [values, side], late, free, evidence, run));
+        .map(|run| of_run(model, [values, side], misread, free, evidence, run));
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
@@ -161,14 +182,15 @@ fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Po
 fn of_run(
     model: &dyn Model,
     [values, side]: [&Values; 2],
-    late: &[f64],
+    misread: &Misread,
     free: &[Free],
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
+    let late = &misread.late;
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
-        Stimulus::Sweep { .. } => nonlinear::sweep(model, values, free, evidence, run),
+        Stimulus::Sweep { .. } => nonlinear::sweep(model, values, misread.louder(run), free, evidence, run),
         Stimulus::Cleat(passage) => cleat::passage(model, side, late, free, evidence, (run, passage)),
         Stimulus::History { .. } => history::history(model, values, late, free, evidence, run),
         Stimulus::Travel { .. } | Stimulus::Sine { .. } => travel::travel(model, values, free, evidence, run),

@@ -132,7 +132,8 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
     );
     let mut settled = refit;
     for _ in 0..ROUNDS {
-        posterior.unsteady = unsteady(model, &settled.values, evidence, Role::Fit)?;
+        let misread = settled.nuisance.misread(evidence, &settled.coefficients);
+        posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
         let outcome = posterior.search(&posterior.place(&settled), TO_SETTLE)?;
         settled = posterior.refit(outcome);
     }
@@ -317,10 +318,10 @@ impl<'a> Posterior<'a> {
     fn predictions(&mut self, x: &[f64], free: &[Free]) -> Result<[Vec<Prediction>; 2], PredictError> {
         self.move_to(x);
         let both = [&self.values, &self.side];
-        let late = self.nuisance.lateness(self.evidence, &x[self.free.len()..]);
+        let misread = self.nuisance.misread(self.evidence, &x[self.free.len()..]);
         let predict = |free: &[Free], swept: bool| {
             let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
-            predict_sides(self.model, both, &late, free, self.evidence, &wanted)
+            predict_sides(self.model, both, &misread, free, self.evidence, &wanted)
         };
         let swept = match self.looked.take().filter(|(at, _)| at == x) {
             Some((_, swept)) => swept,
@@ -393,7 +394,7 @@ impl<'a> Posterior<'a> {
                 along(slope, 1.0, &mut columns[k]);
             }
         }
-        for (k, slope) in self.nuisance.delays(self.evidence, prediction) {
+        for (k, slope) in self.nuisance.misread_slopes(self.evidence, prediction) {
             along(&slope, 1.0, &mut columns[self.free.len() + k]);
         }
         for (k, slope) in shown.slopes {

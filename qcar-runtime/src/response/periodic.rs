@@ -49,6 +49,8 @@ pub struct Cycle {
     pub outputs: Vec<Vec<Complex<f64>>>,
     /// For each parameter asked for the derivatives of `outputs`.
     pub slopes: Vec<Vec<Vec<Complex<f64>>>>,
+    /// Where there are such parameters, the derivatives of `outputs` by the logarithm of the drive's amplitude.
+    pub louder: Vec<Vec<Complex<f64>>>,
     /// False where the search gave up; the response is then that of its best point.
     pub converged: bool,
 }
@@ -86,10 +88,12 @@ impl<'m> Periodic<'m> {
         if !groups.is_empty() {
             balance.linearise();
         }
-        let slope = |group: &Vec<usize>| balance.output_slopes(outputs, group);
+        let slope = |group: &Vec<usize>| balance.slopes_along(outputs, group);
+        let asked = !groups.is_empty();
         Cycle {
             outputs: balance.outputs(outputs),
             slopes: groups.iter().map(slope).collect(),
+            louder: asked.then(|| balance.slopes_louder(outputs)).unwrap_or_default(),
             coefficients: x,
             converged,
         }

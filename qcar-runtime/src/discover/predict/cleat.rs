@@ -149,6 +149,7 @@ impl Seen<'_> {
                 slope: complex(&here[column].1),
                 shares: shares.clone(),
             }),
+            louder: None,
         };
         self.places.iter().enumerate().map(predict).collect()
     }

@@ -82,6 +82,7 @@ pub(super) fn history(
                 slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
                 shares: Vec::new(),
             }),
+            louder: None,
         }
     };
     Ok(series.iter().enumerate().map(predict).collect())

@@ -43,6 +43,7 @@ pub(super) fn sweep(
             slopes: free.iter().map(slope).collect(),
             value: ratio.value,
             delay: None,
+            louder: None,
         });
     }
     Ok(predictions)
@@ -55,5 +56,6 @@ fn silence(series: usize, values: usize, free: usize) -> Prediction {
         slopes: vec![zero.clone(); free],
         value: zero,
         delay: None,
+        louder: None,
     }
 }

@@ -12,9 +12,11 @@ use crate::response::signal::output_of;
 /// Harmonics of the balance: those that are measured and enough above for their laws to settle.
 const HARMONICS: usize = 5;
 
+/// Of a run that was driven harder by the factor `louder` than its reference shows.
 pub(super) fn sweep(
     model: &dyn Model,
     values: &Values,
+    louder: f64,
     free: &[Free],
     evidence: &Evidence,
     run: usize,
@@ -33,7 +35,7 @@ pub(super) fn sweep(
     let power = order_of(reference);
     let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
         frequency,
-        amplitude,
+        amplitude: louder * amplitude,
         power,
     });
     let drives: Vec<Drive> = drives.collect();
@@ -97,9 +99,14 @@ impl Reading<'_> {
             let along = |&place: &usize| cycles[place].slopes[k][column][harmonic] * scale(place);
             places.iter().map(along).collect()
         };
+        let louder = |&place: &usize| {
+            let moved = cycles[place].louder[column][harmonic] - cycles[place].outputs[column][harmonic];
+            moved * scale(place)
+        };
         Prediction {
             series: self.place,
             value: places.iter().map(value).collect(),
+            louder: (free > 0).then(|| places.iter().map(louder).collect()),
             slopes: (0..free).map(slope).collect(),
             delay: None,
         }

@@ -60,6 +60,7 @@ pub(super) fn travel(
             slopes: forces[1..].iter().zip(&steps).map(slope).collect(),
             value,
             delay: None,
+            louder: None,
         }
     };
     Ok(series.iter().map(predict).collect())

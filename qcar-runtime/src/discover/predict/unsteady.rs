@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::input::{Between, Recorded};
 use super::replay::{Reading, Replay, reading};
-use super::{PredictError, excitation, nonlinear};
+use super::{Misread, PredictError, excitation, nonlinear};
 use crate::campaign::Role;
 use crate::discover::evidence::sweep::{AROUND, ORDERS};
 use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
@@ -31,6 +31,7 @@ const BEYOND: f64 = 4.0;
 pub fn unsteady(
     model: &dyn Model,
     values: &Values,
+    misread: &Misread,
     evidence: &Evidence,
     role: Role,
 ) -> Result<Vec<Vec<Complex<f64>>>, PredictError> {
@@ -41,7 +42,9 @@ pub fn unsteady(
     let runs: Vec<usize> = (0..evidence.runs.len())
         .filter(|&run| evidence.runs[run].role == role)
         .collect();
-    let of_runs = runs.into_par_iter().map(|run| of_run(model, values, evidence, run));
+    let of_runs = runs
+        .into_par_iter()
+        .map(|run| of_run(model, values, misread.louder(run), evidence, run));
     for (series, differences) in of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten() {
         added[series] = differences;
     }
@@ -51,7 +54,13 @@ pub fn unsteady(
 /// Places of series with their differences.
 type Differences = Vec<(usize, Vec<Complex<f64>>)>;
 
-fn of_run(model: &dyn Model, values: &Values, evidence: &Evidence, run: usize) -> Result<Differences, PredictError> {
+fn of_run(
+    model: &dyn Model,
+    values: &Values,
+    louder: f64,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Differences, PredictError> {
     let Stimulus::Sweep {
         reference,
         signal,
@@ -62,10 +71,11 @@ fn of_run(model: &dyn Model, values: &Values, evidence: &Evidence, run: usize) -
     else {
         return Ok(Vec::new());
     };
+    let signal: Vec<f64> = signal.iter().map(|sample| louder * sample).collect();
     let recorded = Recorded {
         excitation: excitation(model, evidence, run, reference)?,
         power: order_of(reference),
-        samples: signal,
+        samples: &signal,
     };
     let how = Between {
         rate: *rate,
@@ -73,7 +83,7 @@ fn of_run(model: &dyn Model, values: &Values, evidence: &Evidence, run: usize) -
         band: (band.0 / BEYOND, band.1 * BEYOND),
         nodes: 0,
     };
-    let balanced = nonlinear::sweep(model, values, &[], evidence, run)?;
+    let balanced = nonlinear::sweep(model, values, louder, &[], evidence, run)?;
     let about = model.about();
     let sensors = balanced
         .iter()
@@ -82,7 +92,7 @@ fn of_run(model: &dyn Model, values: &Values, evidence: &Evidence, run: usize) -
         .map(|signal| reading(about, &signal))
         .collect::<Result<_, SignalError>>()?;
     let replayed = Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice());
-    let swept = Swept::new(signal, *rate, *band, ORDERS);
+    let swept = Swept::new(&signal, *rate, *band, ORDERS);
     let differences = balanced.into_par_iter().zip(replayed).map(|(balanced, replayed)| {
         let seen = seen(&swept, &replayed, &evidence.series[balanced.series]);
         let differences = seen.iter().zip(&balanced.value).map(|(seen, balanced)| seen - balanced);

@@ -143,12 +143,33 @@ impl<'a> Balance<'a> {
     }
 
     /// How the harmonics of some outputs move along a group of parameters; a state that cannot be told of stays.
-    pub fn output_slopes(&self, outputs: &[usize], group: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let moves = self.synthesis(&self.slope(group));
+    pub fn slopes_along(&self, outputs: &[usize], group: &[usize]) -> Vec<Vec<Complex<f64>>> {
+        let pushes = self.by_parameter(group, false, |row| self.places[row]);
+        self.output_slopes(outputs, pushes, |output| {
+            self.by_parameter(group, true, |row| (row == output).then_some(0))
+        })
+    }
+
+    /// The same along the logarithm of the amplitude of the drive.
+    pub fn slopes_louder(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
+        let pushes = self.by_input(Matrix::B, |row| self.places[row]);
+        self.output_slopes(outputs, pushes, |output| {
+            self.by_input(Matrix::D, |row| (row == output).then_some(0))
+        })
+    }
+
+    /// The same along whatever pushes the states so, and each output so `directly`: places with samples.
+    fn output_slopes(
+        &self,
+        outputs: &[usize],
+        pushes: Vec<(usize, DVector<f64>)>,
+        directly: impl Fn(usize) -> Vec<(usize, DVector<f64>)>,
+    ) -> Vec<Vec<Complex<f64>>> {
+        let moves = self.synthesis(&self.slope(pushes));
         let mut samples = DMatrix::zeros(self.inputs.len(), outputs.len());
         for (column, &output) in outputs.iter().enumerate() {
             let mut samples = samples.column_mut(column);
-            for (_, direct) in self.by_parameter(group, true, |row| (row == output).then_some(0)) {
+            for (_, direct) in directly(output) {
                 samples += direct;
             }
             let entries = self.model.about().matrices.iter().enumerate();
@@ -164,11 +185,11 @@ impl<'a> Balance<'a> {
         self.harmonics(&samples)
     }
 
-    /// How the coefficients of the present point move along a group of parameters; zero where they cannot be told.
-    fn slope(&self, group: &[usize]) -> DVector<f64> {
+    /// How the coefficients of the present point move under pushes on the states; zero where they cannot be told.
+    fn slope(&self, pushes: Vec<(usize, DVector<f64>)>) -> DVector<f64> {
         let (terms, unknowns) = (self.basis.terms(), self.states.len() * self.basis.terms());
         let mut push = DVector::zeros(unknowns);
-        for (place, samples) in self.by_parameter(group, false, |row| self.places[row]) {
+        for (place, samples) in pushes {
             let mut block = push.rows_mut(place * terms, terms);
             block += &self.basis.analysis * samples;
         }
@@ -198,6 +219,23 @@ impl<'a> Balance<'a> {
             |entry: usize| DVector::from_iterator(self.inputs.len(), self.by_parameter.iter().map(|at| at[entry]));
         along
             .filter_map(|(entry, (_, row, _))| Some((place(usize::from(*row))?, samples(entry))))
+            .collect()
+    }
+
+    /// Samples of what the inputs do through the nonzeros of a matrix, by what `place` makes of a row.
+    fn by_input(&self, matrix: Matrix, place: impl Fn(usize) -> Option<usize>) -> Vec<(usize, DVector<f64>)> {
+        let entries = self.model.about().matrices.iter().enumerate();
+        let along = entries.filter(|(_, at)| at.matrix == matrix);
+        let samples = |entry: usize, input: usize| {
+            let products = self
+                .matrices
+                .iter()
+                .zip(&self.inputs)
+                .map(|(nonzeros, u)| nonzeros[entry] * u[input]);
+            DVector::from_iterator(self.inputs.len(), products)
+        };
+        along
+            .filter_map(|(entry, at)| Some((place(usize::from(at.row))?, samples(entry, usize::from(at.column)))))
             .collect()
     }
 
