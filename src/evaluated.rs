@@ -4,7 +4,7 @@ mod about;
 
 use qcar_dsl::evaluate::{self, Evaluator};
 use qcar_dsl::schedule::Compiled;
-use qcar_runtime::model::{About, Contact, Model, ResponseMut};
+use qcar_runtime::model::{About, Contact, Model, Points, ResponseMut};
 
 /// A compiled model that is interpreted.
 pub struct Evaluated {
@@ -27,6 +27,14 @@ fn contact(of: &Contact) -> evaluate::Contact {
         s: of.s,
         v: of.v,
         force: of.force,
+    }
+}
+
+fn points<'a>(of: &Points<'a>) -> evaluate::Points<'a> {
+    evaluate::Points {
+        count: of.count,
+        x: of.x,
+        u: of.u,
     }
 }
 
@@ -57,6 +65,22 @@ impl Model for Evaluated {
 
     fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
         self.evaluator.parameter_jacobian(p, x, u, nonzeros);
+    }
+
+    fn derivative_at(&self, constants: &[f64], at: &Points, dx: &mut [f64]) {
+        self.evaluator.derivative_at(constants, &points(at), dx);
+    }
+
+    fn outputs_at(&self, constants: &[f64], at: &Points, y: &mut [f64]) {
+        self.evaluator.outputs_at(constants, &points(at), y);
+    }
+
+    fn matrices_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        self.evaluator.matrices_at(p, &points(at), nonzeros);
+    }
+
+    fn parameter_jacobian_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        self.evaluator.parameter_jacobian_at(p, &points(at), nonzeros);
     }
 
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>) {

@@ -31,6 +31,26 @@ pub trait Model: Send + Sync {
     /// Nonzeros of ∂f/∂p and ∂h/∂p, in the order of [`About::parameter_jacobian`].
     fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
 
+    /// [`Model::derivative`] at several points, a row of them for each entry of `dx`.
+    fn derivative_at(&self, constants: &[f64], points: &Points, dx: &mut [f64]) {
+        points.one_by_one(dx, |x, u, dx| self.derivative(constants, x, u, dx));
+    }
+
+    /// [`Model::outputs`] at several points, a row of them for each output.
+    fn outputs_at(&self, constants: &[f64], points: &Points, y: &mut [f64]) {
+        points.one_by_one(y, |x, u, y| self.outputs(constants, x, u, y));
+    }
+
+    /// [`Model::matrices`] at several points, a row of them for each nonzero.
+    fn matrices_at(&self, p: &[f64], points: &Points, nonzeros: &mut [f64]) {
+        points.one_by_one(nonzeros, |x, u, nonzeros| self.matrices(p, x, u, nonzeros));
+    }
+
+    /// [`Model::parameter_jacobian`] at several points, a row of them for each nonzero.
+    fn parameter_jacobian_at(&self, p: &[f64], points: &Points, nonzeros: &mut [f64]) {
+        points.one_by_one(nonzeros, |x, u, nonzeros| self.parameter_jacobian(p, x, u, nonzeros));
+    }
+
     /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
     ///
     /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
@@ -69,6 +89,32 @@ pub struct Contact {
     pub v: f64,
     /// The force on the wheel along [`ContactAbout::axes`], N.
     pub force: [f64; 2],
+}
+
+/// States and inputs at several points: structure of arrays, so that a model may work on many points at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// How many.
+    pub count: usize,
+    /// A row of `count` points for each state.
+    pub x: &'a [f64],
+    /// A row of `count` points for each input.
+    pub u: &'a [f64],
+}
+
+impl Points<'_> {
+    /// Lets `work` find from the states and inputs of each point what stands there in the rows `into`.
+    fn one_by_one(&self, into: &mut [f64], mut work: impl FnMut(&[f64], &[f64], &mut [f64])) {
+        let column =
+            |rows: &[f64], point: usize| -> Vec<f64> { rows.iter().skip(point).step_by(self.count).copied().collect() };
+        for point in 0..self.count {
+            let mut found = column(into, point);
+            work(&column(self.x, point), &column(self.u, point), &mut found);
+            for (row, value) in into.chunks_exact_mut(self.count).zip(found) {
+                row[point] = value;
+            }
+        }
+    }
 }
 
 /// Where a frequency response is written: structure of arrays, a row of `omega.len()` lines for each entry.

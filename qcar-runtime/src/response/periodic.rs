@@ -7,14 +7,16 @@
 
 // Fourier series by their samples.
 mod basis;
-// Its Jacobian without the positions.
+// A model at such samples.
+mod period;
+// The Jacobian of its balance without the positions.
 mod factors;
 // The balance at one excitation, and its solution.
 mod balance;
 
 use std::f64::consts::TAU;
 
-use nalgebra::Complex;
+use nalgebra::{Complex, DMatrix};
 
 use crate::model::{InputKind, Matrix, Model, Quantity};
 use balance::Balance;
@@ -133,28 +135,31 @@ impl<'m> Periodic<'m> {
     fn balance(&self, p: &[f64], drive: &Drive) -> Balance<'_> {
         let omega = TAU * drive.frequency;
         let phasor = drive.amplitude / Complex::new(0.0, omega).powi(drive.power);
-        let inputs = (0..self.basis.samples()).map(|k| self.inputs(phasor, omega, self.basis.angle(k)));
-        Balance::new(self.model, p, &self.states, &self.basis, omega, inputs.collect())
+        Balance::new(
+            self.model,
+            p,
+            &self.states,
+            &self.basis,
+            omega,
+            self.inputs(phasor, omega),
+        )
     }
 
-    fn inputs(&self, phasor: Complex<f64>, omega: f64, angle: f64) -> Vec<f64> {
-        let turn = phasor * Complex::cis(angle);
+    /// A row for each sample of a period, a column for each input.
+    fn inputs(&self, phasor: Complex<f64>, omega: f64) -> DMatrix<f64> {
+        let inputs = &self.model.about().inputs;
+        let turns = (0..self.basis.samples()).map(|k| phasor * Complex::cis(self.basis.angle(k)));
+        let turns: Vec<Complex<f64>> = turns.collect();
         let rate = Complex::new(0.0, omega);
-        let value = |kind| match kind {
-            InputKind::Force(place) if usize::from(place) == self.excitation => turn.re,
+        DMatrix::from_fn(turns.len(), inputs.len(), |k, input| match inputs[input].kind {
+            InputKind::Force(place) if usize::from(place) == self.excitation => turns[k].re,
             InputKind::Motion(place, quantity) if usize::from(place) == self.excitation => match quantity {
-                Quantity::Position => turn.re,
-                Quantity::Velocity => (turn * rate).re,
-                Quantity::Acceleration => (turn * rate * rate).re,
+                Quantity::Position => turns[k].re,
+                Quantity::Velocity => (turns[k] * rate).re,
+                Quantity::Acceleration => (turns[k] * rate * rate).re,
             },
             _ => 0.0,
-        };
-        self.model
-            .about()
-            .inputs
-            .iter()
-            .map(|input| value(input.kind))
-            .collect()
+        })
     }
 }
 

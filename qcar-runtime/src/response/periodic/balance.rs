@@ -1,31 +1,41 @@
 //! `ω dx/dθ = f(x, u)` in Fourier coefficients, and Newton's method for it.
 
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DMatrix, DVector, Dyn, U1};
 
 use super::basis::Basis;
 use super::factors::{Factors, Integral};
-use crate::model::{Matrix, Model, StateKind};
+use super::period::Period;
+use crate::model::{About, Matrix, Model, StateKind};
 
 /// The balance of a model at one drive.
 pub struct Balance<'a> {
     model: &'a dyn Model,
-    p: Vec<f64>,
-    constants: Vec<f64>,
     states: &'a [usize],
     /// For each state of the model its place in `states`.
     places: Vec<Option<usize>>,
     basis: &'a Basis,
     omega: f64,
-    /// The inputs at each sample.
-    inputs: Vec<Vec<f64>>,
-    /// The states at each sample of the present point.
-    samples: Vec<Vec<f64>>,
-    /// The nonzeros of A, B, C and D at each sample of the present point.
-    matrices: Vec<Vec<f64>>,
-    /// The nonzeros of ∂f/∂p and ∂h/∂p there.
-    by_parameter: Vec<Vec<f64>>,
+    /// The present point.
+    period: Period<'a>,
     /// The factorised Jacobian of the present point.
     factors: Option<Factors>,
+}
+
+/// What moves a model beside its states, sampled over a period.
+struct Push {
+    /// A column for the rate of each state.
+    states: DMatrix<f64>,
+    /// A column for each output.
+    outputs: DMatrix<f64>,
+}
+
+impl Push {
+    fn none(about: &About, samples: usize) -> Self {
+        Push {
+            states: DMatrix::zeros(samples, about.states.len()),
+            outputs: DMatrix::zeros(samples, about.outputs.len()),
+        }
+    }
 }
 
 /// Newton steps before the search gives up.
@@ -48,24 +58,16 @@ impl<'a> Balance<'a> {
         states: &'a [usize],
         basis: &'a Basis,
         omega: f64,
-        inputs: Vec<Vec<f64>>,
+        inputs: DMatrix<f64>,
     ) -> Self {
-        let about = model.about();
-        let mut constants = vec![0.0; about.constants];
-        model.prepare(p, &mut constants);
         let place = |state| states.iter().position(|&s| s == state);
         Self {
             model,
-            p: p.to_vec(),
-            constants,
             states,
-            places: (0..about.states.len()).map(place).collect(),
+            places: (0..model.about().states.len()).map(place).collect(),
             basis,
             omega,
-            inputs,
-            samples: Vec::new(),
-            matrices: Vec::new(),
-            by_parameter: Vec::new(),
+            period: Period::new(model, p, inputs),
             factors: None,
         }
     }
@@ -104,7 +106,6 @@ impl<'a> Balance<'a> {
             };
             (x, residual) = point;
             if next < SETTLED {
-                self.residual(&x);
                 return (x.as_slice().to_vec(), true);
             }
             let is_straight = is_monotonic && share == 1.0 && next < STRAIGHT * length;
@@ -121,80 +122,64 @@ impl<'a> Balance<'a> {
     /// Makes the present point ready for derivatives.
     pub fn linearise(&mut self) {
         self.factors = Some(self.factorise());
-        let points = self.samples.iter().zip(&self.inputs);
-        let by_parameter = points.map(|(x, u)| {
-            let mut nonzeros = vec![0.0; self.model.about().parameter_jacobian.len()];
-            self.model.parameter_jacobian(&self.p, x, u, &mut nonzeros);
-            nonzeros
-        });
-        self.by_parameter = by_parameter.collect();
+        self.period.differentiate();
     }
 
     /// Harmonics of some outputs at the present point.
     pub fn outputs(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let mut y = vec![0.0; self.model.about().outputs.len()];
-        let mut samples = DMatrix::zeros(self.inputs.len(), outputs.len());
-        for (k, (x, u)) in self.samples.iter().zip(&self.inputs).enumerate() {
-            self.model.outputs(&self.constants, x, u, &mut y);
-            let row = outputs.iter().enumerate();
-            row.for_each(|(column, &output)| samples[(k, column)] = y[output]);
-        }
-        self.harmonics(&samples)
+        self.harmonics(&self.period.outputs().select_columns(outputs))
     }
 
     /// How the harmonics of some outputs move along a group of parameters; a state that cannot be told of stays.
     pub fn slopes_along(&self, outputs: &[usize], group: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let pushes = self.by_parameter(group, false, |row| self.places[row]);
-        self.output_slopes(outputs, pushes, |output| {
-            self.by_parameter(group, true, |row| (row == output).then_some(0))
-        })
+        let mut push = Push::none(self.model.about(), self.basis.samples());
+        let entries = self.model.about().parameter_jacobian.iter().enumerate();
+        for (entry, (is_output, row, _)) in entries.filter(|(_, e)| group.contains(&usize::from(e.2))) {
+            let side = if *is_output {
+                &mut push.outputs
+            } else {
+                &mut push.states
+            };
+            let mut samples = side.column_mut(usize::from(*row));
+            samples += self.period.by_parameter.column(entry);
+        }
+        self.output_slopes(outputs, push)
     }
 
     /// The same along the logarithm of the amplitude of the drive.
     pub fn slopes_louder(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let pushes = self.by_input(Matrix::B, |row| self.places[row]);
-        self.output_slopes(outputs, pushes, |output| {
-            self.by_input(Matrix::D, |row| (row == output).then_some(0))
-        })
+        let mut push = Push::none(self.model.about(), self.basis.samples());
+        for (entry, at) in self.model.about().matrices.iter().enumerate() {
+            let side = match at.matrix {
+                Matrix::A | Matrix::C => continue,
+                Matrix::B => &mut push.states,
+                Matrix::D => &mut push.outputs,
+            };
+            let mut samples = side.column_mut(usize::from(at.row));
+            let (by, input) = (self.period.matrices.column(entry), usize::from(at.column));
+            samples.cmpy(1.0, &by, &self.period.inputs.column(input), 1.0);
+        }
+        self.output_slopes(outputs, push)
     }
 
-    /// The same along whatever pushes the states so, and each output so `directly`: places with samples.
-    fn output_slopes(
-        &self,
-        outputs: &[usize],
-        pushes: Vec<(usize, DVector<f64>)>,
-        directly: impl Fn(usize) -> Vec<(usize, DVector<f64>)>,
-    ) -> Vec<Vec<Complex<f64>>> {
-        let moves = self.synthesis(&self.slope(pushes));
-        let mut samples = DMatrix::zeros(self.inputs.len(), outputs.len());
-        for (column, &output) in outputs.iter().enumerate() {
-            let mut samples = samples.column_mut(column);
-            for (_, direct) in directly(output) {
-                samples += direct;
-            }
-            let entries = self.model.about().matrices.iter().enumerate();
-            for (entry, at) in entries.filter(|(_, e)| e.matrix == Matrix::C && usize::from(e.row) == output) {
-                let Some(place) = self.places[usize::from(at.column)] else {
-                    continue;
-                };
-                for k in 0..samples.len() {
-                    samples[k] += self.matrices[k][entry] * moves[(k, place)];
-                }
+    /// The same along whatever pushes states and outputs so.
+    fn output_slopes(&self, outputs: &[usize], push: Push) -> Vec<Vec<Complex<f64>>> {
+        let moves = self.synthesis(&self.slope(&push.states));
+        let mut samples = push.outputs;
+        for (entry, at) in self.model.about().matrices.iter().enumerate() {
+            if let (Matrix::C, Some(place)) = (at.matrix, self.places[usize::from(at.column)]) {
+                let mut samples = samples.column_mut(usize::from(at.row));
+                samples.cmpy(1.0, &self.period.matrices.column(entry), &moves.column(place), 1.0);
             }
         }
-        self.harmonics(&samples)
+        self.harmonics(&samples.select_columns(outputs))
     }
 
-    /// How the coefficients of the present point move under pushes on the states; zero where they cannot be told.
-    fn slope(&self, pushes: Vec<(usize, DVector<f64>)>) -> DVector<f64> {
-        let (terms, unknowns) = (self.basis.terms(), self.states.len() * self.basis.terms());
-        let mut push = DVector::zeros(unknowns);
-        for (place, samples) in pushes {
-            let mut block = push.rows_mut(place * terms, terms);
-            block += &self.basis.analysis * samples;
-        }
+    /// How the coefficients of the present point move under a push on the states; zero where they cannot be told.
+    fn slope(&self, push: &DMatrix<f64>) -> DVector<f64> {
+        let push = self.analysis(push);
         let solved = self.factors.as_ref().and_then(|factors| factors.solve(&push));
-        solved.unwrap_or_else(|| DVector::zeros(unknowns))
+        solved.unwrap_or_else(|| DVector::zeros(push.len()))
     }
 
     /// Harmonics of samples, a column for each series.
@@ -204,72 +189,27 @@ impl<'a> Balance<'a> {
         of.map(|column| self.basis.harmonics(column.as_slice())).collect()
     }
 
-    /// Samples of ∂f/∂p (or ∂h/∂p) along a group, by what `place` makes of a row.
-    fn by_parameter(
-        &self,
-        group: &[usize],
-        of_outputs: bool,
-        place: impl Fn(usize) -> Option<usize>,
-    ) -> Vec<(usize, DVector<f64>)> {
-        let entries = self.model.about().parameter_jacobian.iter().enumerate();
-        let along = entries.filter(|(_, (is_output, _, parameter))| {
-            *is_output == of_outputs && group.contains(&usize::from(*parameter))
-        });
-        let samples =
-            |entry: usize| DVector::from_iterator(self.inputs.len(), self.by_parameter.iter().map(|at| at[entry]));
-        along
-            .filter_map(|(entry, (_, row, _))| Some((place(usize::from(*row))?, samples(entry))))
-            .collect()
-    }
-
-    /// Samples of what the inputs do through the nonzeros of a matrix, by what `place` makes of a row.
-    fn by_input(&self, matrix: Matrix, place: impl Fn(usize) -> Option<usize>) -> Vec<(usize, DVector<f64>)> {
-        let entries = self.model.about().matrices.iter().enumerate();
-        let along = entries.filter(|(_, at)| at.matrix == matrix);
-        let samples = |entry: usize, input: usize| {
-            let products = self
-                .matrices
-                .iter()
-                .zip(&self.inputs)
-                .map(|(nonzeros, u)| nonzeros[entry] * u[input]);
-            DVector::from_iterator(self.inputs.len(), products)
-        };
-        along
-            .filter_map(|(entry, at)| Some((place(usize::from(at.row))?, samples(entry, usize::from(at.column)))))
-            .collect()
-    }
-
     /// Samples of all series, a column for each state.
     fn synthesis(&self, x: &DVector<f64>) -> DMatrix<f64> {
         &self.basis.synthesis * DMatrix::from_column_slice(self.basis.terms(), self.states.len(), x.as_slice())
     }
 
+    /// Coefficients of the states that move, from samples of all.
+    fn analysis(&self, samples: &DMatrix<f64>) -> DVector<f64> {
+        let coefficients = &self.basis.analysis * samples.select_columns(self.states);
+        coefficients.reshape_generic(Dyn(self.states.len() * self.basis.terms()), U1)
+    }
+
     /// `ω dx/dθ - f` in coefficients, and the samples of the point as the present ones.
     fn residual(&mut self, x: &DVector<f64>) -> DVector<f64> {
         let series = self.synthesis(x);
-        let (terms, count) = (self.basis.terms(), self.model.about().states.len());
-        let mut rates = DMatrix::zeros(self.inputs.len(), self.states.len());
-        let mut dx = vec![0.0; count];
-        self.samples.resize(self.inputs.len(), vec![0.0; count]);
-        for k in 0..self.inputs.len() {
-            for (place, &state) in self.states.iter().enumerate() {
-                self.samples[k][state] = series[(k, place)];
-            }
-            self.model
-                .derivative(&self.constants, &self.samples[k], &self.inputs[k], &mut dx);
-            self.states
-                .iter()
-                .enumerate()
-                .for_each(|(place, &state)| rates[(k, place)] = dx[state]);
-        }
-        let forced = &self.basis.analysis * rates;
+        self.period.move_to(self.states, &series);
+        let forced = self.analysis(&self.period.rates);
+        let terms = self.basis.terms();
         DVector::from_fn(x.len(), |row, _| {
-            let (place, term) = (row / terms, row % terms);
-            let turned = self
-                .basis
-                .derivative(term)
-                .map(|(partner, factor)| -factor * x[place * terms + partner]);
-            -self.omega * turned.unwrap_or(0.0) - forced[(term, place)]
+            let turned = self.basis.derivative(row % terms);
+            let turned = turned.map(|(partner, factor)| factor * x[row / terms * terms + partner]);
+            self.omega * turned.unwrap_or(0.0) - forced[row]
         })
     }
 
@@ -297,7 +237,7 @@ impl<'a> Balance<'a> {
             let is_rate = about.states[state].kind == StateKind::Position
                 && about.states[of].kind == StateKind::Velocity
                 && entries.next().is_none()
-                && self.matrices.iter().all(|at| at[entry] == 1.0);
+                && self.period.matrices.column(entry).iter().all(|&at| at == 1.0);
             let velocity = self.places[of].filter(|_| is_rate)?;
             Some(Integral {
                 position: place,
@@ -318,11 +258,7 @@ impl<'a> Balance<'a> {
                 None => jacobian[(row, row)] = self.omega * RETURN,
             }
         }
-        let count = self.model.about().matrices.len();
-        self.matrices.resize(self.inputs.len(), vec![0.0; count]);
-        for ((x, u), nonzeros) in self.samples.iter().zip(&self.inputs).zip(&mut self.matrices) {
-            self.model.matrices(&self.p, x, u, nonzeros);
-        }
+        self.period.linearise();
         for (entry, at) in self
             .model
             .about()
@@ -334,17 +270,12 @@ impl<'a> Balance<'a> {
             let places = (self.places[usize::from(at.row)], self.places[usize::from(at.column)]);
             let (Some(row), Some(column)) = places else { continue };
             let mut block = jacobian.view_mut((row * terms, column * terms), (terms, terms));
-            let first = self.matrices[0][entry];
-            if self.matrices.iter().all(|at| at[entry] == first) {
-                (0..terms).for_each(|term| block[(term, term)] -= first);
-                continue;
+            let weights = self.period.matrices.column(entry);
+            if weights.iter().all(|&weight| weight == weights[0]) {
+                (0..terms).for_each(|term| block[(term, term)] -= weights[0]);
+            } else {
+                block -= self.basis.product(&weights);
             }
-            let mut weighted = self.basis.synthesis.clone();
-            weighted
-                .row_iter_mut()
-                .zip(&self.matrices)
-                .for_each(|(mut row, at)| row *= at[entry]);
-            block -= &self.basis.analysis * weighted;
         }
         jacobian
     }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVectorView};
 
 /// Fourier series up to some harmonic.
 pub struct Basis {
@@ -11,6 +11,8 @@ pub struct Basis {
     pub synthesis: DMatrix<f64>,
     /// From samples to coefficients.
     pub analysis: DMatrix<f64>,
+    /// The same for twice as many harmonics.
+    finer: DMatrix<f64>,
 }
 
 impl Basis {
@@ -21,17 +23,15 @@ impl Basis {
         let (terms, samples) = (2 * harmonics + 1, Self::OVERSAMPLING * harmonics + 2);
         let value = |k: usize, term: usize| {
             let angle = TAU * k as f64 / samples as f64 * term.div_ceil(2) as f64;
-            if term.is_multiple_of(2) && term > 0 {
-                angle.sin()
-            } else {
-                angle.cos()
-            }
+            if is_sine(term) { angle.sin() } else { angle.cos() }
         };
         let weight = |term: usize| if term == 0 { 1.0 } else { 2.0 } / samples as f64;
+        let analysis = |terms| DMatrix::from_fn(terms, samples, |term, k| weight(term) * value(k, term));
         Self {
             terms,
             synthesis: DMatrix::from_fn(samples, terms, value),
-            analysis: DMatrix::from_fn(terms, samples, |term, k| weight(term) * value(k, term)),
+            analysis: analysis(terms),
+            finer: analysis(2 * terms - 1),
         }
     }
 
@@ -60,10 +60,51 @@ impl Basis {
         }
     }
 
+    /// From the coefficients of a series to those of its product with weights, which are given by their samples.
+    ///
+    /// The product of two harmonics is one of their sum and one of their difference: the matrix is made of the weights'
+    /// own coefficients.
+    pub fn product(&self, weights: &DVectorView<f64>) -> DMatrix<f64> {
+        let weights = &self.finer * weights;
+        let even = |n: usize| if n == 0 { 2.0 * weights[0] } else { weights[2 * n - 1] };
+        let odd = |n: usize| if n == 0 { 0.0 } else { weights[2 * n] };
+        DMatrix::from_fn(self.terms, self.terms, |row, column| {
+            let (to, from) = (row.div_ceil(2), column.div_ceil(2));
+            let (sum, difference) = (to + from, to.abs_diff(from));
+            let odd_difference = if to > from { odd(difference) } else { -odd(difference) };
+            let both = match (is_sine(row), is_sine(column)) {
+                (false, false) => even(difference) + even(sum),
+                (true, true) => even(difference) - even(sum),
+                (false, true) => odd(sum) - odd_difference,
+                (true, false) => odd(sum) + odd_difference,
+            };
+            if row == 0 { 0.25 * both } else { 0.5 * both }
+        })
+    }
+
     /// Amplitudes of the harmonics from 0: `Re Y_n exp(jnθ)`.
     pub fn harmonics(&self, coefficients: &[f64]) -> Vec<Complex<f64>> {
         let constant = Complex::from(coefficients[0]);
         let others = coefficients[1..].chunks(2).map(|pair| Complex::new(pair[0], -pair[1]));
         std::iter::once(constant).chain(others).collect()
+    }
+}
+
+fn is_sine(term: usize) -> bool {
+    term > 0 && term.is_multiple_of(2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DVector;
+
+    #[test]
+    fn a_product_is_that_of_the_samples() {
+        let basis = Basis::new(3);
+        let weights = DVector::from_fn(basis.samples(), |k, _| ((5 * k) % 7) as f64 - 2.5);
+        let by_samples = &basis.analysis * DMatrix::from_diagonal(&weights) * &basis.synthesis;
+        let error = basis.product(&weights.column(0)) - &by_samples;
+        assert!(error.amax() < 1e-12 * by_samples.amax(), "{error}");
     }
 }

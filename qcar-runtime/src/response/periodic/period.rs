@@ -1,0 +1,80 @@
+//! A model at the samples of a period: everything has a row for each sample, and a column for each of its entries.
+
+use nalgebra::DMatrix;
+
+use crate::model::{Model, Points};
+
+/// The samples of one drive.
+pub struct Period<'a> {
+    model: &'a dyn Model,
+    p: Vec<f64>,
+    constants: Vec<f64>,
+    /// The inputs.
+    pub inputs: DMatrix<f64>,
+    states: DMatrix<f64>,
+    /// The rates of all states.
+    pub rates: DMatrix<f64>,
+    /// The nonzeros of A, B, C and D.
+    pub matrices: DMatrix<f64>,
+    /// The nonzeros of ∂f/∂p and ∂h/∂p.
+    pub by_parameter: DMatrix<f64>,
+}
+
+impl<'a> Period<'a> {
+    /// With all states at rest; rates, matrices and derivatives by parameters are zero until they are asked for.
+    pub fn new(model: &'a dyn Model, p: &[f64], inputs: DMatrix<f64>) -> Self {
+        let about = model.about();
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
+        let samples = |columns| DMatrix::zeros(inputs.nrows(), columns);
+        Self {
+            model,
+            p: p.to_vec(),
+            constants,
+            states: samples(about.states.len()),
+            rates: samples(about.states.len()),
+            matrices: samples(about.matrices.len()),
+            by_parameter: samples(about.parameter_jacobian.len()),
+            inputs,
+        }
+    }
+
+    /// Moves the listed states, whose samples are the columns of `series`, and finds the rates there.
+    pub fn move_to(&mut self, listed: &[usize], series: &DMatrix<f64>) {
+        for (&state, samples) in listed.iter().zip(series.column_iter()) {
+            self.states.set_column(state, &samples);
+        }
+        let points = points(&self.states, &self.inputs);
+        self.model
+            .derivative_at(&self.constants, &points, self.rates.as_mut_slice());
+    }
+
+    /// Finds the matrices where the states are.
+    pub fn linearise(&mut self) {
+        let points = points(&self.states, &self.inputs);
+        self.model.matrices_at(&self.p, &points, self.matrices.as_mut_slice());
+    }
+
+    /// Finds the derivatives by parameters where the states are.
+    pub fn differentiate(&mut self) {
+        let points = points(&self.states, &self.inputs);
+        self.model
+            .parameter_jacobian_at(&self.p, &points, self.by_parameter.as_mut_slice());
+    }
+
+    /// All outputs where the states are.
+    pub fn outputs(&self) -> DMatrix<f64> {
+        let mut outputs = DMatrix::zeros(self.inputs.nrows(), self.model.about().outputs.len());
+        let points = points(&self.states, &self.inputs);
+        self.model.outputs_at(&self.constants, &points, outputs.as_mut_slice());
+        outputs
+    }
+}
+
+fn points<'a>(states: &'a DMatrix<f64>, inputs: &'a DMatrix<f64>) -> Points<'a> {
+    Points {
+        count: inputs.nrows(),
+        x: states.as_slice(),
+        u: inputs.as_slice(),
+    }
+}
