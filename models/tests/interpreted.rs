@@ -5,7 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::{self, Evaluator};
-use qcar_runtime::model::{Contact, Model, ResponseMut};
+use qcar_runtime::model::{Contact, Model, Points, ResponseMut};
 
 /// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
 mod zoo {
@@ -107,11 +107,44 @@ impl Pair {
             |to| generated.parameter_jacobian(&p, &x, &u, to),
             |to| interpreted.parameter_jacobian(&p, &x, &u, to),
         );
+        self.compare_points(c, &p, numbers);
         self.compare_responses(c, numbers);
         self.compare_rolling(c, &x, &u, numbers);
     }
 
-    /// Eleven lines: a whole block and a rest.
+    /// Thirty-five points: whole blocks and a rest. Generated code sees one after the other.
+    fn compare_points(&self, constants: &[f64], p: &[f64], numbers: &[f64]) {
+        const COUNT: usize = 35;
+        let (about, generated, interpreted) = (self.model.about(), self.model, &self.evaluator);
+        let rows = |from: usize, entries: usize| -> Vec<f64> {
+            let numbers = numbers.iter().cycle().skip(from);
+            numbers.take(entries * COUNT).copied().collect()
+        };
+        let (x, u) = (&rows(0, about.states.len())[..], &rows(97, about.inputs.len())[..]);
+        let (at, again) = (Points { count: COUNT, x, u }, evaluate::Points { count: COUNT, x, u });
+        equal(
+            COUNT * about.states.len(),
+            |to| generated.derivative_at(constants, &at, to),
+            |to| interpreted.derivative_at(constants, &again, to),
+        );
+        equal(
+            COUNT * about.outputs.len(),
+            |to| generated.outputs_at(constants, &at, to),
+            |to| interpreted.outputs_at(constants, &again, to),
+        );
+        equal(
+            COUNT * about.matrices.len(),
+            |to| generated.matrices_at(p, &at, to),
+            |to| interpreted.matrices_at(p, &again, to),
+        );
+        equal(
+            COUNT * about.parameter_jacobian.len(),
+            |to| generated.parameter_jacobian_at(p, &at, to),
+            |to| interpreted.parameter_jacobian_at(p, &again, to),
+        );
+    }
+
+    /// Eleven lines: less than a block.
     fn compare_responses(&self, constants: &[f64], numbers: &[f64]) {
         let omega: Vec<f64> = numbers[..11].iter().map(|n| 50.0 + 49.0 * n).collect();
         for (excitation, layout) in self.model.about().responses.iter().enumerate() {

@@ -9,7 +9,7 @@
 mod basis;
 // A model at such samples.
 mod period;
-// The Jacobian of its balance without the positions.
+// The Jacobian of its balance without what is linear.
 mod factors;
 // The balance at one excitation, and its solution.
 mod balance;

@@ -1,11 +1,13 @@
 //! `ω dx/dθ = f(x, u)` in Fourier coefficients, and Newton's method for it.
 
-use nalgebra::{Complex, DMatrix, DVector, Dyn, U1};
+use std::collections::BTreeSet;
+
+use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 
 use super::basis::Basis;
-use super::factors::{Factors, Integral};
+use super::factors::Factors;
 use super::period::Period;
-use crate::model::{About, Matrix, Model, StateKind};
+use crate::model::{About, Matrix, Model};
 
 /// The balance of a model at one drive.
 pub struct Balance<'a> {
@@ -81,8 +83,9 @@ impl<'a> Balance<'a> {
         let mut residual = self.residual(&x);
         let mut kept = None;
         for _ in 0..ITERATIONS {
-            let factors = kept.take().unwrap_or_else(|| self.factorise());
-            let Some(step) = factors.solve(&residual) else {
+            let factors = kept.take().or_else(|| self.factorise());
+            let step = factors.as_ref().and_then(|factors| factors.solve(&residual));
+            let (Some(factors), Some(step)) = (factors, step) else {
                 return (x.as_slice().to_vec(), false);
             };
             let (mut share, length) = (1.0_f64, self.length(&step, &(&x - &step)));
@@ -121,7 +124,7 @@ impl<'a> Balance<'a> {
 
     /// Makes the present point ready for derivatives.
     pub fn linearise(&mut self) {
-        self.factors = Some(self.factorise());
+        self.factors = self.factorise();
         self.period.differentiate();
     }
 
@@ -213,64 +216,54 @@ impl<'a> Balance<'a> {
         })
     }
 
-    /// The factors of the Jacobian at the present point.
-    fn factorise(&mut self) -> Factors {
-        let jacobian = self.jacobian();
-        let inverse = |term| match self.basis.derivative(term) {
-            Some((partner, factor)) => (partner, 1.0 / (self.omega * factor)),
-            None => (term, 1.0 / (self.omega * RETURN)),
-        };
-        let moves = (0..self.basis.terms()).map(inverse).collect();
-        Factors::new(jacobian, self.integrals(), moves)
-    }
-
-    /// The positions whose rate is a velocity and nothing else.
-    fn integrals(&self) -> Vec<Integral> {
-        let about = self.model.about();
-        let integral = |(place, &state): (usize, &usize)| {
-            let is_of_it = |entry: &usize| {
-                about.matrices[*entry].matrix == Matrix::A && usize::from(about.matrices[*entry].row) == state
-            };
-            let mut entries = (0..about.matrices.len()).filter(is_of_it);
-            let entry = entries.next()?;
-            let of = usize::from(about.matrices[entry].column);
-            let is_rate = about.states[state].kind == StateKind::Position
-                && about.states[of].kind == StateKind::Velocity
-                && entries.next().is_none()
-                && self.period.matrices.column(entry).iter().all(|&at| at == 1.0);
-            let velocity = self.places[of].filter(|_| is_rate)?;
-            Some(Integral {
-                position: place,
-                velocity,
-            })
-        };
-        self.states.iter().enumerate().filter_map(integral).collect()
-    }
-
-    /// The Jacobian of [`Self::residual`] at the present point.
-    fn jacobian(&mut self) -> DMatrix<f64> {
-        let terms = self.basis.terms();
-        let unknowns = self.states.len() * terms;
-        let mut jacobian = DMatrix::zeros(unknowns, unknowns);
-        for row in 0..unknowns {
-            match self.basis.derivative(row % terms) {
-                Some((partner, factor)) => jacobian[(row, row / terms * terms + partner)] = self.omega * factor,
-                None => jacobian[(row, row)] = self.omega * RETURN,
+    /// The factors of the Jacobian of [`Self::residual`] at the present point; `None` where it has none.
+    fn factorise(&mut self) -> Option<Factors> {
+        self.period.linearise();
+        let mut constant = DMatrix::zeros(self.states.len(), self.states.len());
+        let mut bent = BTreeSet::new();
+        for (row, column, weights) in self.entries() {
+            if weights.iter().all(|&weight| weight == weights[0]) {
+                constant[(row, column)] = weights[0];
+            } else {
+                bent.insert(row);
             }
         }
-        self.period.linearise();
-        for (entry, at) in self
-            .model
-            .about()
-            .matrices
-            .iter()
-            .enumerate()
-            .filter(|(_, e)| e.matrix == Matrix::A)
-        {
-            let places = (self.places[usize::from(at.row)], self.places[usize::from(at.column)]);
-            let (Some(row), Some(column)) = places else { continue };
-            let mut block = jacobian.view_mut((row * terms, column * terms), (terms, terms));
-            let weights = self.period.matrices.column(entry);
+        let bent: Vec<usize> = bent.into_iter().collect();
+        let turn = |harmonic| match harmonic {
+            0 => Complex::from(self.omega * RETURN),
+            _ => Complex::new(0.0, self.omega * harmonic as f64),
+        };
+        let turns: Vec<Complex<f64>> = (0..=self.basis.terms() / 2).map(turn).collect();
+        Factors::new(&constant, &turns, &bent, &self.jacobian(&bent))
+    }
+
+    /// The entries of A between states that move: their places and samples.
+    fn entries(&self) -> impl Iterator<Item = (usize, usize, DVectorView<'_, f64>)> {
+        let entries = self.model.about().matrices.iter().enumerate();
+        entries
+            .filter(|(_, at)| at.matrix == Matrix::A)
+            .filter_map(|(entry, at)| {
+                let place = |state: u16| self.places[usize::from(state)];
+                Some((place(at.row)?, place(at.column)?, self.period.matrices.column(entry)))
+            })
+    }
+
+    /// The rows that some states have in the Jacobian.
+    fn jacobian(&self, of: &[usize]) -> DMatrix<f64> {
+        let terms = self.basis.terms();
+        let mut jacobian = DMatrix::zeros(of.len() * terms, self.states.len() * terms);
+        for (place, &state) in of.iter().enumerate() {
+            let mut own = jacobian.view_mut((place * terms, state * terms), (terms, terms));
+            for term in 0..terms {
+                let (partner, factor) = self.basis.derivative(term).unwrap_or((term, RETURN));
+                own[(term, partner)] = self.omega * factor;
+            }
+        }
+        for (row, column, weights) in self.entries() {
+            let Some(place) = of.iter().position(|&state| state == row) else {
+                continue;
+            };
+            let mut block = jacobian.view_mut((place * terms, column * terms), (terms, terms));
             if weights.iter().all(|&weight| weight == weights[0]) {
                 (0..terms).for_each(|term| block[(term, term)] -= weights[0]);
             } else {

@@ -1,75 +1,121 @@
 //! The Jacobian of a balance, factorised.
 //!
-//! Positions are integrals of velocities, harmonic by harmonic. Taken out beforehand, they leave a matrix of little more
-//! than half the size, whose factors cost a fifth.
+//! A state whose law is linear ties each harmonic to itself alone. Such states are taken out beforehand, harmonic by
+//! harmonic, and leave a small matrix of the few states whose law bends.
 
-use nalgebra::{DMatrix, DVector, Dyn, LU};
-
-/// A position and its velocity, by their places among the states.
-pub struct Integral {
-    pub position: usize,
-    pub velocity: usize,
-}
+use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
 /// A factorised Jacobian.
 pub struct Factors {
-    integrals: Vec<Integral>,
-    /// For each term of a velocity the term of the position that it moves, and by how much.
-    moves: Vec<(usize, f64)>,
-    /// Rows and columns of all other states.
-    kept: Vec<usize>,
-    /// What each term of the velocities does to the kept rows by way of the positions.
+    straight: Straight,
+    /// Rows of the states whose law bends.
+    bent: Vec<usize>,
+    /// What the straight states do to these rows.
     pull: DMatrix<f64>,
+    /// How the straight states move with the bent ones.
+    follow: DMatrix<f64>,
+    /// Of what is left: the bent states, and what they do to themselves by way of the straight ones.
     lu: LU<f64, Dyn, Dyn>,
 }
 
+/// The states whose law is linear.
+struct Straight {
+    /// Their rows.
+    rows: Vec<usize>,
+    /// For each harmonic how a push on each moves them all: the inverse of `jnω - A`.
+    compliance: Vec<DMatrix<Complex<f64>>>,
+}
+
 impl Factors {
-    /// Of a Jacobian in which the row of each integral's position says no more than that it is one; `moves` is its inverse.
-    pub fn new(mut jacobian: DMatrix<f64>, integrals: Vec<Integral>, moves: Vec<(usize, f64)>) -> Self {
-        let terms = moves.len();
-        let is_kept = |row: &usize| integrals.iter().all(|own| own.position != row / terms);
-        let kept: Vec<usize> = (0..jacobian.nrows()).filter(is_kept).collect();
-        let mut pull = DMatrix::zeros(kept.len(), integrals.len() * terms);
-        for (place, integral) in integrals.iter().enumerate() {
-            for (term, (moved, by)) in moves.iter().enumerate() {
-                let (from, to) = (integral.position * terms + moved, integral.velocity * terms + term);
-                for (k, &row) in kept.iter().enumerate() {
-                    let pulled = by * jacobian[(row, from)];
-                    pull[(k, place * terms + term)] = pulled;
-                    jacobian[(row, to)] += pulled;
-                }
-            }
-        }
-        Self {
-            lu: jacobian.select_columns(&kept).select_rows(&kept).lu(),
-            integrals,
-            moves,
-            kept,
+    /// Of a Jacobian whose states have `jnω - A` on their rows, `turns` being `jnω` for each harmonic from 0, but for
+    /// the states `bent`, whose rows are given. `None` where a harmonic of the others is singular.
+    pub fn new(a: &DMatrix<f64>, turns: &[Complex<f64>], bent: &[usize], rows: &DMatrix<f64>) -> Option<Self> {
+        let terms = 2 * turns.len() - 1;
+        let others: Vec<usize> = (0..a.nrows()).filter(|state| !bent.contains(state)).collect();
+        let straight = Straight {
+            rows: rows_of(&others, terms),
+            compliance: compliance(a.select_rows(&others).select_columns(&others), turns)?,
+        };
+        let pushes = a.select_rows(&others).select_columns(bent);
+        let bent = rows_of(bent, terms);
+        let follow = straight.follow(&pushes, terms);
+        let pull = rows.select_columns(&straight.rows);
+        Some(Self {
+            lu: (rows.select_columns(&bent) + &pull * &follow).lu(),
+            straight,
+            bent,
             pull,
-        }
+            follow,
+        })
     }
 
     /// The solution for a right-hand side; `None` where the Jacobian is singular.
     pub fn solve(&self, push: &DVector<f64>) -> Option<DVector<f64>> {
-        let terms = self.moves.len();
-        let rows = |own: &Integral| own.position * terms..(own.position + 1) * terms;
-        let of_positions: Vec<f64> = self.integrals.iter().flat_map(rows).map(|row| push[row]).collect();
-        let of_positions = DVector::from_vec(of_positions);
-        let solved = self
-            .lu
-            .solve(&(push.select_rows(&self.kept) - &self.pull * of_positions))?;
+        let mut straight = push.select_rows(&self.straight.rows);
+        self.straight.move_by(straight.as_mut_slice());
+        let mut bent = push.select_rows(&self.bent);
+        bent.gemv(-1.0, &self.pull, &straight, 1.0);
+        let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
+        is_solved.then_some(())?;
+        straight.gemv(1.0, &self.follow, &bent, 1.0);
         let mut x = DVector::zeros(push.len());
-        for (&row, &value) in self.kept.iter().zip(&solved) {
+        let rows = self.straight.rows.iter().chain(&self.bent);
+        for (&row, &value) in rows.zip(straight.iter().chain(&bent)) {
             x[row] = value;
-        }
-        for own in &self.integrals {
-            for (term, (moved, by)) in self.moves.iter().enumerate() {
-                let rate = push[own.position * terms + term] + x[own.velocity * terms + term];
-                x[own.position * terms + moved] = by * rate;
-            }
         }
         Some(x)
     }
+}
+
+impl Straight {
+    /// Replaces a push on each state by how it moves.
+    fn move_by(&self, push: &mut [f64]) {
+        let terms = 2 * self.compliance.len() - 1;
+        for (harmonic, compliance) in self.compliance.iter().enumerate() {
+            let (cosine, sine) = ((2 * harmonic).saturating_sub(1), 2 * harmonic);
+            let amplitude = |of: &[f64]| Complex::new(of[cosine], if harmonic > 0 { -of[sine] } else { 0.0 });
+            let amplitudes = DVector::from_iterator(compliance.nrows(), push.chunks_exact(terms).map(amplitude));
+            if amplitudes.iter().all(|amplitude| amplitude.norm_sqr() == 0.0) {
+                continue;
+            }
+            for (state, moved) in push.chunks_exact_mut(terms).zip(&(compliance * amplitudes)) {
+                state[cosine] = moved.re;
+                if harmonic > 0 {
+                    state[sine] = -moved.im;
+                }
+            }
+        }
+    }
+
+    /// How each term of a bent state moves them, which it `pushes` by a column each.
+    fn follow(&self, pushes: &DMatrix<f64>, terms: usize) -> DMatrix<f64> {
+        let mut follow = DMatrix::zeros(self.rows.len(), pushes.ncols() * terms);
+        for (place, mut moved) in follow.column_iter_mut().enumerate() {
+            let push = pushes.column(place / terms);
+            for (state, &push) in push.iter().enumerate() {
+                moved[state * terms + place % terms] = push;
+            }
+            self.move_by(moved.as_mut_slice());
+        }
+        follow
+    }
+}
+
+/// The inverse of `turn - A` for each turn, if there is one.
+fn compliance(a: DMatrix<f64>, turns: &[Complex<f64>]) -> Option<Vec<DMatrix<Complex<f64>>>> {
+    let a = a.map(Complex::from);
+    let inverse = |&turn| {
+        (DMatrix::from_diagonal_element(a.nrows(), a.nrows(), turn) - &a)
+            .lu()
+            .try_inverse()
+    };
+    turns.iter().map(inverse).collect()
+}
+
+/// The rows of some states.
+fn rows_of(states: &[usize], terms: usize) -> Vec<usize> {
+    let rows = states.iter().flat_map(|state| state * terms..(state + 1) * terms);
+    rows.collect()
 }
 
 #[cfg(test)]
@@ -78,24 +124,34 @@ mod tests {
 
     #[test]
     fn the_solution_is_that_of_the_whole_jacobian() {
-        // Two states of three terms each, the second the velocity of the first, and an inner one.
+        // Three states of five terms each, the middle one bent.
         let (omega, constant) = (3.0, 1e-3);
-        let mut jacobian = DMatrix::from_fn(9, 9, |i, j| {
-            ((7 * i + 3 * j) % 11) as f64 - 4.0 + f64::from(u8::from(i == j))
-        });
-        jacobian.rows_mut(0, 3).fill(0.0);
-        jacobian[(0, 0)] = constant;
-        jacobian[(1, 2)] = omega;
-        jacobian[(2, 1)] = -omega;
-        (0..3).for_each(|term| jacobian[(term, 3 + term)] = -1.0);
-        let push = DVector::from_fn(9, |i, _| (i * i % 5) as f64 - 1.5);
-        let whole = jacobian.clone().lu().solve(&push).unwrap();
-        let integral = Integral {
-            position: 0,
-            velocity: 1,
-        };
-        let moves = vec![(0, 1.0 / constant), (2, 1.0 / omega), (1, -1.0 / omega)];
-        let solved = Factors::new(jacobian, vec![integral], moves).solve(&push).unwrap();
-        assert!((&solved - &whole).amax() < 1e-9 * whole.amax(), "{solved} {whole}");
+        let a = DMatrix::from_row_slice(3, 3, &[-0.5, 2.0, 1.0, 9.0, 9.0, 9.0, -4.0, 0.7, 0.3]);
+        let bent = DMatrix::from_fn(5, 15, |i, j| ((7 * i + 3 * j) % 11) as f64 - 4.5);
+        let mut whole = DMatrix::zeros(15, 15);
+        for (row, column) in [(0, 0), (0, 1), (0, 2), (2, 0), (2, 1), (2, 2)] {
+            let block = DMatrix::from_diagonal_element(5, 5, -a[(row, column)]);
+            whole.view_mut((5 * row, 5 * column), (5, 5)).copy_from(&block);
+        }
+        for first in [0, 10] {
+            whole[(first, first)] += constant;
+            for (harmonic, cosine) in [(1.0, first + 1), (2.0, first + 3)] {
+                whole[(cosine, cosine + 1)] += omega * harmonic;
+                whole[(cosine + 1, cosine)] -= omega * harmonic;
+            }
+        }
+        whole.rows_mut(5, 5).copy_from(&bent);
+        let push = DVector::from_fn(15, |i, _| (i * i % 5) as f64 - 1.5);
+        let expected = whole.lu().solve(&push).unwrap();
+        let turns = [
+            Complex::from(constant),
+            Complex::new(0.0, omega),
+            Complex::new(0.0, 2.0 * omega),
+        ];
+        let solved = Factors::new(&a, &turns, &[1], &bent).unwrap().solve(&push).unwrap();
+        assert!(
+            (&solved - &expected).amax() < 1e-9 * expected.amax(),
+            "{solved} {expected}"
+        );
     }
 }
