@@ -87,15 +87,14 @@ impl<'m> Periodic<'m> {
             (x, converged) = self.climb(p, drive, &rest);
         }
         balance.sample(&x);
+        let mut slopes = Vec::new();
         if !groups.is_empty() {
-            balance.linearise();
+            slopes = balance.slopes(outputs, groups);
         }
-        let slope = |group: &Vec<usize>| balance.slopes_along(outputs, group);
-        let asked = !groups.is_empty();
         Cycle {
             outputs: balance.outputs(outputs),
-            slopes: groups.iter().map(slope).collect(),
-            louder: asked.then(|| balance.slopes_louder(outputs)).unwrap_or_default(),
+            louder: slopes.pop().unwrap_or_default(),
+            slopes,
             coefficients: x,
             converged,
         }

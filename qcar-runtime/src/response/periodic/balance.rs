@@ -7,7 +7,7 @@ use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 use super::basis::Basis;
 use super::factors::Factors;
 use super::period::Period;
-use crate::model::{About, Matrix, Model};
+use crate::model::{Matrix, Model};
 
 /// The balance of a model at one drive.
 pub struct Balance<'a> {
@@ -19,25 +19,6 @@ pub struct Balance<'a> {
     omega: f64,
     /// The present point.
     period: Period<'a>,
-    /// The factorised Jacobian of the present point.
-    factors: Option<Factors>,
-}
-
-/// What moves a model beside its states, sampled over a period.
-struct Push {
-    /// A column for the rate of each state.
-    states: DMatrix<f64>,
-    /// A column for each output.
-    outputs: DMatrix<f64>,
-}
-
-impl Push {
-    fn none(about: &About, samples: usize) -> Self {
-        Push {
-            states: DMatrix::zeros(samples, about.states.len()),
-            outputs: DMatrix::zeros(samples, about.outputs.len()),
-        }
-    }
 }
 
 /// Newton steps before the search gives up.
@@ -70,7 +51,6 @@ impl<'a> Balance<'a> {
             basis,
             omega,
             period: Period::new(model, p, inputs),
-            factors: None,
         }
     }
 
@@ -122,74 +102,66 @@ impl<'a> Balance<'a> {
         self.residual(&DVector::from_column_slice(x));
     }
 
-    /// Makes the present point ready for derivatives.
-    pub fn linearise(&mut self) {
-        self.factors = self.factorise();
-        self.period.differentiate();
-    }
-
     /// Harmonics of some outputs at the present point.
     pub fn outputs(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        self.harmonics(&self.period.outputs().select_columns(outputs))
+        let samples = self.period.outputs().select_columns(outputs);
+        self.series((&self.basis.analysis * samples).as_slice())
     }
 
-    /// How the harmonics of some outputs move along a group of parameters; a state that cannot be told of stays.
-    pub fn slopes_along(&self, outputs: &[usize], group: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let mut push = Push::none(self.model.about(), self.basis.samples());
-        let entries = self.model.about().parameter_jacobian.iter().enumerate();
-        for (entry, (is_output, row, _)) in entries.filter(|(_, e)| group.contains(&usize::from(e.2))) {
-            let side = if *is_output {
-                &mut push.outputs
-            } else {
-                &mut push.states
-            };
-            let mut samples = side.column_mut(usize::from(*row));
-            samples += self.period.by_parameter.column(entry);
-        }
-        self.output_slopes(outputs, push)
-    }
-
-    /// The same along the logarithm of the amplitude of the drive.
-    pub fn slopes_louder(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let mut push = Push::none(self.model.about(), self.basis.samples());
-        for (entry, at) in self.model.about().matrices.iter().enumerate() {
-            let side = match at.matrix {
-                Matrix::A | Matrix::C => continue,
-                Matrix::B => &mut push.states,
-                Matrix::D => &mut push.outputs,
-            };
-            let mut samples = side.column_mut(usize::from(at.row));
-            let (by, input) = (self.period.matrices.column(entry), usize::from(at.column));
-            samples.cmpy(1.0, &by, &self.period.inputs.column(input), 1.0);
-        }
-        self.output_slopes(outputs, push)
-    }
-
-    /// The same along whatever pushes states and outputs so.
-    fn output_slopes(&self, outputs: &[usize], push: Push) -> Vec<Vec<Complex<f64>>> {
-        let moves = self.synthesis(&self.slope(&push.states));
-        let mut samples = push.outputs;
-        for (entry, at) in self.model.about().matrices.iter().enumerate() {
-            if let (Matrix::C, Some(place)) = (at.matrix, self.places[usize::from(at.column)]) {
-                let mut samples = samples.column_mut(usize::from(at.row));
-                samples.cmpy(1.0, &self.period.matrices.column(entry), &moves.column(place), 1.0);
+    /// How the harmonics of some outputs move along each group of parameters, and last along the logarithm of the
+    /// amplitude of the drive. States that cannot be told of stay.
+    pub fn slopes(&mut self, outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Vec<Vec<Complex<f64>>>> {
+        let factors = self.factorise();
+        self.period.differentiate();
+        let (pushes, mut moves) = self.pushes(outputs, groups);
+        if let Some(factors) = factors {
+            let follow = self.rows(Matrix::C, outputs);
+            for (push, mut moves) in pushes.column_iter().zip(moves.column_iter_mut()) {
+                let moved = factors.solve(&push.into_owned());
+                moved.iter().for_each(|moved| moves.gemv(1.0, &follow, moved, 1.0));
             }
         }
-        self.harmonics(&samples.select_columns(outputs))
+        let along = |moves: DVectorView<f64>| self.series(moves.as_slice());
+        moves.column_iter().map(along).collect()
     }
 
-    /// How the coefficients of the present point move under a push on the states; zero where they cannot be told.
-    fn slope(&self, push: &DMatrix<f64>) -> DVector<f64> {
-        let push = self.analysis(push);
-        let solved = self.factors.as_ref().and_then(|factors| factors.solve(&push));
-        solved.unwrap_or_else(|| DVector::zeros(push.len()))
+    /// What each of [`Self::slopes`] does to the states that move, and to the outputs beside them: a column for each.
+    fn pushes(&self, outputs: &[usize], groups: &[Vec<usize>]) -> (DMatrix<f64>, DMatrix<f64>) {
+        let (about, terms) = (self.model.about(), self.basis.terms());
+        let none = |rows: usize| DMatrix::zeros(rows * terms, groups.len() + 1);
+        let (mut on_states, mut on_outputs) = (none(self.states.len()), none(outputs.len()));
+        let mut push = |is_output: bool, row: u16, along: usize, by: DVectorView<f64>| {
+            let row = usize::from(row);
+            let (side, place) = if is_output {
+                (&mut on_outputs, outputs.iter().position(|&output| output == row))
+            } else {
+                (&mut on_states, self.places[row])
+            };
+            if let Some(place) = place {
+                let mut pushed = side.view_mut((place * terms, along), (terms, 1));
+                pushed += by;
+            }
+        };
+        let by_parameter = &self.basis.analysis * &self.period.by_parameter;
+        for (&(is_output, row, parameter), by) in about.parameter_jacobian.iter().zip(by_parameter.column_iter()) {
+            for along in (0..groups.len()).filter(|&along| groups[along].contains(&usize::from(parameter))) {
+                push(is_output, row, along, by);
+            }
+        }
+        for (at, by) in about.matrices.iter().zip(self.period.matrices.column_iter()) {
+            if let Matrix::B | Matrix::D = at.matrix {
+                let input = self.period.inputs.column(usize::from(at.column));
+                let louder = &self.basis.analysis * by.component_mul(&input);
+                push(at.matrix == Matrix::D, at.row, groups.len(), louder.column(0));
+            }
+        }
+        (on_states, on_outputs)
     }
 
-    /// Harmonics of samples, a column for each series.
-    fn harmonics(&self, samples: &DMatrix<f64>) -> Vec<Vec<Complex<f64>>> {
-        let coefficients = &self.basis.analysis * samples;
-        let of = coefficients.column_iter();
-        of.map(|column| self.basis.harmonics(column.as_slice())).collect()
+    /// Harmonics of series whose coefficients stand one after the other.
+    fn series(&self, coefficients: &[f64]) -> Vec<Vec<Complex<f64>>> {
+        let series = coefficients.chunks_exact(self.basis.terms());
+        series.map(|series| self.basis.harmonics(series)).collect()
     }
 
     /// Samples of all series, a column for each state.
@@ -221,11 +193,19 @@ impl<'a> Balance<'a> {
         self.period.linearise();
         let mut constant = DMatrix::zeros(self.states.len(), self.states.len());
         let mut bent = BTreeSet::new();
-        for (row, column, weights) in self.entries() {
-            if weights.iter().all(|&weight| weight == weights[0]) {
-                constant[(row, column)] = weights[0];
-            } else {
-                bent.insert(row);
+        let entries = self
+            .model
+            .about()
+            .matrices
+            .iter()
+            .zip(self.period.matrices.column_iter());
+        for (at, weights) in entries.filter(|(at, _)| at.matrix == Matrix::A) {
+            let place = |state: u16| self.places[usize::from(state)];
+            if let (Some(row), Some(column)) = (place(at.row), place(at.column)) {
+                match held(&weights) {
+                    Some(weight) => constant[(row, column)] = weight,
+                    None => _ = bent.insert(row),
+                }
             }
         }
         let bent: Vec<usize> = bent.into_iter().collect();
@@ -237,40 +217,43 @@ impl<'a> Balance<'a> {
         Factors::new(&constant, &turns, &bent, &self.jacobian(&bent))
     }
 
-    /// The entries of A between states that move: their places and samples.
-    fn entries(&self) -> impl Iterator<Item = (usize, usize, DVectorView<'_, f64>)> {
-        let entries = self.model.about().matrices.iter().enumerate();
-        entries
-            .filter(|(_, at)| at.matrix == Matrix::A)
-            .filter_map(|(entry, at)| {
-                let place = |state: u16| self.places[usize::from(state)];
-                Some((place(at.row)?, place(at.column)?, self.period.matrices.column(entry)))
-            })
-    }
-
-    /// The rows that some states have in the Jacobian.
+    /// The rows of some of the states that move in the Jacobian.
     fn jacobian(&self, of: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
-        let mut jacobian = DMatrix::zeros(of.len() * terms, self.states.len() * terms);
-        for (place, &state) in of.iter().enumerate() {
-            let mut own = jacobian.view_mut((place * terms, state * terms), (terms, terms));
+        let states: Vec<usize> = of.iter().map(|&place| self.states[place]).collect();
+        let mut jacobian = -self.rows(Matrix::A, &states);
+        for (row, &state) in of.iter().enumerate() {
+            let mut own = jacobian.view_mut((row * terms, state * terms), (terms, terms));
             for term in 0..terms {
                 let (partner, factor) = self.basis.derivative(term).unwrap_or((term, RETURN));
-                own[(term, partner)] = self.omega * factor;
-            }
-        }
-        for (row, column, weights) in self.entries() {
-            let Some(place) = of.iter().position(|&state| state == row) else {
-                continue;
-            };
-            let mut block = jacobian.view_mut((place * terms, column * terms), (terms, terms));
-            if weights.iter().all(|&weight| weight == weights[0]) {
-                (0..terms).for_each(|term| block[(term, term)] -= weights[0]);
-            } else {
-                block -= self.basis.product(&weights);
+                own[(term, partner)] += self.omega * factor;
             }
         }
         jacobian
+    }
+
+    /// What the states that move do to some rows of A or C, term by term.
+    fn rows(&self, matrix: Matrix, rows: &[usize]) -> DMatrix<f64> {
+        let terms = self.basis.terms();
+        let mut found = DMatrix::zeros(rows.len() * terms, self.states.len() * terms);
+        let entries = self
+            .model
+            .about()
+            .matrices
+            .iter()
+            .zip(self.period.matrices.column_iter());
+        for (at, weights) in entries.filter(|(at, _)| at.matrix == matrix) {
+            let row = rows.iter().position(|&row| row == usize::from(at.row));
+            let (Some(row), Some(column)) = (row, self.places[usize::from(at.column)]) else {
+                continue;
+            };
+            let mut block = found.view_mut((row * terms, column * terms), (terms, terms));
+            match held(&weights) {
+                Some(weight) => block.fill_diagonal(weight),
+                None => block.copy_from(&self.basis.product(&weights)),
+            }
+        }
+        found
     }
 
     /// The largest of the states' steps, each relative to the largest coefficient of its state.
@@ -288,4 +271,10 @@ impl<'a> Balance<'a> {
             }
         })
     }
+}
+
+/// What has the same value at all samples.
+fn held(samples: &DVectorView<f64>) -> Option<f64> {
+    let first = samples[0];
+    samples.iter().all(|&sample| sample == first).then_some(first)
 }

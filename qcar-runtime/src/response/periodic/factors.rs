@@ -10,10 +10,12 @@ pub struct Factors {
     straight: Straight,
     /// Rows of the states whose law bends.
     bent: Vec<usize>,
-    /// What the straight states do to these rows.
-    pull: DMatrix<f64>,
     /// How the straight states move with the bent ones.
     follow: DMatrix<f64>,
+    /// The places among the rows of the straight states of those that the bent ones see.
+    seen: Vec<usize>,
+    /// What they do to the bent ones.
+    pull: DMatrix<f64>,
     /// Of what is left: the bent states, and what they do to themselves by way of the straight ones.
     lu: LU<f64, Dyn, Dyn>,
 }
@@ -36,16 +38,20 @@ impl Factors {
             rows: rows_of(&others, terms),
             compliance: compliance(a.select_rows(&others).select_columns(&others), turns)?,
         };
-        let pushes = a.select_rows(&others).select_columns(bent);
+        let follow = straight.follow(a.select_rows(&others).select_columns(bent));
         let bent = rows_of(bent, terms);
-        let follow = straight.follow(&pushes, terms);
         let pull = rows.select_columns(&straight.rows);
+        let seen: Vec<usize> = (0..pull.ncols())
+            .filter(|&k| pull.column(k).iter().any(|&by| by != 0.0))
+            .collect();
+        let pull = pull.select_columns(&seen);
         Some(Self {
-            lu: (rows.select_columns(&bent) + &pull * &follow).lu(),
+            lu: (rows.select_columns(&bent) + &pull * follow.select_rows(&seen)).lu(),
             straight,
             bent,
-            pull,
             follow,
+            seen,
+            pull,
         })
     }
 
@@ -54,7 +60,7 @@ impl Factors {
         let mut straight = push.select_rows(&self.straight.rows);
         self.straight.move_by(straight.as_mut_slice());
         let mut bent = push.select_rows(&self.bent);
-        bent.gemv(-1.0, &self.pull, &straight, 1.0);
+        bent.gemv(-1.0, &self.pull, &straight.select_rows(&self.seen), 1.0);
         let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
         is_solved.then_some(())?;
         straight.gemv(1.0, &self.follow, &bent, 1.0);
@@ -68,34 +74,48 @@ impl Factors {
 }
 
 impl Straight {
+    /// For each harmonic the places of its cosine and its sine, which the constant has not, and its compliance.
+    fn harmonics(&self) -> impl Iterator<Item = (usize, Option<usize>, &DMatrix<Complex<f64>>)> {
+        let harmonics = self.compliance.iter().enumerate();
+        harmonics.map(|(harmonic, compliance)| match harmonic {
+            0 => (0, None, compliance),
+            _ => (2 * harmonic - 1, Some(2 * harmonic), compliance),
+        })
+    }
+
     /// Replaces a push on each state by how it moves.
     fn move_by(&self, push: &mut [f64]) {
         let terms = 2 * self.compliance.len() - 1;
-        for (harmonic, compliance) in self.compliance.iter().enumerate() {
-            let (cosine, sine) = ((2 * harmonic).saturating_sub(1), 2 * harmonic);
-            let amplitude = |of: &[f64]| Complex::new(of[cosine], if harmonic > 0 { -of[sine] } else { 0.0 });
-            let amplitudes = DVector::from_iterator(compliance.nrows(), push.chunks_exact(terms).map(amplitude));
-            if amplitudes.iter().all(|amplitude| amplitude.norm_sqr() == 0.0) {
-                continue;
+        let mut amplitudes = DVector::zeros(push.len() / terms);
+        let mut moved = amplitudes.clone();
+        for (cosine, sine, compliance) in self.harmonics() {
+            for (amplitude, push) in amplitudes.iter_mut().zip(push.chunks_exact(terms)) {
+                *amplitude = Complex::new(push[cosine], sine.map_or(0.0, |sine| -push[sine]));
             }
-            for (state, moved) in push.chunks_exact_mut(terms).zip(&(compliance * amplitudes)) {
-                state[cosine] = moved.re;
-                if harmonic > 0 {
-                    state[sine] = -moved.im;
-                }
+            moved.gemv(Complex::from(1.0), compliance, &amplitudes, Complex::from(0.0));
+            for (moved, push) in moved.iter().zip(push.chunks_exact_mut(terms)) {
+                push[cosine] = moved.re;
+                sine.into_iter().for_each(|sine| push[sine] = -moved.im);
             }
         }
     }
 
-    /// How each term of a bent state moves them, which it `pushes` by a column each.
-    fn follow(&self, pushes: &DMatrix<f64>, terms: usize) -> DMatrix<f64> {
+    /// How they move with each term of the bent states, which push them by a column each.
+    fn follow(&self, pushes: DMatrix<f64>) -> DMatrix<f64> {
+        let terms = 2 * self.compliance.len() - 1;
+        let pushes = pushes.map(Complex::from);
         let mut follow = DMatrix::zeros(self.rows.len(), pushes.ncols() * terms);
-        for (place, mut moved) in follow.column_iter_mut().enumerate() {
-            let push = pushes.column(place / terms);
-            for (state, &push) in push.iter().enumerate() {
-                moved[state * terms + place % terms] = push;
+        for (cosine, sine, compliance) in self.harmonics() {
+            let moved = compliance * &pushes;
+            for (place, moved) in moved.iter().enumerate() {
+                let (row, column) = (place % pushes.nrows() * terms, place / pushes.nrows() * terms);
+                follow[(row + cosine, column + cosine)] = moved.re;
+                if let Some(sine) = sine {
+                    follow[(row + sine, column + cosine)] = -moved.im;
+                    follow[(row + cosine, column + sine)] = moved.im;
+                    follow[(row + sine, column + sine)] = moved.re;
+                }
             }
-            self.move_by(moved.as_mut_slice());
         }
         follow
     }
