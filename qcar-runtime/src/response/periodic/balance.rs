@@ -114,12 +114,8 @@ impl<'a> Balance<'a> {
         let factors = self.factorise();
         self.period.differentiate();
         let (pushes, mut moves) = self.pushes(outputs, groups);
-        if let Some(factors) = factors {
-            let follow = self.rows(Matrix::C, outputs);
-            for (push, mut moves) in pushes.column_iter().zip(moves.column_iter_mut()) {
-                let moved = factors.solve(&push.into_owned());
-                moved.iter().for_each(|moved| moves.gemv(1.0, &follow, moved, 1.0));
-            }
+        if let Some(moved) = factors.and_then(|factors| factors.solve_all(&pushes)) {
+            moves += self.rows(Matrix::C, outputs) * moved;
         }
         let along = |moves: DVectorView<f64>| self.series(moves.as_slice());
         moves.column_iter().map(along).collect()

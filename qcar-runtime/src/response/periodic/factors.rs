@@ -57,17 +57,23 @@ impl Factors {
 
     /// The solution for a right-hand side; `None` where the Jacobian is singular.
     pub fn solve(&self, push: &DVector<f64>) -> Option<DVector<f64>> {
-        let mut straight = push.select_rows(&self.straight.rows);
-        self.straight.move_by(straight.as_mut_slice());
-        let mut bent = push.select_rows(&self.bent);
-        bent.gemv(-1.0, &self.pull, &straight.select_rows(&self.seen), 1.0);
+        let solved = self.solve_all(&DMatrix::from_column_slice(push.len(), 1, push.as_slice()))?;
+        Some(solved.column(0).into_owned())
+    }
+
+    /// The same for many, a column each.
+    pub fn solve_all(&self, pushes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+        let mut straight = self.straight.moved_by(&pushes.select_rows(&self.straight.rows));
+        let mut bent = pushes.select_rows(&self.bent) - &self.pull * straight.select_rows(&self.seen);
         let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
         is_solved.then_some(())?;
-        straight.gemv(1.0, &self.follow, &bent, 1.0);
-        let mut x = DVector::zeros(push.len());
-        let rows = self.straight.rows.iter().chain(&self.bent);
-        for (&row, &value) in rows.zip(straight.iter().chain(&bent)) {
-            x[row] = value;
+        straight += &self.follow * &bent;
+        let mut x = DMatrix::zeros(pushes.nrows(), pushes.ncols());
+        for (mut x, (straight, bent)) in x.column_iter_mut().zip(straight.column_iter().zip(bent.column_iter())) {
+            let rows = self.straight.rows.iter().chain(&self.bent);
+            for (&row, &value) in rows.zip(straight.iter().chain(&bent)) {
+                x[row] = value;
+            }
         }
         Some(x)
     }
@@ -83,21 +89,27 @@ impl Straight {
         })
     }
 
-    /// Replaces a push on each state by how it moves.
-    fn move_by(&self, push: &mut [f64]) {
+    /// How pushes on them move them, a column for each.
+    fn moved_by(&self, pushes: &DMatrix<f64>) -> DMatrix<f64> {
         let terms = 2 * self.compliance.len() - 1;
-        let mut amplitudes = DVector::zeros(push.len() / terms);
-        let mut moved = amplitudes.clone();
+        let states = pushes.nrows() / terms;
+        let mut all = DMatrix::zeros(pushes.nrows(), pushes.ncols());
         for (cosine, sine, compliance) in self.harmonics() {
-            for (amplitude, push) in amplitudes.iter_mut().zip(push.chunks_exact(terms)) {
-                *amplitude = Complex::new(push[cosine], sine.map_or(0.0, |sine| -push[sine]));
-            }
-            moved.gemv(Complex::from(1.0), compliance, &amplitudes, Complex::from(0.0));
-            for (moved, push) in moved.iter().zip(push.chunks_exact_mut(terms)) {
-                push[cosine] = moved.re;
-                sine.into_iter().for_each(|sine| push[sine] = -moved.im);
+            let amplitude = |state: usize, column: usize| {
+                let at = |term| pushes[(state * terms + term, column)];
+                Complex::new(at(cosine), sine.map_or(0.0, |sine| -at(sine)))
+            };
+            let moved = compliance * DMatrix::from_fn(states, pushes.ncols(), amplitude);
+            for (mut all, moved) in all.column_iter_mut().zip(moved.column_iter()) {
+                for (state, moved) in moved.iter().enumerate() {
+                    all[state * terms + cosine] = moved.re;
+                    if let Some(sine) = sine {
+                        all[state * terms + sine] = -moved.im;
+                    }
+                }
             }
         }
+        all
     }
 
     /// How they move with each term of the bent states, which push them by a column each.
