@@ -5,6 +5,8 @@
 //! method", J. Appl. Mech. 56, 1989). Newton's method solves them with the model's own matrices, and the same
 //! factorisation gives every parameter derivative.
 
+// Small matrices.
+mod product;
 // Fourier series by their samples.
 mod basis;
 // A model at such samples.

@@ -1,11 +1,12 @@
 //! `ω dx/dθ = f(x, u)` in Fourier coefficients, and Newton's method for it.
 
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 
 use super::basis::Basis;
-use super::factors::Factors;
+use super::factors::{Factors, Straight};
 use super::period::Period;
 use crate::model::{Matrix, Model};
 
@@ -19,6 +20,8 @@ pub struct Balance<'a> {
     omega: f64,
     /// The present point.
     period: Period<'a>,
+    /// The states that were straight at the last point whose Jacobian was wanted.
+    straight: Option<Rc<Straight>>,
 }
 
 /// Newton steps before the search gives up.
@@ -51,6 +54,7 @@ impl<'a> Balance<'a> {
             basis,
             omega,
             period: Period::new(model, p, inputs),
+            straight: None,
         }
     }
 
@@ -204,13 +208,23 @@ impl<'a> Balance<'a> {
                 }
             }
         }
+        let others: Vec<usize> = (0..self.states.len()).filter(|place| !bent.contains(place)).collect();
         let bent: Vec<usize> = bent.into_iter().collect();
-        let turn = |harmonic| match harmonic {
-            0 => Complex::from(self.omega * RETURN),
-            _ => Complex::new(0.0, self.omega * harmonic as f64),
-        };
-        let turns: Vec<Complex<f64>> = (0..=self.basis.terms() / 2).map(turn).collect();
-        Factors::new(&constant, &turns, &bent, &self.jacobian(&bent))
+        let straight = self.straight(constant.select_rows(&others), &bent)?;
+        Some(Factors::new(straight, &self.jacobian(&bent)))
+    }
+
+    /// The states whose rows of A are `constant`, all but the bent ones: those of the last point where they are the same.
+    fn straight(&mut self, constant: DMatrix<f64>, bent: &[usize]) -> Option<Rc<Straight>> {
+        if !self.straight.as_ref().is_some_and(|last| last.is_of(&constant, bent)) {
+            let turn = |harmonic| match harmonic {
+                0 => Complex::from(self.omega * RETURN),
+                _ => Complex::new(0.0, self.omega * harmonic as f64),
+            };
+            let turns: Vec<Complex<f64>> = (0..=self.basis.terms() / 2).map(turn).collect();
+            self.straight = Straight::new(constant, &turns, bent.to_vec()).map(Rc::new);
+        }
+        self.straight.clone()
     }
 
     /// The rows of some of the states that move in the Jacobian.
@@ -246,7 +260,7 @@ impl<'a> Balance<'a> {
             let mut block = found.view_mut((row * terms, column * terms), (terms, terms));
             match held(&weights) {
                 Some(weight) => block.fill_diagonal(weight),
-                None => block.copy_from(&self.basis.product(&weights)),
+                None => block.copy_from(&self.basis.weighted(&weights)),
             }
         }
         found
@@ -272,5 +286,9 @@ impl<'a> Balance<'a> {
 /// What has the same value at all samples.
 fn held(samples: &DVectorView<f64>) -> Option<f64> {
     let first = samples[0];
-    samples.iter().all(|&sample| sample == first).then_some(first)
+    samples
+        .as_slice()
+        .iter()
+        .all(|&sample| sample == first)
+        .then_some(first)
 }

@@ -4,6 +4,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVectorView};
 
+use super::product::product;
+
 /// Fourier series up to some harmonic.
 pub struct Basis {
     terms: usize,
@@ -64,8 +66,11 @@ impl Basis {
     ///
     /// The product of two harmonics is one of their sum and one of their difference: the matrix is made of the weights'
     /// own coefficients.
-    pub fn product(&self, weights: &DVectorView<f64>) -> DMatrix<f64> {
-        let weights = &self.finer * weights;
+    pub fn weighted(&self, weights: &DVectorView<f64>) -> DMatrix<f64> {
+        let weights = product(
+            &self.finer,
+            &DMatrix::from_column_slice(weights.len(), 1, weights.as_slice()),
+        );
         let even = |n: usize| if n == 0 { 2.0 * weights[0] } else { weights[2 * n - 1] };
         let odd = |n: usize| if n == 0 { 0.0 } else { weights[2 * n] };
         DMatrix::from_fn(self.terms, self.terms, |row, column| {
@@ -104,7 +109,7 @@ mod tests {
         let basis = Basis::new(3);
         let weights = DVector::from_fn(basis.samples(), |k, _| ((5 * k) % 7) as f64 - 2.5);
         let by_samples = &basis.analysis * DMatrix::from_diagonal(&weights) * &basis.synthesis;
-        let error = basis.product(&weights.column(0)) - &by_samples;
+        let error = basis.weighted(&weights.column(0)) - &by_samples;
         assert!(error.amax() < 1e-12 * by_samples.amax(), "{error}");
     }
 }

@@ -3,15 +3,15 @@
 //! A state whose law is linear ties each harmonic to itself alone. Such states are taken out beforehand, harmonic by
 //! harmonic, and leave a small matrix of the few states whose law bends.
 
+use std::rc::Rc;
+
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
+
+use super::product::product;
 
 /// A factorised Jacobian.
 pub struct Factors {
-    straight: Straight,
-    /// Rows of the states whose law bends.
-    bent: Vec<usize>,
-    /// How the straight states move with the bent ones.
-    follow: DMatrix<f64>,
+    straight: Rc<Straight>,
     /// The places among the rows of the straight states of those that the bent ones see.
     seen: Vec<usize>,
     /// What they do to the bent ones.
@@ -20,39 +20,34 @@ pub struct Factors {
     lu: LU<f64, Dyn, Dyn>,
 }
 
-/// The states whose law is linear.
-struct Straight {
-    /// Their rows.
+/// The states whose law is linear. They are the same wherever the same states are bent.
+pub struct Straight {
+    /// Their rows of A, and the states that are bent.
+    of: (DMatrix<f64>, Vec<usize>),
+    /// Their rows of the Jacobian.
     rows: Vec<usize>,
-    /// For each harmonic how a push on each moves them all: the inverse of `jnω - A`.
-    compliance: Vec<DMatrix<Complex<f64>>>,
+    /// The rows of the bent states.
+    bent: Vec<usize>,
+    /// How pushes on them move them.
+    moves: DMatrix<f64>,
+    /// How they move with the bent states.
+    follow: DMatrix<f64>,
 }
 
 impl Factors {
-    /// Of a Jacobian whose states have `jnω - A` on their rows, `turns` being `jnω` for each harmonic from 0, but for
-    /// the states `bent`, whose rows are given. `None` where a harmonic of the others is singular.
-    pub fn new(a: &DMatrix<f64>, turns: &[Complex<f64>], bent: &[usize], rows: &DMatrix<f64>) -> Option<Self> {
-        let terms = 2 * turns.len() - 1;
-        let others: Vec<usize> = (0..a.nrows()).filter(|state| !bent.contains(state)).collect();
-        let straight = Straight {
-            rows: rows_of(&others, terms),
-            compliance: compliance(a.select_rows(&others).select_columns(&others), turns)?,
-        };
-        let follow = straight.follow(a.select_rows(&others).select_columns(bent));
-        let bent = rows_of(bent, terms);
+    /// Of a Jacobian in which the bent states have these `rows`.
+    pub fn new(straight: Rc<Straight>, rows: &DMatrix<f64>) -> Self {
         let pull = rows.select_columns(&straight.rows);
-        let seen: Vec<usize> = (0..pull.ncols())
-            .filter(|&k| pull.column(k).iter().any(|&by| by != 0.0))
-            .collect();
+        let is_seen = |&place: &usize| pull.column(place).iter().any(|&by| by != 0.0);
+        let seen: Vec<usize> = (0..pull.ncols()).filter(is_seen).collect();
         let pull = pull.select_columns(&seen);
-        Some(Self {
-            lu: (rows.select_columns(&bent) + &pull * follow.select_rows(&seen)).lu(),
+        let by_way = product(&pull, &straight.follow.select_rows(&seen));
+        Self {
+            lu: (rows.select_columns(&straight.bent) + by_way).lu(),
             straight,
-            bent,
-            follow,
             seen,
             pull,
-        })
+        }
     }
 
     /// The solution for a right-hand side; `None` where the Jacobian is singular.
@@ -63,14 +58,15 @@ impl Factors {
 
     /// The same for many, a column each.
     pub fn solve_all(&self, pushes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let mut straight = self.straight.moved_by(&pushes.select_rows(&self.straight.rows));
-        let mut bent = pushes.select_rows(&self.bent) - &self.pull * straight.select_rows(&self.seen);
+        let mut straight = product(&self.straight.moves, &pushes.select_rows(&self.straight.rows));
+        let mut bent = pushes.select_rows(&self.straight.bent);
+        bent -= product(&self.pull, &straight.select_rows(&self.seen));
         let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
         is_solved.then_some(())?;
-        straight += &self.follow * &bent;
+        straight += product(&self.straight.follow, &bent);
         let mut x = DMatrix::zeros(pushes.nrows(), pushes.ncols());
         for (mut x, (straight, bent)) in x.column_iter_mut().zip(straight.column_iter().zip(bent.column_iter())) {
-            let rows = self.straight.rows.iter().chain(&self.bent);
+            let rows = self.straight.rows.iter().chain(&self.straight.bent);
             for (&row, &value) in rows.zip(straight.iter().chain(&bent)) {
                 x[row] = value;
             }
@@ -80,68 +76,53 @@ impl Factors {
 }
 
 impl Straight {
-    /// For each harmonic the places of its cosine and its sine, which the constant has not, and its compliance.
-    fn harmonics(&self) -> impl Iterator<Item = (usize, Option<usize>, &DMatrix<Complex<f64>>)> {
-        let harmonics = self.compliance.iter().enumerate();
-        harmonics.map(|(harmonic, compliance)| match harmonic {
-            0 => (0, None, compliance),
-            _ => (2 * harmonic - 1, Some(2 * harmonic), compliance),
+    /// Of states whose rows of the Jacobian are `jnω - A`, of which `a` has the rows; `turns` are `jnω` for each harmonic
+    /// from 0, and `bent` are all other states. `None` where a harmonic is singular.
+    pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], bent: Vec<usize>) -> Option<Self> {
+        let terms = 2 * turns.len() - 1;
+        let own: Vec<usize> = (0..a.ncols()).filter(|state| !bent.contains(state)).collect();
+        let (among, pushes) = (a.select_columns(&own), a.select_columns(&bent));
+        let inverse = |&turn: &Complex<f64>| {
+            let stiffness = DMatrix::from_diagonal_element(own.len(), own.len(), turn) - among.map(Complex::from);
+            stiffness.lu().try_inverse()
+        };
+        let compliance: Vec<_> = turns.iter().map(inverse).collect::<Option<_>>()?;
+        let pushes = pushes.map(Complex::from);
+        let following: Vec<_> = compliance.iter().map(|compliance| compliance * &pushes).collect();
+        Some(Straight {
+            rows: rows_of(&own, terms),
+            bent: rows_of(&bent, terms),
+            moves: on_terms(&compliance),
+            follow: on_terms(&following),
+            of: (a, bent),
         })
     }
 
-    /// How pushes on them move them, a column for each.
-    fn moved_by(&self, pushes: &DMatrix<f64>) -> DMatrix<f64> {
-        let terms = 2 * self.compliance.len() - 1;
-        let states = pushes.nrows() / terms;
-        let mut all = DMatrix::zeros(pushes.nrows(), pushes.ncols());
-        for (cosine, sine, compliance) in self.harmonics() {
-            let amplitude = |state: usize, column: usize| {
-                let at = |term| pushes[(state * terms + term, column)];
-                Complex::new(at(cosine), sine.map_or(0.0, |sine| -at(sine)))
-            };
-            let moved = compliance * DMatrix::from_fn(states, pushes.ncols(), amplitude);
-            for (mut all, moved) in all.column_iter_mut().zip(moved.column_iter()) {
-                for (state, moved) in moved.iter().enumerate() {
-                    all[state * terms + cosine] = moved.re;
-                    if let Some(sine) = sine {
-                        all[state * terms + sine] = -moved.im;
-                    }
-                }
-            }
-        }
-        all
-    }
-
-    /// How they move with each term of the bent states, which push them by a column each.
-    fn follow(&self, pushes: DMatrix<f64>) -> DMatrix<f64> {
-        let terms = 2 * self.compliance.len() - 1;
-        let pushes = pushes.map(Complex::from);
-        let mut follow = DMatrix::zeros(self.rows.len(), pushes.ncols() * terms);
-        for (cosine, sine, compliance) in self.harmonics() {
-            let moved = compliance * &pushes;
-            for (place, moved) in moved.iter().enumerate() {
-                let (row, column) = (place % pushes.nrows() * terms, place / pushes.nrows() * terms);
-                follow[(row + cosine, column + cosine)] = moved.re;
-                if let Some(sine) = sine {
-                    follow[(row + sine, column + cosine)] = -moved.im;
-                    follow[(row + cosine, column + sine)] = moved.im;
-                    follow[(row + sine, column + sine)] = moved.re;
-                }
-            }
-        }
-        follow
+    /// True where these are the states of such rows.
+    pub fn is_of(&self, a: &DMatrix<f64>, bent: &[usize]) -> bool {
+        (&self.of.0, &self.of.1[..]) == (a, bent)
     }
 }
 
-/// The inverse of `turn - A` for each turn, if there is one.
-fn compliance(a: DMatrix<f64>, turns: &[Complex<f64>]) -> Option<Vec<DMatrix<Complex<f64>>>> {
-    let a = a.map(Complex::from);
-    let inverse = |&turn| {
-        (DMatrix::from_diagonal_element(a.nrows(), a.nrows(), turn) - &a)
-            .lu()
-            .try_inverse()
-    };
-    turns.iter().map(inverse).collect()
+/// A matrix for the amplitudes of each harmonic from 0, as one for the terms of all.
+fn on_terms(harmonics: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
+    let terms = 2 * harmonics.len() - 1;
+    let (rows, columns) = harmonics[0].shape();
+    let mut all = DMatrix::zeros(rows * terms, columns * terms);
+    for (harmonic, matrix) in harmonics.iter().enumerate() {
+        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+            let value = matrix[(row, column)];
+            if harmonic == 0 {
+                all[(row * terms, column * terms)] = value.re;
+                continue;
+            }
+            // The amplitude of a cos + b sin is a - jb.
+            let first = 2 * harmonic - 1;
+            let mut pair = all.view_mut((row * terms + first, column * terms + first), (2, 2));
+            pair.copy_from_slice(&[value.re, -value.im, value.im, value.re]);
+        }
+    }
+    all
 }
 
 /// The rows of some states.
@@ -180,7 +161,8 @@ mod tests {
             Complex::new(0.0, omega),
             Complex::new(0.0, 2.0 * omega),
         ];
-        let solved = Factors::new(&a, &turns, &[1], &bent).unwrap().solve(&push).unwrap();
+        let straight = Straight::new(a.select_rows(&[0, 2]), &turns, vec![1]).unwrap();
+        let solved = Factors::new(Rc::new(straight), &bent).solve(&push).unwrap();
         assert!(
             (&solved - &expected).amax() < 1e-9 * expected.amax(),
             "{solved} {expected}"
