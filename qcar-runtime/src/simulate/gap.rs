@@ -1,5 +1,6 @@
 //! Stretches of a signal of which every so many samples are known, filled in by polynomials.
 
+use std::array;
 use std::ops::Range;
 
 use crate::solver::PAST;
@@ -20,33 +21,34 @@ const AROUND: usize = 8;
 const BEFORE: usize = AROUND / 2 - 1;
 
 impl Gap {
-    /// Fills in the points of a signal that stands in `phases` of some length; the first phase has the samples.
+    /// Fills in the points of signals that each stand in `phases` of some length; the first phase has the samples.
     ///
-    /// The signal is smooth in the gap, and for so many strides before it as the method that left the gap has looked back.
+    /// A signal is smooth in the gap, and for so many strides before it as the method that left the gap has looked back.
     /// What lies further away is left out of account.
-    pub fn fill(&self, signal: &mut [f64], (phases, length): (usize, usize)) {
+    pub fn fill(&self, signals: &mut [f64], (phases, length): (usize, usize)) {
         let before = (PAST - 1).min(self.from / self.stride);
-        let known = signal[self.from - before * self.stride..=self.to].iter();
-        let known: Vec<f64> = known.step_by(self.stride).copied().collect();
-        let mut filled = vec![0.0; (self.to - self.from) / self.stride];
-        for point in 1..self.stride * phases {
-            let part = point as f64 / (self.stride * phases) as f64;
-            let wanted = if point % phases == 0 {
-                [self.from..self.to, self.to..self.to]
-            } else {
-                self.ends()
-            };
-            for range in wanted {
-                let filled = &mut filled[..range.len() / self.stride];
-                widest(Between {
-                    known: &known,
-                    first: before + (range.start - self.from) / self.stride,
-                    part,
-                    filled,
-                });
-                let place = point % phases * length + range.start + point / phases;
-                let places = signal[place..].iter_mut().step_by(self.stride);
-                places.zip(filled).for_each(|(place, value)| *place = *value);
+        let count = before + (self.to - self.from) / self.stride + 1;
+        let points = self.stride * phases;
+        let between: Vec<Between> = (1..points)
+            .map(|point| Between::new(point as f64 / points as f64, count))
+            .collect();
+        let mut filled = vec![0.0; count];
+        for signal in signals.chunks_exact_mut(phases * length) {
+            let known = signal[self.from - before * self.stride..=self.to].iter();
+            let known: Vec<f64> = known.step_by(self.stride).copied().chain([0.0; AROUND]).collect();
+            for (point, between) in (1..).zip(&between) {
+                let wanted = if point % phases == 0 {
+                    [self.from..self.to, self.to..self.to]
+                } else {
+                    self.ends()
+                };
+                for range in wanted {
+                    let filled = &mut filled[..range.len() / self.stride];
+                    between.fill(&known, before + (range.start - self.from) / self.stride, filled);
+                    let place = point % phases * length + range.start + point / phases;
+                    let places = signal[place..].iter_mut().step_by(self.stride);
+                    places.zip(filled).for_each(|(place, value)| *place = *value);
+                }
             }
         }
     }
@@ -67,45 +69,75 @@ impl Gap {
     }
 }
 
-/// A point behind each of several known samples.
-struct Between<'a> {
+/// A part of the way from one known sample to the next.
+struct Between {
+    /// So many samples are known.
+    count: usize,
+    /// The weights of the samples around that place, by how many of them are before it, less one.
+    weights: [[f64; AROUND]; AROUND],
+}
+
+impl Between {
+    fn new(part: f64, count: usize) -> Self {
+        let weights = |before| lagrange(before as f64 + part, count.min(AROUND));
+        Self {
+            count,
+            weights: array::from_fn(weights),
+        }
+    }
+
+    /// The values behind the known samples from the one numbered `first` on; behind the last known are zeros.
+    fn fill(&self, known: &[f64], first: usize, filled: &mut [f64]) {
+        let (end, last_start) = (first + filled.len(), self.count.saturating_sub(AROUND));
+        // Near the ends of the gap there are fewer samples on one side.
+        let from = first.max(BEFORE).min(end);
+        let to = (last_start + BEFORE + 1).clamp(from, end);
+        for k in (first..from).chain(to..end) {
+            let start = k.saturating_sub(BEFORE).min(last_start);
+            let terms = self.weights[k - start].iter().zip(&known[start..]);
+            filled[k - first] = terms.map(|(weight, y)| weight * y).sum();
+        }
+        widest(Central {
+            weights: &self.weights[BEFORE],
+            known: &known[from.saturating_sub(BEFORE)..],
+            filled: &mut filled[from - first..to - first],
+        });
+    }
+}
+
+/// Values that all have as many known samples on either side.
+struct Central<'a> {
+    weights: &'a [f64; AROUND],
     known: &'a [f64],
-    /// The first of these samples.
-    first: usize,
-    /// How far behind, in strides.
-    part: f64,
     filled: &'a mut [f64],
 }
 
-impl Loops for Between<'_> {
+impl Loops for Central<'_> {
     type Result = ();
 
     #[inline(always)]
     fn run(self) {
-        let value = |weights: &[f64; AROUND], known: &[f64]| weights.iter().zip(known).map(|(w, y)| w * y).sum();
-        let around = AROUND.min(self.known.len());
-        let weights = lagrange(BEFORE as f64 + self.part, around);
-        // Near the ends of the gap there are fewer samples on one side.
-        let central = BEFORE..self.known.len() - around / 2;
-        for (k, filled) in (self.first..).zip(self.filled.iter_mut()) {
-            if central.contains(&k) && around == AROUND {
-                *filled = value(&weights, &self.known[k - BEFORE..][..AROUND]);
-            } else {
-                let start = k.saturating_sub(BEFORE).min(self.known.len() - around);
-                *filled = value(&lagrange((k - start) as f64 + self.part, around), &self.known[start..]);
+        self.filled.fill(0.0);
+        for (place, weight) in self.weights.iter().enumerate() {
+            for (value, y) in self.filled.iter_mut().zip(&self.known[place..]) {
+                *value += weight * y;
             }
         }
     }
 }
 
-/// The weights at `x` of so many values at 0, 1, 2, ….
+/// The weights at `x`, which is none of them, of so many values at 0, 1, 2, ….
 fn lagrange(x: f64, count: usize) -> [f64; AROUND] {
-    let mut weights = [0.0; AROUND];
-    for (i, weight) in weights[..count].iter_mut().enumerate() {
-        let others = (0..count).filter(|&j| j != i);
-        *weight = others.map(|j| (x - j as f64) / (i as f64 - j as f64)).product();
-    }
-    weights
+    let distances = |from: f64| (0..count).map(move |j| from - j as f64);
+    let all: f64 = distances(x).product();
+    let others = |i: usize| distances(i as f64).filter(|distance| *distance != 0.0).product::<f64>();
+    array::from_fn(|i| {
+        if i < count {
+            all / ((x - i as f64) * others(i))
+        } else {
+            0.0
+        }
+    })
 }
 
 #[cfg(test)]

@@ -56,9 +56,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     /// Records a car that is at rest in state `x` until a time, s.
     pub fn rest(&mut self, until: f64, x: &[f64]) {
         observe(&self.rolling, until, x, &mut self.rates);
-        while self.tape.next(until.next_down()).is_some() {
-            self.tape.record(&self.rates[self.first..]);
-        }
+        self.tape.record_rest(until, &self.rates[self.first..]);
     }
 
     /// What rolls.

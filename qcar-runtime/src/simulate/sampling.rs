@@ -169,6 +169,8 @@ pub(super) struct Tape {
     next: usize,
     /// Each phase of each signal, one behind the other.
     tracks: Vec<f64>,
+    /// So many samples at the beginning are alike.
+    still: usize,
     /// What was left out.
     gaps: Vec<Gap>,
 }
@@ -180,6 +182,7 @@ impl Tape {
         Self {
             next: 0,
             tracks: vec![0.0; tracks * grid.points_of_phase()],
+            still: 0,
             gaps: Vec::new(),
             grid,
         }
@@ -189,6 +192,23 @@ impl Tape {
     pub fn next(&self, end: f64) -> Option<f64> {
         let time = self.grid.time(self.next);
         (self.next < self.grid.points() && time <= end).then_some(time)
+    }
+
+    /// Records the same value for each signal at all points before `end` (s); there are none yet.
+    pub fn record_rest(&mut self, end: f64, values: &[f64]) {
+        while self.next(end.next_down()).is_some() {
+            self.next += 1;
+        }
+        if self.next == 0 {
+            return;
+        }
+        let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
+        for (track, value) in self.tracks.chunks_exact_mut(every * length).zip(values) {
+            for (phase, track) in track.chunks_exact_mut(length).enumerate() {
+                track[..(self.next + every - 1 - phase) / every].fill(*value);
+            }
+        }
+        self.still = self.next / every;
     }
 
     /// Records that point: a value for each signal.
@@ -227,10 +247,8 @@ impl Tape {
     /// Fills in what was left out.
     pub fn fill_in(&mut self) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
-        for signal in self.tracks.chunks_exact_mut(every * length) {
-            for gap in &self.gaps {
-                gap.fill(signal, (every, length));
-            }
+        for gap in &self.gaps {
+            gap.fill(&mut self.tracks, (every, length));
         }
     }
 
@@ -242,9 +260,9 @@ impl Tape {
             let from = out.len();
             out.extend(filter.decimate_phases(|phase| &self.track(signal, phase)[from..], end - from));
         };
-        for gap in &self.gaps {
+        let still = 0..self.still.saturating_sub(2 * AntiAlias::REACH);
+        for smooth in std::iter::once(still).chain(self.gaps.iter().map(Gap::all_smooth)) {
             // What is smooth passes the filter as it is.
-            let smooth = gap.all_smooth();
             let (start, end) = (smooth.start.min(samples), smooth.end.min(samples));
             filter_to(&mut out, start);
             out.extend_from_slice(&self.plain(signal)[start..end]);
@@ -278,11 +296,10 @@ fn sinc(x: f64) -> f64 {
 /// The modified Bessel function of order zero, by its power series.
 fn bessel_i0(x: f64) -> f64 {
     let quarter = 0.25 * x * x;
-    let mut term = 1.0;
-    let mut sum = 1.0;
-    for k in 1..60 {
-        term *= quarter / f64::from(k * k);
-        sum += term;
-    }
-    sum
+    let terms = (1..).scan(1.0, |term, k| {
+        *term *= quarter / f64::from(k * k);
+        Some(*term)
+    });
+    // Smaller ones change no digit.
+    1.0 + terms.take_while(|term| *term > 1e-18).sum::<f64>()
 }
