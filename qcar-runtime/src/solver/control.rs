@@ -9,6 +9,8 @@ const SAFETY: f64 = 0.9;
 /// A step changes at most by these factors.
 const SHRINK: f64 = 0.2;
 const GROW: f64 = 10.0;
+/// A step may be so much longer than meant to reach an end, rather than be two of half the length: mostly it is good enough.
+const STRETCH: f64 = 1.4;
 /// A smaller error over the tolerance is remembered as this.
 const LEAST: f64 = 1e-4;
 
@@ -40,14 +42,13 @@ impl Control {
 
     /// End and length of the next step from `t`; it reaches `end` exactly rather than leave a sliver before it.
     pub fn next(&self, t: f64, end: f64) -> (f64, f64) {
-        let left = end - t;
-        let steps = (left / self.step.min(self.longest)).ceil();
-        if steps <= 1.0 {
+        let (left, h) = (end - t, self.step.min(self.longest));
+        let stretched = if self.just_rejected { h } else { (STRETCH * h).min(self.longest) };
+        if left <= stretched {
             (end, left)
-        } else if steps <= 2.0 {
+        } else if left <= 2.0 * h {
             (t + 0.5 * left, 0.5 * left)
         } else {
-            let h = self.step.min(self.longest);
             (t + h, h)
         }
     }
