@@ -11,6 +11,7 @@ impl Touch {
     /// - Growth pushes along its own direction with what the law has more at the rate of growth.
     /// - Shrinkage pulls along its own direction with what the law has less at the rate of shrinkage, but never more
     ///   than the spring pushes. So the total never pulls against the direction of the contact.
+    #[inline(always)]
     pub fn force(&self, law: impl Fn(f64, f64) -> f64) -> Contact {
         let s = -self.deflection;
         let at_rest = law(s, 0.0);

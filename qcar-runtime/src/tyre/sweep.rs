@@ -90,7 +90,7 @@ impl Sweeps {
     }
 
     /// Growth and shrinkage of a single short arc that goes across the turning point; none for any other.
-    #[inline]
+    #[inline(always)]
     pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> Option<[Part; 2]> {
         let (sine, cosine) = self.places([from, to]);
         if !(sine[0] < 0.0 && 0.0 < sine[1]) {
