@@ -43,7 +43,11 @@ impl Control {
     /// End and length of the next step from `t`; it reaches `end` exactly rather than leave a sliver before it.
     pub fn next(&self, t: f64, end: f64) -> (f64, f64) {
         let (left, h) = (end - t, self.step.min(self.longest));
-        let stretched = if self.just_rejected { h } else { (STRETCH * h).min(self.longest) };
+        let stretched = if self.just_rejected {
+            h
+        } else {
+            (STRETCH * h).min(self.longest)
+        };
         if left <= stretched {
             (end, left)
         } else if left <= 2.0 * h {

@@ -159,7 +159,7 @@ impl<const F: usize> ExponentialAdams<F> {
             let error = (0..F).fold(0.0, |sum, f| sum + errors[f][i] * off[f]);
             excess[i] = error.abs() - (absolute[i] + relative * ahead[i].abs());
         }
-        excess.iter().all(|excess| *excess <= 0.0)
+        excess.iter().filter(|excess| **excess <= 0.0).count() == n
     }
 
     /// Makes what was foreseen the last state, with the forces as they are there, and by how much they are off.

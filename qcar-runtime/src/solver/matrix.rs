@@ -1,5 +1,7 @@
 //! The exponential of a small matrix.
 
+use std::array;
+
 use crate::vectors::{Loops, widest};
 
 /// Four numbers that are computed together.
@@ -59,13 +61,15 @@ impl Matrix {
     fn series(&self, [first, second]: [Self; 2], fourth: Self, scale: f64) -> Self {
         let third = first.times(&second);
         let four_terms = |from: usize| {
-            let mut sum = Self::zero(self.size);
-            for row in 0..self.size {
-                *sum.entry_mut(row, row) = over_factorial(scale, from);
+            let [zeroth, factors @ ..]: [f64; 4] = array::from_fn(|power| over_factorial(scale, from + power));
+            let mut sum = self.clone();
+            let powers = first.panels.iter().zip(&second.panels).zip(&third.panels);
+            for (sum, ((first, second), third)) in sum.panels.iter_mut().zip(powers) {
+                *sum = array::from_fn(|lane| {
+                    factors[0] * first[lane] + factors[1] * second[lane] + factors[2] * third[lane]
+                });
             }
-            for (power, matrix) in [(1, &first), (2, &second), (3, &third)] {
-                sum.add(over_factorial(scale, from + power), matrix);
-            }
+            (0..self.size).for_each(|row| *sum.entry_mut(row, row) += zeroth);
             sum
         };
         (0..TERMS - 4)
@@ -73,30 +77,26 @@ impl Matrix {
             .rev()
             .fold(four_terms(TERMS - 4), |later, from| {
                 let mut sum = four_terms(from);
-                sum.add(1.0, &fourth.times(&later));
+                sum.add_product(&fourth, &later);
                 sum
             })
-    }
-
-    /// Adds `factor` times another matrix.
-    fn add(&mut self, factor: f64, other: &Self) {
-        for (sum, entries) in self.panels.iter_mut().zip(&other.panels) {
-            for lane in 0..4 {
-                sum[lane] += factor * entries[lane];
-            }
-        }
     }
 
     /// The product with another matrix of the same size.
     pub fn times(&self, other: &Self) -> Self {
         let mut product = Self::zero(self.size);
+        product.add_product(self, other);
+        product
+    }
+
+    /// Adds the product of two matrices of this size.
+    fn add_product(&mut self, left: &Self, right: &Self) {
         widest(Product {
             size: self.size,
-            left: &self.panels,
-            right: &other.panels,
-            product: &mut product.panels,
+            left: &left.panels,
+            right: &right.panels,
+            sum: &mut self.panels,
         });
-        product
     }
 
     /// The largest sum of a row.
@@ -109,12 +109,12 @@ impl Matrix {
     }
 }
 
-/// The panels of two matrices and of their product.
+/// The panels of two matrices, and of what their product is added to.
 struct Product<'a> {
     size: usize,
     left: &'a [Lanes],
     right: &'a [Lanes],
-    product: &'a mut [Lanes],
+    sum: &'a mut [Lanes],
 }
 
 impl Loops for Product<'_> {
@@ -123,10 +123,10 @@ impl Loops for Product<'_> {
     #[inline(always)]
     fn run(self) {
         let right = self.right.chunks_exact(self.size);
-        for (product, panel) in self.product.chunks_exact_mut(self.size).zip(right) {
-            for (tile, product) in product.as_chunks_mut::<4>().0.iter_mut().enumerate() {
+        for (sum, panel) in self.sum.chunks_exact_mut(self.size).zip(right) {
+            for (tile, sum) in sum.as_chunks_mut::<4>().0.iter_mut().enumerate() {
                 // Four rows of four, which stay in registers.
-                let mut sums = [[0.0; 4]; 4];
+                let mut sums = *sum;
                 for (left, right) in self.left.chunks_exact(self.size).zip(panel.as_chunks::<4>().0) {
                     let left = &left.as_chunks::<4>().0[tile];
                     for k in 0..4 {
@@ -137,7 +137,7 @@ impl Loops for Product<'_> {
                         }
                     }
                 }
-                *product = sums;
+                *sum = sums;
             }
         }
     }
