@@ -79,10 +79,10 @@ struct Between {
 
 impl Between {
     fn new(part: f64, count: usize) -> Self {
-        let weights = |before| lagrange(before as f64 + part, count.min(AROUND));
+        let places = array::from_fn(|before| before as f64 + part);
         Self {
             count,
-            weights: array::from_fn(weights),
+            weights: lagrange(places, count.min(AROUND)),
         }
     }
 
@@ -126,17 +126,18 @@ impl Loops for Central<'_> {
     }
 }
 
-/// The weights at `x`, which is none of them, of so many values at 0, 1, 2, ….
-fn lagrange(x: f64, count: usize) -> [f64; AROUND] {
-    let distances = |from: f64| (0..count).map(move |j| from - j as f64);
-    let all: f64 = distances(x).product();
-    let others = |i: usize| distances(i as f64).filter(|distance| *distance != 0.0).product::<f64>();
-    array::from_fn(|i| {
-        if i < count {
-            all / ((x - i as f64) * others(i))
-        } else {
-            0.0
-        }
+/// The weights at several places, which are none of them, of so many values at 0, 1, 2, ….
+fn lagrange<const N: usize>(places: [f64; N], count: usize) -> [[f64; AROUND]; N] {
+    let others = |i: usize| {
+        (0..count)
+            .filter(move |&j| j != i)
+            .map(move |j| i as f64 - j as f64)
+            .product::<f64>()
+    };
+    let scales: [f64; AROUND] = array::from_fn(|i| if i < count { 1.0 / others(i) } else { 0.0 });
+    places.map(|x| {
+        let all: f64 = (0..count).map(|j| x - j as f64).product();
+        array::from_fn(|i| all * scales[i] / (x - i as f64))
     })
 }
 
