@@ -42,7 +42,7 @@ impl Gap {
                 } else {
                     self.ends()
                 };
-                for range in wanted {
+                for range in wanted.into_iter().filter(|range| !range.is_empty()) {
                     let filled = &mut filled[..range.len() / self.stride];
                     between.fill(&known, before + (range.start - self.from) / self.stride, filled);
                     let place = point % phases * length + range.start + point / phases;
@@ -170,5 +170,25 @@ mod tests {
             assert!(error < allowed, "{i}: {error}");
         }
         assert_eq!(gap.all_smooth(), 31..174);
+    }
+
+    #[test]
+    fn a_short_gap_of_long_strides_may_end_with_the_record() {
+        let (length, phases) = (41, 2);
+        let value = |i: usize| 3.0 + (i % length) as f64 + (i / length) as f64 / phases as f64;
+        let gap = Gap {
+            from: 32,
+            to: 40,
+            stride: 8,
+            reach: 13,
+        };
+        let known = |i: usize| i <= gap.from || i == gap.to;
+        let mut signal: Vec<f64> = (0..length * phases)
+            .map(|i| if known(i) { value(i) } else { f64::NAN })
+            .collect();
+        gap.fill(&mut signal, (phases, length));
+        for i in (0..length).chain(length + gap.from..length * phases - 1) {
+            assert!((signal[i] - value(i)).abs() < 1e-9, "{i}: {}", signal[i]);
+        }
     }
 }
