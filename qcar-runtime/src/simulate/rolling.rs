@@ -37,6 +37,8 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     edges: Vec<[f64; 2]>,
     /// Where the circle of the tyre has left the last uneven ground behind, m.
     level_from: f64,
+    /// From where on the force is smooth but for edges, m: a single point feels each piece of the road.
+    pub smooth_from: f64,
 }
 
 /// Places of the wheel's position and velocity, in z and, where it moves, in x.
@@ -65,6 +67,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// constant traction balances it, so that nothing moves before the road does.
     pub fn at_rest(car: &Car<'a, M>, road: &'a Road, speed: f64, t: f64) -> Result<(Self, Vec<f64>), SimulateError> {
         let (contact, about, tyre) = (car.contact()?, car.model.about(), car.rolling_tyre());
+        let level_from = level_from(road) + tyre.radius();
         let mut rolling = Self {
             model: car.model,
             constants: car.constants(),
@@ -80,7 +83,11 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             piece: Cell::new(0),
             smooth_until: f64::INFINITY,
             edges: edges(tyre.geometry(), road),
-            level_from: level_from(road) + tyre.radius(),
+            level_from,
+            smooth_from: match tyre.geometry() {
+                Geometry::Area | Geometry::Radial => f64::NEG_INFINITY,
+                Geometry::Point => level_from,
+            },
         };
         let mut x = vec![0.0; about.states.len()];
         let scales: Vec<f64> = scales(about).collect();
@@ -168,7 +175,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     }
 
     /// True where the force of the tyre is not smooth between two places of the wheel's centre: its rim has come over an
-    /// edge of the road, or what it feels is no area but a single point of ground that is not level.
+    /// edge of the road, or it feels single points of uneven ground.
     #[inline(always)]
     pub fn bends_between(&self, from: [f64; 2], to: [f64; 2]) -> bool {
         let squared = self.tyre.radius() * self.tyre.radius();
@@ -176,8 +183,8 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             let [x, z] = [centre[0] - edge[0], centre[1] - edge[1]];
             x * x + z * z < squared
         };
-        let point = self.tyre.geometry() == Geometry::Point;
-        !self.is_level(from) && (point || self.edges_near(to).any(|edge| inside(from, edge) != inside(to, edge)))
+        from[0] < self.smooth_from
+            || !self.is_level(from) && self.edges_near(to).any(|edge| inside(from, edge) != inside(to, edge))
     }
 
     /// The edges of the road that are not far from a wheel with this centre.
