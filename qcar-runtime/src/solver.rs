@@ -19,9 +19,11 @@ mod rk4;
 // For what is linear but for its forces.
 mod exponential;
 mod matrix;
+mod polynomial;
 
 pub use dormand_prince::{DormandPrince, Settings};
-pub use exponential::{Driven, ExponentialAdams, PAST};
+pub use exponential::{Driven, ExponentialAdams};
+pub use polynomial::PAST;
 pub use rk4::Rk4;
 pub use step::Step;
 

@@ -8,6 +8,7 @@
 use std::array;
 
 use super::matrix::{Lanes, Matrix};
+use super::polynomial::{EXTRAPOLATION, LAST_ORDER, PAST, Polynomial, THROUGH, UNFORESEEN, derivatives};
 use crate::vectors::{Loops, widest};
 
 /// A linear system `dx/dt = A x + B f(t, x)`, and the forces `f` that drive it.
@@ -18,9 +19,6 @@ pub trait Driven<const F: usize> {
     /// The forces at time `t`; none where they are not smooth any more.
     fn force(&mut self, t: f64, x: &[f64]) -> Option<[f64; F]>;
 }
-
-/// The forces at so many points of the past make the polynomial that extrapolates them.
-pub const PAST: usize = 5;
 
 /// So many are kept, so that the step can be doubled.
 const KEPT: usize = 2 * PAST - 1;
@@ -357,71 +355,6 @@ impl<const F: usize> Linear<F> {
         matrix
     }
 }
-
-/// Coefficients of the powers of the part of a step that is over.
-type Polynomial = [f64; PAST + 1];
-
-/// One at a point of the past and zero at all others; they lie at 0, -1, -2, ….
-const THROUGH: [Polynomial; PAST] = through();
-/// What the forces turn out to be more than foreseen: zero at the points of the past and one at the end of the step.
-const UNFORESEEN: Polynomial = rising(0.0);
-/// By how much it would be less if the last point of the past were left out of the polynomial.
-const LAST_ORDER: Polynomial = rising(-1.0);
-
-/// The derivatives of a polynomial where a step begins, by a time of which the step has `1 / unit`.
-fn derivatives(polynomial: &Polynomial, unit: f64) -> Polynomial {
-    let mut factor = 1.0;
-    array::from_fn(|power| {
-        if power > 0 {
-            factor *= power as f64 * unit;
-        }
-        polynomial[power] * factor
-    })
-}
-
-const fn through() -> [Polynomial; PAST] {
-    let mut all = [[0.0; PAST + 1]; PAST];
-    let mut point = 0;
-    while point < PAST {
-        all[point][0] = 1.0;
-        let mut other = 0;
-        while other < PAST {
-            if other != point {
-                all[point] = times(&all[point], other as f64, other as f64 - point as f64);
-            }
-            other += 1;
-        }
-        point += 1;
-    }
-    all
-}
-
-/// `(s + first) (s + first + 1) … / PAST!` of as many factors.
-const fn rising(first: f64) -> Polynomial {
-    let mut product = [0.0; PAST + 1];
-    product[0] = 1.0;
-    let mut i = 0;
-    while i < PAST {
-        product = times(&product, first + i as f64, (i + 1) as f64);
-        i += 1;
-    }
-    product
-}
-
-/// A polynomial times `(s + root) / over`.
-const fn times(polynomial: &Polynomial, root: f64, over: f64) -> Polynomial {
-    let mut product = [0.0; PAST + 1];
-    let mut i = 0;
-    while i <= PAST {
-        let shifted = if i == 0 { 0.0 } else { polynomial[i - 1] };
-        product[i] = (shifted + root * polynomial[i]) / over;
-        i += 1;
-    }
-    product
-}
-
-/// How the polynomial through the past goes on for a step: binomial coefficients with alternating signs.
-const EXTRAPOLATION: [f64; PAST] = [5.0, -10.0, 10.0, -5.0, 1.0];
 
 /// A matrix in blocks of four rows times a vector, whose length is a multiple of four.
 struct Product<'a> {
