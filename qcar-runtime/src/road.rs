@@ -156,7 +156,7 @@ impl Road {
     /// Where the ground turns sharply, m: steps, kinks, but not the small turns between the chords of a curve.
     pub(crate) fn edges(&self) -> impl Iterator<Item = [f64; 2]> {
         /// Sine of the least turn, either way.
-        const SHARP: f64 = 0.1;
+        const SHARP: f64 = 0.02;
         let turn = |[a, b]: [[f64; 2]; 2]| a[0] * b[1] - a[1] * b[0];
         let turns = self.segments.windows(2).map(move |w| turn([w[0].along, w[1].along]));
         let sharp = turns.zip(&self.vertices).filter(|(turn, _)| turn.abs() > SHARP);
