@@ -57,39 +57,41 @@ impl AntiAlias {
     /// The same for a signal that stands phase by phase: points a sample apart are neighbours in memory, as a tap
     /// weighs them.
     fn decimate_phases<'a>(&self, phase: impl Fn(usize) -> &'a [f64], samples: usize) -> Vec<f64> {
-        let (every, reach) = (self.oversampling, self.taps.len() - 1);
-        let from = |point: usize| &phase(point % every)[point / every..][..samples];
-        let mut out: Vec<f64> = from(reach).iter().map(|y| self.taps[0] * y).collect();
-        // At the distance of whole samples the taps vanish: of two points a sample, every other one.
-        let taps = self.taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
-        for (distance, tap) in taps {
-            widest(Tap {
-                tap: *tap,
-                before: from(reach - distance),
-                behind: from(reach + distance),
-                out: &mut out,
-            });
-        }
+        let mut out = vec![0.0; samples];
+        widest(Decimation {
+            filter: self,
+            phase,
+            out: &mut out,
+        });
         out
     }
 }
 
-/// What two points beside a sample, at one distance, give to it; for all samples.
-struct Tap<'a> {
-    tap: f64,
-    before: &'a [f64],
-    behind: &'a [f64],
-    out: &'a mut [f64],
+/// A signal that stands phase by phase, and what becomes of it.
+struct Decimation<'f, 'o, P> {
+    filter: &'f AntiAlias,
+    phase: P,
+    out: &'o mut [f64],
 }
 
-impl Loops for Tap<'_> {
+impl<'a, P: Fn(usize) -> &'a [f64]> Loops for Decimation<'_, '_, P> {
     type Result = ();
 
     #[inline(always)]
     fn run(self) {
-        let beside = self.before.iter().zip(self.behind);
-        for (out, (before, behind)) in self.out.iter_mut().zip(beside) {
-            *out += self.tap * (before + behind);
+        let (every, taps, samples) = (self.filter.oversampling, &self.filter.taps, self.out.len());
+        let from = |point: usize| &(self.phase)(point % every)[point / every..][..samples];
+        let reach = taps.len() - 1;
+        for (out, y) in self.out.iter_mut().zip(from(reach)) {
+            *out = taps[0] * y;
+        }
+        // At the distance of whole samples the taps vanish: of two points a sample, every other one.
+        let taps = taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
+        for (distance, tap) in taps {
+            let beside = from(reach - distance).iter().zip(from(reach + distance));
+            for (out, (before, behind)) in self.out.iter_mut().zip(beside) {
+                *out += tap * (before + behind);
+            }
         }
     }
 }
@@ -258,6 +260,9 @@ impl Tape {
         let mut out = Vec::with_capacity(samples);
         let filter_to = |out: &mut Vec<f64>, end: usize| {
             let from = out.len();
+            if from == end {
+                return;
+            }
             out.extend(filter.decimate_phases(|phase| &self.track(signal, phase)[from..], end - from));
         };
         let still = 0..self.still.saturating_sub(2 * AntiAlias::REACH);
