@@ -293,6 +293,15 @@ impl Evidence {
         thinned
     }
 
+    /// The same less what its series show beyond what a search predicts, series by series.
+    pub fn less(&self, beyond: &[Vec<Complex<f64>>]) -> Self {
+        let mut less = self.clone();
+        for (series, beyond) in less.series.iter_mut().zip(beyond) {
+            series.value.iter_mut().zip(beyond).for_each(|(value, beyond)| *value -= beyond);
+        }
+        less
+    }
+
     /// The same with only the runs that `keep` wants.
     pub fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(run)).collect();

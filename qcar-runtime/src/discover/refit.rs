@@ -45,6 +45,8 @@ pub struct Refit {
     pub chi2: f64,
     /// Number of residuals of the data.
     pub residuals: usize,
+    /// What the model was taken to show of each series beyond what a search predicts: nothing before it has settled.
+    pub unsteady: Vec<Vec<Complex<f64>>>,
     /// Evaluations of residual and Jacobian.
     pub evaluations: usize,
     /// Why the search stopped.
@@ -275,6 +277,7 @@ impl<'a> Posterior<'a> {
             coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
             chi2: 2.0 * outcome.cost,
             residuals: self.residuals,
+            unsteady: self.unsteady.clone(),
             nuisance: self.nuisance.clone(),
             evaluations: outcome.evaluations,
             stop: outcome.stop,

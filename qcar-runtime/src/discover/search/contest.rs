@@ -20,8 +20,10 @@ use crate::response::parameters::Values;
 pub struct Looks<'a> {
     /// What is worth a first look: a part of all.
     pub first: Evidence,
-    /// All there is.
-    pub all: &'a Evidence,
+    /// All there is, less what no search looks at: see [`settle`](crate::discover::refit::settle).
+    pub all: Evidence,
+    /// What the last word is about.
+    pub whole: &'a Evidence,
     /// The share of every value that is forgiven at first.
     pub tolerance: f64,
     /// The share of what no change at all leaves that the best must gain, or nobody goes on.
@@ -202,7 +204,7 @@ pub fn contest(
     let finalists = field.into_par_iter().map(|runner| {
         let entrant = &entrants[runner.entrant];
         let refit = runner.refit.ok_or(PredictError::NoNumber)?;
-        let explanation = entrant.explanandum.explanation(refit, looks.all)?;
+        let explanation = entrant.explanandum.explanation(refit, looks.whole)?;
         Ok(Finalist {
             entrant: runner.entrant,
             score: entrant.score(&explanation.refit),
@@ -224,7 +226,7 @@ impl Entrant<'_> {
 
 impl Looks<'_> {
     fn at(&self, stage: &Stage) -> Evidence {
-        let thinned = if stage.first { &self.first } else { self.all }.thinned(stage.thinned);
+        let thinned = if stage.first { &self.first } else { &self.all }.thinned(stage.thinned);
         if stage.tolerant {
             thinned.tolerant(self.tolerance)
         } else {

@@ -240,12 +240,15 @@ impl State {
     }
 
     /// First at the fitted runs in which the present model is wrong most, and with as much tolerance as it needs itself:
-    /// what is wrong with it must be seen.
+    /// what is wrong with it must be seen. What it shows beyond steady harmonics changes little with one effect more, and
+    /// would hide a faint one.
     fn looks<'e>(&self, wanted: &Wanted, evidence: &'e Evidence) -> Looks<'e> {
         let telling = self.telling(evidence);
+        let steady = evidence.less(&self.explanation.refit.unsteady);
         Looks {
-            first: evidence.only(|run| telling.contains(&run)),
-            all: evidence,
+            first: steady.only(|run| telling.contains(&run)),
+            all: steady,
+            whole: evidence,
             tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
             least: wanted.least,
         }
@@ -372,7 +375,8 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
     };
     let looks = Looks {
         first: evidence.clone(),
-        all: evidence,
+        all: evidence.clone(),
+        whole: evidence,
         tolerance: TOLERANCE,
         least: 0.0,
     };
