@@ -103,6 +103,8 @@ pub struct Direction(pub String);
 pub struct Coordinate {
     /// The name, unique in its direction.
     pub name: String,
+    /// Its other names there: points.
+    pub also: Vec<String>,
     /// z, x, ...
     pub direction: Direction,
     /// What moves it.

@@ -33,7 +33,8 @@ pub fn rolling_tyre(model: &Checked) -> Option<RollingTyre> {
         .find(|&c| matches!(kind(c), CoordinateKind::Mass(_)))?;
     let wheel = &model.coordinates[own.0 as usize];
     let other = model.coordinates.iter().position(|c| {
-        c.name == wheel.name && c.direction != wheel.direction && matches!(c.kind, CoordinateKind::Mass(_))
+        let is_called_so = c.name == wheel.name || c.also.contains(&wheel.name);
+        is_called_so && c.direction != wheel.direction && matches!(c.kind, CoordinateKind::Mass(_))
     });
     let wheel = [own].into_iter().chain(other.map(|c| CoordinateId(c as u16))).collect();
     Some(RollingTyre {

@@ -160,10 +160,21 @@ impl<'a> Patching<'a> {
                     ..link.clone()
                 })
             }
-            Statement::Point(name, target) => Statement::Point(name.clone(), self.signal(target)),
+            Statement::Point(name, target) => Statement::Point(name.clone(), self.end(target, direction)?),
             Statement::Output(name, signal) => Statement::Output(name.clone(), self.signal(signal)),
             Statement::Channel(name, a, b) => Statement::Channel(name.clone(), self.signal(a), self.signal(b)),
             other => other.clone(),
+        })
+    }
+
+    /// What a point of the effect stands for: a mass, or an end of the place.
+    fn end(&self, target: &Dotted, direction: &str) -> Made<Dotted> {
+        let meant = self.bindings.point(target, direction)?;
+        if meant == target.to_string() {
+            return Ok(self.signal(target));
+        }
+        Ok(Dotted {
+            names: vec![Name::new(&meant)],
         })
     }
 

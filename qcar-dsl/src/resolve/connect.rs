@@ -17,7 +17,13 @@ impl Resolver<'_> {
                 continue;
             };
             let thing = match self.coordinate(target, direction, &format!("point {} = body;", name.text)) {
-                Ok(coordinate) => Thing::Coordinate(coordinate),
+                Ok(coordinate) => {
+                    let meant = &mut self.model.coordinates[usize::from(coordinate.0)];
+                    if meant.direction.0 == *direction {
+                        meant.also.push(name.text.clone());
+                    }
+                    Thing::Coordinate(coordinate)
+                }
                 Err(_) => Thing::Broken,
             };
             self.declare_thing(name, direction, thing);

@@ -178,6 +178,7 @@ impl Resolver<'_> {
             let Ok(kind) = kind else { continue };
             self.model.coordinates.push(Coordinate {
                 name: coordinate.name.text.clone(),
+                also: Vec::new(),
                 direction: Direction(direction.to_string()),
                 kind,
                 angle: coordinate.angle,
