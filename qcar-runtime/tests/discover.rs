@@ -101,6 +101,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
     Evidence {
         runs,
         series,
+        two_sided: false,
         notices: Vec::new(),
     }
 }

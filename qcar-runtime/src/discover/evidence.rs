@@ -22,7 +22,7 @@ use means::Means;
 use nalgebra::Complex;
 pub use restart::Restart;
 
-use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
+use crate::campaign::{Axis, Campaign, Quantity, Role, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
@@ -37,6 +37,8 @@ pub struct Evidence {
     pub runs: Vec<Run>,
     /// The series of all runs, run after run.
     pub series: Vec<Series>,
+    /// Whether the two sides of a car are measured, and taken for one.
+    pub two_sided: bool,
     /// What was left out, and why, as sentences for the engineer.
     pub notices: Vec<String>,
 }
@@ -240,6 +242,7 @@ impl Evidence {
         let mut evidence = Evidence {
             runs: Vec::new(),
             series: Vec::new(),
+            two_sided: campaign.channels.iter().any(|channel| channel.side == Side::Right),
             notices: Vec::new(),
         };
         for run in &campaign.runs {
@@ -297,7 +300,11 @@ impl Evidence {
     pub fn less(&self, beyond: &[Vec<Complex<f64>>]) -> Self {
         let mut less = self.clone();
         for (series, beyond) in less.series.iter_mut().zip(beyond) {
-            series.value.iter_mut().zip(beyond).for_each(|(value, beyond)| *value -= beyond);
+            series
+                .value
+                .iter_mut()
+                .zip(beyond)
+                .for_each(|(value, beyond)| *value -= beyond);
         }
         less
     }
@@ -313,6 +320,7 @@ impl Evidence {
         Evidence {
             runs: kept.iter().map(|&run| self.runs[run].clone()).collect(),
             series: series.collect(),
+            two_sided: self.two_sided,
             notices: self.notices.clone(),
         }
     }

@@ -56,7 +56,7 @@ pub struct Explanation {
 impl Explanation {
     /// What the fitted residuals scatter by, squared; 1 where only noise is left.
     pub fn scatter(&self) -> f64 {
-        (self.refit.chi2 / self.refit.residuals as f64).max(1.0)
+        self.refit.scatter()
     }
 
     /// How much the gains and delays of the sensors are strained: the sum of the squares of their errors over what these

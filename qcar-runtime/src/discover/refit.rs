@@ -45,6 +45,9 @@ pub struct Refit {
     pub chi2: f64,
     /// Number of residuals of the data.
     pub residuals: usize,
+    /// Relative standard deviation of what the mean of the measured sides has by chance: of the parts that were made for one
+    /// drawing, two are measured.
+    pub made: f64,
     /// What the model was taken to show of each series beyond what a search predicts: nothing before it has settled.
     pub unsteady: Vec<Vec<Complex<f64>>>,
     /// Evaluations of residual and Jacobian.
@@ -65,13 +68,18 @@ const MOST: f64 = 3.0;
 const STRAY: f64 = std::f64::consts::LN_10;
 
 impl Refit {
-    /// Standard errors of the free parameters.
+    /// Standard errors of the free parameters, as those of the drawing: by what the residuals scatter, and by what the
+    /// parts of two sides differ from it.
     pub fn stderr(&self) -> Vec<f64> {
-        self.covariance
-            .diagonal()
-            .iter()
-            .map(|variance| variance.sqrt())
+        let variances = self.covariance.diagonal();
+        let of = variances.iter().zip(&self.estimate);
+        of.map(|(variance, value)| (self.scatter() * variance + (self.made * value).powi(2)).sqrt())
             .collect()
+    }
+
+    /// What the fitted residuals scatter by, squared; 1 where only noise is left.
+    pub fn scatter(&self) -> f64 {
+        (self.chi2 / self.residuals as f64).max(1.0)
     }
 
     /// What the sensors would have shown of a prediction.
@@ -277,6 +285,11 @@ impl<'a> Posterior<'a> {
             coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
             chi2: 2.0 * outcome.cost,
             residuals: self.residuals,
+            made: if self.evidence.two_sided {
+                SIDE / f64::sqrt(2.0)
+            } else {
+                0.0
+            },
             unsteady: self.unsteady.clone(),
             nuisance: self.nuisance.clone(),
             evaluations: outcome.evaluations,

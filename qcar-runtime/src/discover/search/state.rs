@@ -415,8 +415,7 @@ impl Taken {
         }
     }
 
-    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given. Where
-    /// more than noise is left, the errors grow with it.
+    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
     fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
         let refit = &explanation.refit;
         let errors = refit.stderr();
@@ -424,7 +423,7 @@ impl Taken {
         let of = |unknown: &Unknown| match unknown {
             Unknown::Parameter(effect_name, name) => {
                 let (_, value) = explanation.named.iter().find(|(known, _)| known == name)?;
-                let error = free_of(explanation, name).map_or(0.0, |free| scatter * errors[free]);
+                let error = free_of(explanation, name).map_or(0.0, |free| errors[free]);
                 Some((effect_name.clone(), *value, error))
             }
             Unknown::Coefficient(effect_name, place, form) => {
