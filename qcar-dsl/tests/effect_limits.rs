@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
-use qcar_dsl::evaluate::Evaluator;
+use qcar_dsl::evaluate::{Contact, Evaluator};
 use qcar_dsl::front::check_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
@@ -228,6 +228,8 @@ const NOTHING: [Case; 19] = [
             ("q_rebound", 0.0),
             ("c_compression", 1900.0),
             ("q_compression", 0.0),
+            ("v_knee", 0.1),
+            ("slope_beyond", 1.0),
         ],
     ),
     (
@@ -353,6 +355,49 @@ fn a_digressive_damper_begins_with_c0_and_tends_to_the_force_of_v0_at_the_wheel(
                 "{form} at {speed} m/s: {force}"
             );
         }
+    }
+}
+
+#[test]
+fn a_segmented_damper_has_a_slope_of_its_own_beyond_the_knee() {
+    let model = in_form(
+        &model("axle_b_rigid_tm"),
+        "segmented_polynomial_damper",
+        "slopes",
+        "damper",
+    );
+    let of_effect = [
+        ("c_rebound", 2000.0),
+        ("c_compression", 1000.0),
+        ("v_knee", 0.2),
+        ("slope_beyond", 0.25),
+    ];
+    let running = Running::new(&model, &of_effect);
+    // The wheel falls in rebound.
+    for (speed, damping) in [(-0.1, 2000.0), (-0.5, 500.0), (0.1, 1000.0), (0.5, 250.0)] {
+        let found = slope(|v| on_body(&running, BODY, 0.0, v), speed);
+        assert!((found / damping - 1.0).abs() < 1e-6, "{found} at {speed} m/s");
+    }
+}
+
+#[test]
+fn a_belt_that_moves_in_one_direction_leaves_the_road_s_push_along_the_other_to_the_wheel() {
+    for (form, pushed) in [("in_plane", "vx_belt"), ("vertical", "vx_wheel")] {
+        let belt = [("m_belt", 7.0), ("k_sidewall", 1e6), ("c_sidewall", 200.0)];
+        let running = Running::new(&in_form(&model("axle_c"), "tire_belt", form, "tire"), &belt);
+        let about = running.evaluator.about();
+        let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
+        let contact = Contact {
+            force: [0.0, 100.0],
+            ..Contact::default()
+        };
+        let mut dx = x.clone();
+        running
+            .evaluator
+            .rolling_derivative(&running.constants, &x, &u, &contact, &mut dx);
+        let place = about.states.iter().position(|state| state.name == pushed).unwrap();
+        let mass = if form == "vertical" { 42.0 } else { 7.0 };
+        assert!((mass * dx[place] - 100.0).abs() < 1e-9, "{form}: {}", dx[place]);
     }
 }
 
