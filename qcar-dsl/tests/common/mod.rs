@@ -88,6 +88,7 @@ impl Builder {
 
     pub fn coordinate(&mut self, direction: &str, name: &str, kind: CoordinateKind) -> CoordinateId {
         self.model.coordinates.push(Coordinate {
+            also: Vec::new(),
             name: name.into(),
             direction: Direction(direction.into()),
             kind,
