@@ -39,6 +39,34 @@ fn what_is_left_of_a_clean_campaign_is_noise() {
     assert_eq!(answer["places"], Value::Array(Vec::new()));
 }
 
+/// Half of the size from which on an effect is said to be seen is not named, and twice that size is.
+#[test]
+fn an_effect_is_seen_from_the_size_on_that_is_told() {
+    let with = |c_drag: f64| {
+        let folder = tempfile::tempdir().expect("a folder");
+        let campaign = folder.path().join("campaign");
+        let order = Order {
+            cleats: false,
+            effects: vec![Hidden::new("drag_to_ground", "body", &[("c_drag", c_drag)])],
+            ..Order::clean("c", 31)
+        };
+        make(order, &campaign).expect("a campaign");
+        discover(&campaign, None)
+    };
+    let clean = with(0.0);
+    assert_eq!(clean["verdict"], "none");
+    let visible = clean["visible"].as_array().expect("effects");
+    let drag = visible
+        .iter()
+        .find(|own| own["name"] == "drag_to_ground" && own["at"] == "body")
+        .expect("it applies to every body");
+    let number = |value: &Value| value.as_f64().expect("a number");
+    let limit = number(&drag["usual"]["c_drag"]) / number(&drag["times_the_limit"]);
+    assert_eq!(with(0.5 * limit)["verdict"], "none");
+    let seen = with(2.0 * limit);
+    assert_eq!(seen["effects"][0]["name"], "drag_to_ground", "{seen}");
+}
+
 /// Published for the drive: Fc 20.39 N (Janot, Gautier and Brunot 2019). The damper's friction is not known, but its loops
 /// are some 400 N wide where it hardly moves.
 #[test]

@@ -9,7 +9,7 @@
 
 use std::ops::Range;
 
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::{Nuisance, STRAINED};
@@ -80,6 +80,46 @@ impl Refit {
     /// What the fitted residuals scatter by, squared; 1 where only noise is left.
     pub fn scatter(&self) -> f64 {
         (self.chi2 / self.residuals as f64).max(1.0)
+    }
+
+    /// The residuals of the `model` that was fitted, those of the data before those of what is held by a prior, and their
+    /// Jacobian along all unknowns.
+    pub fn linearised(&self, model: &dyn Model, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
+        let mut posterior = Posterior::new(model, self.values.clone(), &self.free, evidence, self.nuisance.clone());
+        let place = posterior.place(self);
+        posterior.start.clone_from(&place);
+        let mut residual = DVector::zeros(posterior.residuals());
+        let mut jacobian = DMatrix::zeros(posterior.residuals(), posterior.variables());
+        posterior.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
+        (residual, jacobian)
+    }
+
+    /// The residuals of the data where another model with these `values` stands in the place of the `fitted` one; `None`
+    /// where that gives no number.
+    pub fn residuals_of(
+        &self,
+        other: &dyn Model,
+        values: &Values,
+        fitted: &dyn Model,
+        evidence: &Evidence,
+    ) -> Option<DVector<f64>> {
+        let name = |free: &Free| &fitted.about().parameters[free.parameter].name;
+        let place = |free: &Free| other.about().parameters.iter().position(|p| p.name == *name(free));
+        let mut side = values.clone();
+        for free in &self.free {
+            if let Some(parameter) = place(free) {
+                side.set(parameter, self.side.as_slice()[free.parameter]);
+            }
+        }
+        let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
+        posterior.side = side;
+        let mut residual = vec![0.0; posterior.residuals()];
+        posterior.look(&self.coefficients, &mut residual, &[]);
+        residual.truncate(posterior.residuals);
+        residual
+            .iter()
+            .all(|r| r.is_finite())
+            .then(|| DVector::from_vec(residual))
     }
 
     /// What the sensors would have shown of a prediction.

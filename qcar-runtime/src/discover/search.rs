@@ -11,6 +11,8 @@ mod contest;
 mod rules;
 // A model with effects in it, and what is tried on it.
 mod state;
+// What `none` is worth.
+mod visible;
 
 use super::candidate::Workshop;
 use super::evidence::Evidence;
@@ -19,6 +21,8 @@ use super::predict::PredictError;
 use crate::campaign::Role;
 use rules::Judge;
 use state::{Contender, Field, State};
+pub use visible::Visible;
+use visible::visible;
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
@@ -78,6 +82,8 @@ pub struct Discovery {
     pub before: Explanation,
     /// The explanation with all findings; the same as `before` without any.
     pub after: Explanation,
+    /// Where nothing is missing: which effects would have been seen.
+    pub visible: Vec<Visible>,
 }
 
 /// Effects that are looked for one after the other.
@@ -120,6 +126,10 @@ pub fn discover(
     progress(News::Known(&alone, &[], &before));
     let judge = Judge::new(evidence, &before);
     let verdict = |verdict, findings, after: &Explanation| Discovery {
+        visible: match verdict {
+            Verdict::None => visible(&base, &judge, evidence),
+            _ => Vec::new(),
+        },
         verdict,
         findings,
         before: before.clone(),

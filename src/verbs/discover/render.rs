@@ -6,7 +6,7 @@ use std::fmt::Write;
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::gap::Tile;
-use qcar_runtime::discover::search::{Finding, Rival, Verdict};
+use qcar_runtime::discover::search::{Finding, Rival, Verdict, Visible};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -22,6 +22,7 @@ pub(crate) struct Result<'a> {
     effects: Vec<Effect<'a>>,
     r#where: Vec<Where>,
     places: Vec<Missing>,
+    visible: Vec<Seen<'a>>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
     model_file: Option<String>,
@@ -39,6 +40,15 @@ struct Effect<'a> {
     units: &'a BTreeMap<String, String>,
     evidence: Evidence,
     rivals: &'a [Rival],
+}
+
+/// An effect that is not there, and how clearly it would have been seen.
+#[derive(Serialize)]
+struct Seen<'a> {
+    name: &'a str,
+    at: &'a str,
+    usual: Ordered<f64>,
+    times_the_limit: f64,
 }
 
 #[derive(Serialize)]
@@ -107,6 +117,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .collect(),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
+        visible: of.discovery.visible.iter().map(seen).collect(),
         gap: Gaps {
             fit: BeforeAfter::new(before.fit, after.fit),
             held_out: BeforeAfter::new(before.held_out, after.held_out),
@@ -152,6 +163,15 @@ fn effect<'a>(of: &'a Answer, finding: &'a Finding, units: &'a BTreeMap<String, 
             of_ceiling: places::of_ceiling(of, &finding.at).filter(|_| alone),
         },
         rivals: &finding.rivals,
+    }
+}
+
+fn seen(of: &Visible) -> Seen<'_> {
+    Seen {
+        name: &of.effect,
+        at: &of.at,
+        usual: of.usual.iter().cloned().collect(),
+        times_the_limit: of.times,
     }
 }
 
@@ -221,6 +241,12 @@ pub(super) fn text(of: &Answer) -> String {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
         out += &missing(of).first().map_or_else(String::new, acts);
     }
+    if !of.discovery.visible.is_empty() {
+        out += &format!(
+            "\nwhat would have been seen: its trace over the least that earns a name\n{}",
+            visible(of)
+        );
+    }
     if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
         let _ = writeln!(out, "\nthe model with it: {}", file.display());
     }
@@ -279,6 +305,24 @@ fn acts(best: &Missing) -> String {
     let share = 100.0 * best.explains;
     let (at, like) = (best.site.name(), best.shape.name());
     format!("something at {at} could explain {share:.1} % of what it leaves of the sweeps; it would be {like}\n")
+}
+
+/// How clearly each effect would have been seen.
+fn visible(of: &Answer) -> String {
+    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size_in_SI"]);
+    for own in &of.discovery.visible {
+        let usual = own
+            .usual
+            .iter()
+            .map(|(name, value)| format!("{name} {}", number(*value, 3)));
+        table.row(vec![
+            own.effect.clone(),
+            own.at.clone(),
+            number(own.times, 2),
+            usual.collect::<Vec<_>>().join(", "),
+        ]);
+    }
+    table.text()
 }
 
 fn tiles(of: &Answer) -> String {

@@ -83,13 +83,23 @@ impl<'a> Judge<'a> {
 
     /// True where an effect lowers the sum of squares by more than chance.
     pub fn is_significant(&self, state: &State, contender: &Contender) -> bool {
+        state.lowered(contender) > self.least(state, &contender.explanation)
+    }
+
+    /// By how much an effect must lower the sum of squares, beside the penalty of its unknowns.
+    fn least(&self, state: &State, with: &Explanation) -> f64 {
         let is_faint = !self.is_gap(&state.explanation);
         let least = if is_faint {
             FAINT * state.explanation.refit.chi2
         } else {
             0.0
         };
-        state.lowered(contender) > least.max(SIGNIFICANT * contender.explanation.scatter())
+        least.max(SIGNIFICANT * with.scatter())
+    }
+
+    /// By how much an effect of so many unknowns would have had to lower the sum of squares in all.
+    pub fn least_to_name(&self, state: &State, unknowns: usize) -> f64 {
+        self.least(state, &state.explanation) + state.penalty(unknowns)
     }
 
     /// What may be the first effect. Where there is no gap, little is worth a look.

@@ -12,6 +12,7 @@ use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
 use crate::discover::nuisance::{Form, Nuisance};
 use crate::discover::predict::PredictError;
+use nalgebra::{DMatrix, DVector};
 
 /// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
 const SUSPECT: [f64; 2] = [1.0, 0.02];
@@ -283,8 +284,31 @@ impl State {
     /// Sum of squares with the penalty of all that was taken.
     pub fn score(&self) -> f64 {
         let unknowns: usize = self.taken.iter().map(|taken| taken.unknowns.len()).sum();
+        self.explanation.refit.chi2 + self.penalty(unknowns)
+    }
+
+    /// The penalty of so many unknowns.
+    pub fn penalty(&self, unknowns: usize) -> f64 {
+        (self.explanation.refit.residuals as f64).ln() * unknowns as f64
+    }
+
+    /// All effects at all their places.
+    pub fn candidates(&self) -> Vec<Candidate> {
+        self.workshop.candidates()
+    }
+
+    /// The residuals of the explanation and their Jacobian along all that was fitted.
+    pub fn linearised(&self, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
+        self.explanation.refit.linearised(self.workshop.model(), evidence)
+    }
+
+    /// The residuals of the data with an effect at its start beside the explanation; `None` where that gives no number.
+    pub fn residuals_with(&self, candidate: &Candidate, evidence: &Evidence) -> Option<DVector<f64>> {
+        let known = self.known();
+        let explanandum = self.explanandum(candidate, &known)?;
+        let beside_known = explanandum.starts().ok()?.into_iter().nth(1)?;
         let refit = &self.explanation.refit;
-        refit.chi2 + (refit.residuals as f64).ln() * unknowns as f64
+        refit.residuals_of(explanandum.model, &beside_known, self.workshop.model(), evidence)
     }
 
     /// By how much a contender lowers the sum of squares, beside the penalty of its unknowns.
