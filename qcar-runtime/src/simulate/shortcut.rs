@@ -30,7 +30,11 @@ pub(super) struct Shortcut {
     effort: Effort,
 }
 
-/// A step on uneven ground, s, or a little less; on level ground it is twice that.
+/// A step on uneven ground, s, or a little less; on level ground it is twice that. Where samples are further apart, it is
+/// half of their distance, or all of it for a tyre that feels single points, on level ground, too.
+///
+/// The force alone tells whether that is short enough. What a light mass does on its own is stepped exactly, but filled in
+/// between steps by polynomials: where these take 2 ms, that is good up to some 100 Hz, and wrong from 200 Hz on.
 const STEP: f64 = 1e-3;
 
 impl Shortcut {

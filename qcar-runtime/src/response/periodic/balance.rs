@@ -8,7 +8,7 @@ use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 use super::basis::Basis;
 use super::factors::{Factors, Straight};
 use super::period::Period;
-use crate::model::{Matrix, Model};
+use crate::model::{Entry, Matrix, Model};
 
 /// The balance of a model at one drive.
 pub struct Balance<'a> {
@@ -148,12 +148,10 @@ impl<'a> Balance<'a> {
                 push(is_output, row, along, by);
             }
         }
-        for (at, by) in about.matrices.iter().zip(self.period.matrices.column_iter()) {
-            if let Matrix::B | Matrix::D = at.matrix {
-                let input = self.period.inputs.column(usize::from(at.column));
-                let louder = &self.basis.analysis * by.component_mul(&input);
-                push(at.matrix == Matrix::D, at.row, groups.len(), louder.column(0));
-            }
+        for (at, by) in self.entries(Matrix::B).chain(self.entries(Matrix::D)) {
+            let input = self.period.inputs.column(usize::from(at.column));
+            let louder = &self.basis.analysis * by.component_mul(&input);
+            push(at.matrix == Matrix::D, at.row, groups.len(), louder.column(0));
         }
         (on_states, on_outputs)
     }
@@ -193,13 +191,7 @@ impl<'a> Balance<'a> {
         self.period.linearise();
         let mut constant = DMatrix::zeros(self.states.len(), self.states.len());
         let mut bent = BTreeSet::new();
-        let entries = self
-            .model
-            .about()
-            .matrices
-            .iter()
-            .zip(self.period.matrices.column_iter());
-        for (at, weights) in entries.filter(|(at, _)| at.matrix == Matrix::A) {
+        for (at, weights) in self.entries(Matrix::A) {
             let place = |state: u16| self.places[usize::from(state)];
             if let (Some(row), Some(column)) = (place(at.row), place(at.column)) {
                 match held(&weights) {
@@ -242,17 +234,19 @@ impl<'a> Balance<'a> {
         jacobian
     }
 
+    /// The nonzeros of a matrix, each with its samples.
+    fn entries(&self, of: Matrix) -> impl Iterator<Item = (&Entry, DVectorView<'_, f64>)> {
+        let entries = self.model.about().matrices.iter();
+        entries
+            .zip(self.period.matrices.column_iter())
+            .filter(move |(at, _)| at.matrix == of)
+    }
+
     /// What the states that move do to some rows of A or C, term by term.
     fn rows(&self, matrix: Matrix, rows: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
         let mut found = DMatrix::zeros(rows.len() * terms, self.states.len() * terms);
-        let entries = self
-            .model
-            .about()
-            .matrices
-            .iter()
-            .zip(self.period.matrices.column_iter());
-        for (at, weights) in entries.filter(|(at, _)| at.matrix == matrix) {
+        for (at, weights) in self.entries(matrix) {
             let row = rows.iter().position(|&row| row == usize::from(at.row));
             let (Some(row), Some(column)) = (row, self.places[usize::from(at.column)]) else {
                 continue;
