@@ -148,6 +148,19 @@ fn the_slopes_are_those_of_differences() {
 }
 
 #[test]
+fn an_output_that_is_asked_for_twice_has_its_slopes_twice() {
+    let model = Strut::new(DRY);
+    let groups: Vec<Vec<usize>> = (0..P.len()).map(|k| vec![k]).collect();
+    let periodic = Periodic::new(&model, 0, 5);
+    let asked = |outputs: &[usize]| periodic.cycle(&P, &drive(3.0, 0.1), outputs, &groups, None);
+    let (once, twice) = (asked(&[0, 1]), asked(&[1, 0, 1]));
+    for (once, twice) in once.slopes.iter().zip(&twice.slopes) {
+        assert_eq!([&once[1], &once[0], &once[1]], [&twice[0], &twice[1], &twice[2]]);
+    }
+    assert_eq!(once.louder[1], twice.louder[2]);
+}
+
+#[test]
 fn the_slopes_by_amplitude_are_those_of_differences() {
     let model = Strut::new(DRY);
     let periodic = Periodic::new(&model, 0, 5);

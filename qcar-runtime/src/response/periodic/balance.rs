@@ -117,11 +117,17 @@ impl<'a> Balance<'a> {
     pub fn slopes(&mut self, outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Vec<Vec<Complex<f64>>>> {
         let factors = self.factorise();
         self.period.differentiate();
-        let (pushes, mut moves) = self.pushes(outputs, groups);
+        // Each output once, however often it is asked for.
+        let rows: Vec<usize> = BTreeSet::from_iter(outputs).into_iter().copied().collect();
+        let (pushes, mut moves) = self.pushes(&rows, groups);
         if let Some(moved) = factors.and_then(|factors| factors.solve_all(&pushes)) {
-            moves += self.rows(Matrix::C, outputs) * moved;
+            moves += self.rows(Matrix::C, &rows) * moved;
         }
-        let along = |moves: DVectorView<f64>| self.series(moves.as_slice());
+        let along = |moves: DVectorView<f64>| {
+            let series = self.series(moves.as_slice());
+            let of = |output| series[rows.partition_point(|row| row < output)].clone();
+            outputs.iter().map(of).collect()
+        };
         moves.column_iter().map(along).collect()
     }
 
