@@ -113,6 +113,14 @@ fn values(model: &Strut, off: f64) -> Values {
     Values::resolve(model.about(), &given, &BTreeMap::new()).expect("every parameter is given")
 }
 
+fn free(parameter: usize) -> Free {
+    Free {
+        parameter,
+        lower: 0.3 * P[parameter],
+        upper: 3.0 * P[parameter],
+    }
+}
+
 /// The worst difference from the first harmonics, relative to these, with and without what is unsteady.
 fn worst(model: &Strut, evidence: &Evidence, role: Role) -> [f64; 2] {
     let values = values(model, 1.0);
@@ -142,11 +150,6 @@ fn what_never_settles_is_predicted_as_it_is_measured() {
         assert!(steady > 0.01, "{steady}");
         assert!(unsteady < 0.003, "{unsteady}");
     }
-    let free = |parameter: usize| Free {
-        parameter,
-        lower: 0.3 * P[parameter],
-        upper: 3.0 * P[parameter],
-    };
     let free = [9, 10].map(free);
     let fitted = refit(&model, &values(&model, 1.2), &free, &evidence).expect("the model has the sensors");
     let settled = settle(&model, fitted, &evidence).expect("the model has the sensors");
@@ -155,5 +158,37 @@ fn what_never_settles_is_predicted_as_it_is_measured() {
     for (free, estimate) in settled.free.iter().zip(&settled.estimate) {
         let error = estimate / P[free.parameter] - 1.0;
         assert!(error.abs() < 0.01, "parameter {}: {error}", free.parameter);
+    }
+}
+
+#[test]
+fn the_slopes_along_the_errors_of_sensors_are_those_of_differences() {
+    let (folder, model) = (tempfile::tempdir().expect("a place for files"), Strut::new(DRY));
+    let campaign = campaign(folder.path(), &model);
+    let evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    let free = [9, 10].map(free);
+    let fitted = refit(&model, &values(&model, 1.2), &free, &evidence).expect("the model has the sensors");
+    let (_, jacobian) = fitted.linearised(&model, &evidence);
+    const STEP: f64 = 1e-4;
+    for k in 0..fitted.coefficients.len() {
+        let residual = |step: f64| {
+            let mut moved = fitted.clone();
+            moved.coefficients[k] += step;
+            moved.linearised(&model, &evidence).0
+        };
+        let expected = (residual(STEP) - residual(-STEP)) / (2.0 * STEP);
+        let found = jacobian.column(free.len() + k);
+        // Where friction nearly sticks, a search ends elsewhere for the least change: of the others most are right.
+        let mut errors: Vec<f64> = found
+            .iter()
+            .zip(&expected)
+            .map(|(found, expected)| (found - expected).abs())
+            .collect();
+        errors.sort_by(f64::total_cmp);
+        let (error, size) = (
+            errors[errors.len() * 9 / 10],
+            expected.norm() / (errors.len() as f64).sqrt(),
+        );
+        assert!(error < 0.15 * size, "{k}: {error} of {size}");
     }
 }

@@ -416,52 +416,46 @@ impl<'a> Posterior<'a> {
         columns
     }
 
-    /// Adds the rows of one prediction to columns that grow together.
+    /// Adds the rows of one prediction to columns that grow together. A column may be moved in more ways than one: the gain
+    /// of a reference scales what is shown, and says how hard the run was driven.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
-        let coefficients = &x[self.free.len()..];
+        let of_sensors = self.free.len();
         let shown = self
             .nuisance
-            .show(self.evidence, series, &prediction.value, coefficients);
-        scaled(
-            series,
-            series
-                .value
-                .iter()
-                .zip(&shown.value)
-                .map(|(measured, shown)| measured - shown),
-            residual,
-        );
-        let along = |slope: &[Complex<f64>], scale: f64, column: &mut Vec<f64>| {
-            let slopes = slope.iter().zip(&shown.factor);
-            scaled(series, slopes.map(|(slope, factor)| -slope * factor * scale), column);
+            .show(self.evidence, series, &prediction.value, &x[of_sensors..]);
+        let first = residual.len();
+        let left = series.value.iter().zip(&shown.value);
+        scaled(series, left.map(|(measured, shown)| measured - shown), residual);
+        for column in columns.iter_mut() {
+            column.resize(residual.len(), 0.0);
+        }
+        let mut add = |slope: &mut dyn Iterator<Item = Complex<f64>>, place: usize| {
+            let mut rows = Vec::with_capacity(residual.len() - first);
+            scaled(series, slope.map(|slope| -slope), &mut rows);
+            let sums = columns[place][first..].iter_mut();
+            sums.zip(rows).for_each(|(sum, row)| *sum += row);
+        };
+        let through = |slope: Vec<Complex<f64>>, scale: f64| {
+            let slopes = slope.into_iter().zip(&shown.factor);
+            slopes.map(move |(slope, factor)| slope * factor * scale)
         };
         let one_sided = of_one_side(&self.evidence.runs[series.run]);
         for (k, slope) in prediction.slopes.iter().enumerate() {
             if one_sided {
                 let factor = self.factors(x)[k].exp();
-                along(slope, factor, &mut columns[k]);
-                along(
-                    slope,
-                    factor * x[k],
-                    &mut columns[self.free.len() + self.nuisance.len() + k],
-                );
+                let of_side = of_sensors + self.nuisance.len() + k;
+                add(&mut through(slope.clone(), factor), k);
+                add(&mut through(slope.clone(), factor * x[k]), of_side);
             } else {
-                along(slope, 1.0, &mut columns[k]);
+                add(&mut through(slope.clone(), 1.0), k);
             }
         }
         for (k, slope) in self.nuisance.misread_slopes(self.evidence, prediction) {
-            along(&slope, 1.0, &mut columns[self.free.len() + k]);
+            add(&mut through(slope, 1.0), of_sensors + k);
         }
         for (k, slope) in shown.slopes {
-            scaled(
-                series,
-                slope.iter().map(|slope| -slope),
-                &mut columns[self.free.len() + k],
-            );
-        }
-        for column in columns {
-            column.resize(residual.len(), 0.0);
+            add(&mut slope.into_iter(), of_sensors + k);
         }
     }
 }
