@@ -44,8 +44,7 @@ struct Stage {
     starts: usize,
     /// Explanations that go on,
     kept: usize,
-    /// if they gain this share of what the best of them gains over no change at all, where a share is asked for; after a
-    /// first look only beside a bent law, where a sharper look at so many costs most.
+    /// if they gain this share of what the best of them gains over no change at all, where a share is asked for.
     share: Option<f64>,
 }
 
@@ -68,7 +67,7 @@ const STAGES: [Stage; 5] = [
         starts: 2,
         kept: 14,
         // So few steps tell who is far from any use, not yet who is better than no change.
-        share: Some(0.1),
+        share: None,
     },
     Stage {
         first: false,
@@ -302,8 +301,7 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
         let room = has_passed || names.len() < stage.kept;
         let starts = passed.get(&runner.entrant).map_or(&[][..], Vec::as_slice);
         let is_there = starts.iter().any(|score| runner.score - score < SAME * score);
-        let is_cheap = stage.first && entrants[0].explanandum.model.about().linear;
-        let is_wanted = is_measure || room && (runner.score <= least || is_cheap);
+        let is_wanted = is_measure || room && runner.score <= least;
         let passes = is_wanted && !is_there && starts.len() < stage.starts;
         if passes {
             passed.entry(runner.entrant).or_default().push(runner.score);
