@@ -3,6 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
+use nalgebra::{DMatrix, DVector};
+
 use super::contest::{Entrant, Finalist, Looks, contest};
 use super::rules::{NOISE, Wanted};
 use super::{Finding, News, Progress, Rival};
@@ -12,7 +14,6 @@ use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
 use crate::discover::nuisance::{Form, Nuisance};
 use crate::discover::predict::PredictError;
-use nalgebra::{DMatrix, DVector};
 
 /// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
 const SUSPECT: [f64; 2] = [1.0, 0.02];
