@@ -310,3 +310,6 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
     });
     field
 }
+
+#[cfg(test)]
+mod tests;

@@ -254,3 +254,6 @@ fn rivals(chosen: &Contender, field: &Field) -> Vec<Rival> {
     }
     rivals
 }
+
+#[cfg(test)]
+mod tests;

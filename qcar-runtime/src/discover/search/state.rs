@@ -485,3 +485,8 @@ impl Contender {
         }
     }
 }
+
+#[cfg(test)]
+pub(super) mod made;
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,83 @@
+//! Who goes on, of runners with given scores.
+
+use super::{Entrant, Runner, STAGES, Stage, best};
+use crate::discover::explain::Explanandum;
+use crate::discover::nuisance::Nuisance;
+use crate::discover::search::state::made::{Lever, setting, two_sweeps};
+
+/// No change at all, and an entrant with one unknown for each of these names.
+fn with_entrants<R>(names: &[&str], ask: impl FnOnce(&[Entrant]) -> R) -> R {
+    let (model, setting, nuisance) = (Lever::new(), setting(), Nuisance::of(&two_sweeps()));
+    let entrant = |(unknowns, name): (usize, &str)| Entrant {
+        explanandum: Explanandum {
+            model: &model,
+            added: &[],
+            setting: &setting,
+            known: None,
+            nuisance: nuisance.clone(),
+        },
+        unknowns,
+        name: name.into(),
+    };
+    let changes = names.iter().map(|&name| (1, name));
+    let entrants: Vec<Entrant> = std::iter::once((0, "no change")).chain(changes).map(entrant).collect();
+    ask(&entrants)
+}
+
+fn runner(entrant: usize, score: f64) -> Runner {
+    Runner {
+        entrant,
+        values: Lever::new().values(),
+        refit: None,
+        score,
+    }
+}
+
+/// The names of those that go on, where no change comes to 1000 and the best must gain the share `least_gain`.
+fn kept(stage: &Stage, least_gain: f64, changes: &[(&str, f64)]) -> Vec<String> {
+    let (names, scores): (Vec<&str>, Vec<f64>) = changes.iter().copied().unzip();
+    let scores = std::iter::once(1000.0).chain(scores).enumerate();
+    let field = scores.map(|(entrant, score)| runner(entrant, score)).collect();
+    with_entrants(&names, |entrants| {
+        let best = best(field, entrants, stage, least_gain).into_iter();
+        best.map(|runner| entrants[runner.entrant].name.clone()).collect()
+    })
+}
+
+#[test]
+fn what_gains_less_than_is_asked_for_goes_no_further() {
+    let sharp = STAGES.iter().find(|stage| !stage.tolerant).expect("a sharp look");
+    assert_eq!(
+        kept(sharp, 0.1, &[("much", 880.0), ("little", 920.0)]),
+        ["much", "no change"]
+    );
+    assert_eq!(kept(sharp, 0.1, &[("little", 920.0)]), ["no change"]);
+    assert_eq!(kept(sharp, 0.0, &[("little", 920.0)]), ["little", "no change"]);
+}
+
+/// Where a share of every value is forgiven, a part of what is gained does not show.
+#[test]
+fn half_of_the_gain_is_enough_while_large_features_alone_count() {
+    let tolerant = STAGES.iter().find(|stage| stage.tolerant && stage.share.is_some());
+    let tolerant = tolerant.expect("a tolerant look");
+    let runners = [("half", 945.0), ("less", 955.0)];
+    assert_eq!(kept(tolerant, 0.1, &runners), ["half", "no change"]);
+}
+
+#[test]
+fn a_first_look_drops_nobody_for_a_small_gain() {
+    assert_eq!(kept(&STAGES[0], 0.1, &[("little", 990.0)]), ["little", "no change"]);
+}
+
+/// One form that comes in late too.
+#[test]
+fn forms_of_one_effect_take_the_room_of_one() {
+    let last = STAGES.last().expect("a last look");
+    let others: Vec<String> = (1..=last.kept).map(|k| format!("other {k}")).collect();
+    let mut runners = vec![("many", 100.0), ("many", 110.0), ("many", 120.0), ("many", 900.0)];
+    let scores = (0..).map(|k| 200.0 + 10.0 * f64::from(k));
+    runners.extend(others.iter().map(String::as_str).zip(scores));
+    let kept = kept(last, 0.0, &runners);
+    let count = |start: &str| kept.iter().filter(|name| name.starts_with(start)).count();
+    assert_eq!((count("many"), count("other")), (4, last.kept - 1), "{kept:?}");
+}

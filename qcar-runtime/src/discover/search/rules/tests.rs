@@ -1,0 +1,197 @@
+//! What earns a name, of explanations with given gaps.
+
+use super::super::state::made::{RESIDUALS, contender, leaving, state, two_sweeps, with_chi2};
+use super::{Contender, Explanation, Finding, Judge, Path};
+use crate::discover::nuisance::SENSOR;
+
+/// With so many effects that leave this.
+fn path(explanation: Explanation, effects: usize) -> Path {
+    let finding = Finding {
+        effect: "effect".into(),
+        at: "wheel".into(),
+        form: None,
+        parameters: Vec::new(),
+        evidence: 0.0,
+        closed: 0.0,
+        rivals: Vec::new(),
+    };
+    Path {
+        state: state(explanation),
+        findings: vec![finding; effects],
+        class: Vec::new(),
+    }
+}
+
+/// The same with sensors whose gains are wrong by so many times what is usual.
+fn strained(mut explanation: Explanation, times: f64) -> Explanation {
+    let refit = &mut explanation.refit;
+    for gain in (0..refit.nuisance.of_calibration()).step_by(SENSOR.len()) {
+        refit.coefficients[gain] = times * SENSOR[0].sigma;
+    }
+    explanation
+}
+
+fn names<'c>(contenders: impl Iterator<Item = &'c Contender>) -> Vec<&'c str> {
+    contenders.map(|own| own.candidate.effect.as_str()).collect()
+}
+
+/// An unknown without any use lowers the sum of squares by a little; one that lowers it by more makes another answer.
+#[test]
+fn what_contains_the_best_and_explains_no_more_is_no_other_answer() {
+    let (evidence, before) = (two_sweeps(), leaving(10.0));
+    let judge = Judge::new(&evidence, &before);
+    let noise = RESIDUALS as f64;
+    let contenders = [
+        contender("best", 1, with_chi2(noise)),
+        contender("as simple", 1, with_chi2(noise + 1.0)),
+        contender("contains it", 2, with_chi2(noise - 1.0)),
+        contender("explains more", 2, with_chi2(noise - 6.0)),
+        contender("far behind", 1, with_chi2(noise + 30.0)),
+    ];
+    assert_eq!(
+        names(judge.alike(&contenders, 0)),
+        ["best", "as simple", "explains more"]
+    );
+}
+
+/// What leaves something unexplained cannot judge differences below a twentieth of that.
+#[test]
+fn of_those_that_explain_alike_the_simplest_comes_first() {
+    let (evidence, before) = (two_sweeps(), leaving(100.0));
+    let judge = Judge::new(&evidence, &before);
+    let (chi2, vague) = (RESIDUALS as f64 + 10e3, 500.0);
+    let order = |behind: f64| {
+        let explaining = |name, unknowns, score| {
+            let mut own = contender(name, unknowns, with_chi2(chi2));
+            own.score = score;
+            own
+        };
+        let mut contenders = [
+            explaining("best", 3, chi2),
+            explaining("next", 2, chi2 + 1.0),
+            explaining("simple", 1, chi2 + behind),
+        ];
+        judge.simplest_first(&mut contenders);
+        names(contenders.iter()).join(", ")
+    };
+    assert_eq!(order(vague - 1.0), "simple, best, next");
+    assert_eq!(order(vague + 1.0), "next, best, simple");
+}
+
+/// Beside effects that explain enough, another must close as much as a first one, be determined, leave no more than noise,
+/// and be more than chance.
+#[test]
+fn a_further_effect_must_earn_its_place() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let adds = |present: f64, with: &Contender| judge.adds_much(&state(leaving(present)), with, 2);
+    assert!(adds(1.4, &contender("all", 1, leaving(1.0))));
+    let determined = |error: f64| {
+        let mut own = contender("all", 1, leaving(1.0));
+        own.parameters = vec![("own".into(), 1.0, error)];
+        own
+    };
+    assert!(adds(1.4, &determined(0.1)) && !adds(1.4, &determined(f64::NAN)));
+    assert!(!adds(1.4, &contender("half", 1, leaving(1.19))), "it closes too little");
+    assert!(!adds(3.0, &contender("most", 1, leaving(1.25))), "it leaves too much");
+    assert!(!adds(1.4, &contender("complex", 200, leaving(1.0))), "that is chance");
+}
+
+/// Several effects bend to much that they are not the cause of.
+#[test]
+fn several_effects_must_leave_no_more_than_noise_and_one_a_little() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let enough = |gap: f64, effects: usize| judge.is_enough(&path(leaving(gap), effects));
+    assert!(enough(1.1, 1) && enough(1.1, 2));
+    assert!(enough(1.4, 1) && !enough(1.4, 2));
+    // It leaves more, but closes next to all.
+    assert!(enough(3.0, 1) && !enough(3.0, 2));
+    assert!(!enough(5.0, 1));
+    assert!(!enough(1.1, 0), "nothing explains nothing");
+}
+
+/// One that leaves little of little has closed too little of it.
+#[test]
+fn what_is_enough_has_closed_most_of_the_gap() {
+    let (evidence, before) = (two_sweeps(), leaving(1.6));
+    let judge = Judge::new(&evidence, &before);
+    assert!(judge.is_enough(&path(leaving(1.1), 1)));
+    assert!(!judge.is_enough(&path(leaving(1.4), 1)));
+}
+
+/// Where no gap shows in the runs that judge, it is closed if what was strained is no more, or if the fit gains by it.
+#[test]
+fn a_gap_that_does_not_show_is_closed_where_the_strain_is_gone_or_the_fit_gains() {
+    let (evidence, plain) = (two_sweeps(), leaving(1.0));
+    let judge = Judge::new(&evidence, &plain);
+    let closed = |before: &Explanation, after: &Explanation| judge.closed(before, after);
+    let before = strained(leaving(1.0), 4.0);
+    assert_eq!(closed(&before, &leaving(1.0)), 1.0);
+    assert_eq!(closed(&before, &before), 0.0);
+    assert_eq!(closed(&plain, &leaving(0.98)), 0.0);
+    assert_eq!(closed(&plain, &leaving(0.9)), 1.0);
+    let mut local = leaving(0.9);
+    local.gap.residuals[1] = vec![3.0; RESIDUALS];
+    assert_eq!(closed(&plain, &local), 0.0, "it leaves a gap elsewhere");
+}
+
+#[test]
+fn a_sensor_is_wanted_where_the_rest_is_explained_and_calibrations_are_strained() {
+    let evidence = two_sweeps();
+    let sensor = |before: f64, after: f64| {
+        let (before, after) = (leaving(before), strained(leaving(after), 4.0));
+        let judge = Judge::new(&evidence, &before);
+        judge.wanted_beside(&path(after, 1), 2).sensor
+    };
+    assert!(sensor(20.0, 1.0));
+    assert!(!sensor(20.0, 1.4), "a gap is left");
+    assert!(!sensor(1.25, 1.19), "little of little is explained");
+}
+
+/// Where there is a gap anything may be a step; beside effects that explain enough, only what closes as much again.
+#[test]
+fn what_is_looked_for_must_gain_what_would_earn_a_name() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let first = |gap: f64| judge.wanted_first(&state(leaving(gap))).least;
+    assert_eq!((first(1.0), first(2.0)), (0.1, 0.0));
+    // 99 and 75 % of the sum of squares are more than noise; of two effects each must take a half of what all must close.
+    let beside = |gap: f64| judge.wanted_beside(&path(leaving(gap), 1), 2).least;
+    assert!((beside(10.0) - 0.99 * 0.6 / 2.0).abs() < 1e-12);
+    assert!((beside(2.0) - 0.75 * 0.6).abs() < 1e-12);
+}
+
+/// What is left in the end must do much worse without an effect, and leave more than a little.
+#[test]
+fn an_effect_is_missed_where_the_others_do_much_worse() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let missed = |with: f64, without: f64| judge.is_missed(&state(leaving(with)), &state(leaving(without)));
+    assert!(missed(1.0, 1.6));
+    assert!(!missed(1.0, 1.4), "that is little");
+    assert!(!missed(1.59, 1.6), "that is no worse");
+}
+
+/// Of two effects that may be taken each must close its half of what all must, and be more than chance.
+#[test]
+fn a_step_takes_its_share_of_what_is_left() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let is_step = |left: f64, effects: usize| {
+        let chi2 = RESIDUALS as f64 * (1.0 + 99.0 * left);
+        judge.is_step(&state(leaving(10.0)), &contender("step", 1, with_chi2(chi2)), effects)
+    };
+    assert!(is_step(0.69, 2) && !is_step(0.71, 2));
+    assert!(is_step(0.39, 1) && !is_step(0.41, 1));
+}
+
+/// A search goes on from what does half as much as the best.
+#[test]
+fn a_search_may_begin_with_what_comes_close_to_the_best() {
+    let (evidence, before) = (two_sweeps(), leaving(10.0));
+    let judge = Judge::new(&evidence, &before);
+    let best = contender("best", 1, with_chi2(20e3));
+    let close = |chi2: f64| judge.comes_close(&state(leaving(10.0)), &contender("other", 1, with_chi2(chi2)), &best);
+    assert!(close(59e3) && !close(61e3));
+}

@@ -1,0 +1,75 @@
+//! What is tried on a state, and what that is held against.
+
+use super::made::{Levers, evidence, history, leaving, setting, state, sweep};
+use super::{Evidence, Role, State, Wanted};
+use nalgebra::Complex;
+
+/// The state of evidence whose runs leave these residuals.
+fn with_residuals(fit: f64, of_runs: &[(usize, f64)]) -> State {
+    let mut explanation = leaving(fit);
+    let residuals = of_runs.iter().map(|&(count, residual)| vec![residual; 2 * count]);
+    explanation.gap.residuals = residuals.collect();
+    state(explanation)
+}
+
+/// A few values that are far off and many that are a little off tell of what is missing; noise tells nothing, however
+/// much of it there is, and what is held out is not asked.
+#[test]
+fn a_first_look_is_at_runs_whose_gap_is_wide_or_heavy() {
+    let (few, many, more) = (2, 400, 500);
+    let of_runs = [(few, 10.0), (many, 2.0), (few, 2.0), (more, 1.0), (many, 10.0)];
+    let roles = [Role::Fit, Role::Fit, Role::Fit, Role::Fit, Role::HeldOut];
+    let runs = roles
+        .iter()
+        .zip(of_runs)
+        .map(|(role, (count, _))| (*role, sweep(), count));
+    let evidence = evidence(1.0, runs.collect());
+    assert_eq!(with_residuals(2.0, &of_runs).telling(&evidence), [0, 1]);
+}
+
+#[test]
+fn next_to_noise_a_first_look_is_at_the_worst_run_of_each_kind() {
+    let of_runs = [(50, 1.0), (50, 1.1), (50, 0.9), (50, 1.3)];
+    let runs = vec![
+        (Role::Fit, sweep(), 50),
+        (Role::Fit, sweep(), 50),
+        (Role::Fit, history(), 50),
+        (Role::HeldOut, sweep(), 50),
+    ];
+    assert_eq!(with_residuals(1.0, &of_runs).telling(&evidence(1.0, runs)), [1, 2]);
+}
+
+/// The first look is at two of three runs.
+#[test]
+fn what_is_unsteady_is_taken_off_all_but_the_last_look() {
+    let evidence = evidence(1.0, vec![(Role::Fit, sweep(), 2); 3]);
+    let mut state = with_residuals(2.0, &[(2, 2.0), (2, 1.0), (2, 2.0)]);
+    let beyond = |by: f64| vec![Complex::from(by), Complex::from(2.0 * by)];
+    state.explanation.refit.unsteady = [0.1, 0.2, 0.3].map(beyond).to_vec();
+    let wanted = Wanted {
+        least: 0.0,
+        sensor: false,
+    };
+    let looks = state.looks(&wanted, &evidence);
+    let values = |of: &Evidence| -> Vec<f64> { of.series.iter().flat_map(|s| s.value.iter().map(|v| v.re)).collect() };
+    assert_eq!(values(&looks.first), [0.9, 0.8, 0.7, 0.4]);
+    assert_eq!(values(&looks.all), [0.9, 0.8, 0.8, 0.6, 0.7, 0.4]);
+    assert_eq!(values(looks.whole), [1.0; 6]);
+}
+
+/// A gain of the sensor and another ratio of the lever explain the same.
+#[test]
+fn where_a_sensor_is_wanted_nothing_else_is_tried() {
+    let evidence = evidence(1.2, vec![(Role::Fit, sweep(), 60)]);
+    let workshop = Box::new(Levers::new());
+    let state = State::base(workshop, &setting(), &evidence, &|_| ()).expect("a lever answers to a sweep");
+    let tried = |sensor: bool| -> Vec<String> {
+        let wanted = Wanted { least: 0.0, sensor };
+        let field = state.contenders(&wanted, &evidence, &|_| ()).expect("so does another");
+        let mut tried: Vec<String> = field.contenders.into_iter().map(|own| own.candidate.effect).collect();
+        tried.sort();
+        tried
+    };
+    assert_eq!(tried(false), ["gain", "ratio"]);
+    assert_eq!(tried(true), ["gain"]);
+}
