@@ -16,7 +16,7 @@ pub struct Showing(ProgressBar);
 impl Showing {
     /// Says nothing yet.
     pub fn new() -> Self {
-        let bar = ProgressBar::new_spinner().with_style(style("{spinner} {msg} {elapsed}"));
+        let bar = ProgressBar::new_spinner().with_style(style("{spinner} {wide_msg} {elapsed}"));
         bar.enable_steady_tick(Duration::from_millis(100));
         show(Some(bar.clone()));
         Showing(bar)
@@ -29,12 +29,12 @@ impl Showing {
 
     /// Says how much of it is done, and of how much.
     pub fn far(&self, done: usize, of: usize) {
+        self.0.set_position(done as u64);
         if self.0.length() != Some(of as u64) {
             self.0
-                .set_style(style("{spinner} {msg} {pos} of {len} {bar:24} {elapsed}"));
+                .set_style(style("{spinner} {wide_msg} {pos} of {len} {bar:12} {elapsed}"));
             self.0.set_length(of as u64);
         }
-        self.0.set_position(done as u64);
     }
 }
 

@@ -235,14 +235,20 @@ impl Looks<'_> {
     }
 }
 
+/// So many of those who are left are named: a line of a terminal has room for no more.
+const NAMED: usize = 2;
+
 /// Who is left, the best first.
 fn told(entrants: &[Entrant], field: &[Runner]) -> String {
-    let mut names: Vec<&str> = field
-        .iter()
-        .map(|runner| entrants[runner.entrant].name.as_str())
-        .collect();
-    names.dedup();
-    format!("looking into {}", names.join(", "))
+    let mut met = BTreeSet::new();
+    let names = field.iter().map(|runner| entrants[runner.entrant].name.as_str());
+    let names: Vec<&str> = names.filter(|name| met.insert(*name)).collect();
+    let (named, others) = names.split_at(names.len().min(NAMED));
+    let more = match others.len() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("looking into {}{more}", named.join(", "))
 }
 
 impl Runner {

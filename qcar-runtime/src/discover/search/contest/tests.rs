@@ -1,6 +1,6 @@
 //! Who goes on, of runners with given scores.
 
-use super::{Entrant, Runner, STAGES, Stage, best};
+use super::{Entrant, Runner, STAGES, Stage, best, told};
 use crate::discover::explain::Explanandum;
 use crate::discover::nuisance::Nuisance;
 use crate::discover::search::state::made::{Lever, setting, two_sweeps};
@@ -80,4 +80,17 @@ fn forms_of_one_effect_take_the_room_of_one() {
     let kept = kept(last, 0.0, &runners);
     let count = |start: &str| kept.iter().filter(|name| name.starts_with(start)).count();
     assert_eq!((count("many"), count("other")), (4, last.kept - 1), "{kept:?}");
+}
+
+/// An effect that has several forms or starts is named once.
+#[test]
+fn of_many_that_are_looked_into_a_few_are_named() {
+    let names = ["first", "second", "first", "third", "fourth", "fifth"];
+    let of = |field: &[usize]| {
+        let field: Vec<Runner> = field.iter().map(|&entrant| runner(entrant, 0.0)).collect();
+        with_entrants(&names, |entrants| told(entrants, &field))
+    };
+    assert_eq!(of(&[1]), "looking into first");
+    assert_eq!(of(&[1, 3, 2]), "looking into first, second");
+    assert_eq!(of(&[1, 3, 2, 4, 5, 6, 0]), "looking into first, second and 4 more");
 }
