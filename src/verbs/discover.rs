@@ -118,7 +118,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
             let before = begun_with.get_or_init(|| explanation.clone());
             if let Some(folder) = out {
                 let files = unfinished::files(&campaign.name, &bench, findings, [before, explanation]);
-                leave(&folder.join("unfinished"), files);
+                leave(&unfinished::folder(folder), files);
             }
         }
     };
@@ -221,7 +221,8 @@ fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written>
     written
 }
 
-/// Writes the model file, parameters and figures, and notes where the model is.
+/// Writes the model file, parameters and figures, and notes where the model is. What a search had left there that was
+/// stopped gives way.
 ///
 /// # Errors
 /// A folder that cannot be written to.
@@ -242,5 +243,6 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     let gap = figure::gap(title, [&discovery.before.gap, &discovery.after.gap]);
     put(folder, "gap.svg", &gap.svg())?;
     put(folder, "discovery.json", &render::json(answer))?;
+    unfinished::take_away(folder);
     Ok(())
 }

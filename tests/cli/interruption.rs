@@ -1,5 +1,6 @@
 //! Ctrl-C at any time: exit status 130, a word on what was written, and no file that is not whole.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -86,6 +87,35 @@ fn a_search_that_is_stopped_leaves_what_it_has_come_to() {
     );
     let again = "simulate models/campaigns/axle_c_study --params results/unfinished/parameters.toml";
     assert_eq!(run_line(folder.path(), again).status, 0);
+}
+
+/// A campaign with the first run of the shipped one alone.
+fn one_sweep(folder: &Path) {
+    let campaign = folder.join("one_sweep");
+    copy(&folder.join("models/campaigns/axle_a_rig"), &campaign);
+    let manifest = campaign.join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let runs: Vec<&str> = text.split("[[run]]").take(2).collect();
+    fs::write(manifest, runs.join("[[run]]")).unwrap();
+}
+
+/// What else is there stays, be it by the name of a file that a search leaves.
+#[test]
+fn a_whole_search_takes_away_what_a_stopped_one_has_left() {
+    let folder = repository();
+    stopped_on_the_way(folder.path());
+    let unfinished = folder.path().join("results/unfinished");
+    let own = ["my.axle", "notes.txt"].map(|name| unfinished.join(name));
+    fs::write(&own[0], "axle my {}\n").unwrap();
+    fs::copy(unfinished.join("parameters.toml"), &own[1]).unwrap();
+    one_sweep(folder.path());
+    let search = "discover one_sweep --out results";
+    assert_eq!(run_line(folder.path(), search).status, 0);
+    let files = fs::read_dir(&unfinished).unwrap().map(|file| file.unwrap().path());
+    assert_eq!(files.collect::<BTreeSet<_>>(), BTreeSet::from(own.clone()));
+    own.iter().for_each(|file| fs::remove_file(file).unwrap());
+    assert_eq!(run_line(folder.path(), search).status, 0);
+    assert!(!unfinished.exists());
 }
 
 #[test]
