@@ -377,3 +377,34 @@ fn sensors_that_contradict_each_other_are_no_effect() {
         "{best}"
     );
 }
+
+/// Of pad and wheel alone a ratio is seen, and nobody can say which of both shows too much or too little.
+#[test]
+fn two_sensors_of_which_one_is_wrong_are_a_class() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut noise = noise();
+    swept(folder.path(), &mut |name, value| match name.split('_').next() {
+        Some("pad") => value,
+        Some("wheel") => 1.06 * value,
+        _ => noise(),
+    });
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "class", "{answer}");
+    let effects = answer["effects"].as_array().expect("effects");
+    let text = |value: &Value| value.as_str().expect("a text").to_owned();
+    let mut members: Vec<_> = effects
+        .iter()
+        .map(|own| (text(&own["name"]), text(&own["at"])))
+        .collect();
+    members.sort();
+    assert_eq!(
+        members,
+        ["pad", "wheel"].map(|at| ("sensor_gain".to_owned(), at.to_owned()))
+    );
+    for effect in effects {
+        assert_eq!(effect["one_of"], true, "{effect}");
+        let mut rivals = effect["rivals"].as_array().expect("rivals").iter();
+        assert!(rivals.all(|rival| rival["effect"] != "sensor_gain"), "{effect}");
+    }
+    assert_eq!(answer["model_file"], Value::Null);
+}

@@ -181,11 +181,12 @@ fn setting(campaign: &Campaign, about: &About) -> Setting {
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.
 fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String>> {
     let mut units = Vec::new();
-    for finding in &discovery.findings {
+    let found = discovery.told_apart().0.len();
+    for (place, finding) in discovery.findings.iter().enumerate() {
         let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref());
         let own = patched.iter().flat_map(|patched| &patched.parameters);
         units.push(own.map(|own| (own.effect_name.clone(), own.unit.to_string())).collect());
-        if let Some(patched) = patched.filter(|own| discovery.verdict == Verdict::Found && own.signals.is_empty()) {
+        if let Some(patched) = patched.filter(|own| place < found && own.signals.is_empty()) {
             bench = bench.holding(patched.model);
         }
     }
@@ -233,7 +234,9 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         model.file = Some(folder.join(name));
     }
     let (campaign, discovery) = (&answer.campaign, &answer.discovery);
-    let heading = format!("{campaign}: what explains its runs best");
+    let best = discovery.told_apart().1.first();
+    let best = best.map_or_else(String::new, |own| format!(", {} at {} for one", own.effect, own.at));
+    let heading = format!("{campaign}: what explains its runs best{best}");
     put(
         folder,
         "parameters.toml",

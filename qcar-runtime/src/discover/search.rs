@@ -76,14 +76,23 @@ pub struct Rival {
 pub struct Discovery {
     /// The answer.
     pub verdict: Verdict,
-    /// In the order in which they were found; of a class, its members, the best first.
+    /// In the order in which they were found; of a class, what was found before it and then its members, the best first.
     pub findings: Vec<Finding>,
+    /// So many of the last findings stand in each other's place: the members of a class.
+    pub alike: usize,
     /// The base model's explanation.
     pub before: Explanation,
-    /// The explanation with all findings; the same as `before` without any.
+    /// The explanation with all findings, with the best of a class; the same as `before` without any.
     pub after: Explanation,
     /// Where nothing is missing: which effects would have been seen.
     pub visible: Vec<Visible>,
+}
+
+impl Discovery {
+    /// What was found, and the members of a class beside it; none where there is no class.
+    pub fn told_apart(&self) -> (&[Finding], &[Finding]) {
+        self.findings.split_at(self.findings.len() - self.alike)
+    }
 }
 
 /// Effects that are looked for one after the other.
@@ -125,13 +134,14 @@ pub fn discover(
     let alone = format!("the model alone leaves a gap of {}", told(&before));
     progress(News::Known(&alone, &[], &before));
     let judge = Judge::new(evidence, &before);
-    let verdict = |verdict, findings, after: &Explanation| Discovery {
+    let verdict = |verdict, (findings, alike), after: &Explanation| Discovery {
         visible: match verdict {
             Verdict::None => visible(&base, &judge, evidence),
             _ => Vec::new(),
         },
         verdict,
         findings,
+        alike,
         before: before.clone(),
         after: after.clone(),
     };
@@ -161,26 +171,22 @@ pub fn discover(
         }
     }
     let Some(path) = best else {
-        return Ok(verdict(unexplained, Vec::new(), &before));
+        return Ok(verdict(unexplained, (Vec::new(), 0), &before));
     };
     if !judge.is_enough(&path) {
-        return Ok(verdict(unexplained, Vec::new(), &path.state.explanation));
+        return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
     }
     let path = path.without_what_is_not_missed(&base, &judge, evidence, progress)?;
     if !judge.is_enough(&path) {
-        return Ok(verdict(unexplained, Vec::new(), &path.state.explanation));
+        return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
     }
-    let named = match path.class.len() {
-        0 | 1 => Verdict::Found,
+    let after = path.state.explanation.clone();
+    let findings = path.named();
+    let answer = match findings.1 {
+        0 => Verdict::Found,
         _ => Verdict::Class,
     };
-    let after = path.state.explanation.clone();
-    let findings = if named == Verdict::Class {
-        path.class
-    } else {
-        path.findings
-    };
-    Ok(verdict(named, findings, &after))
+    Ok(verdict(answer, findings, &after))
 }
 
 /// The gap of the runs that judge, in words.
@@ -214,9 +220,10 @@ impl Path {
     /// Goes on with one of the contenders.
     fn taking(mut self, field: &Field, pick: usize, judge: &Judge) -> Self {
         let chosen = &field.contenders[pick];
-        let finding = |contender: &Contender| judge.finding(&self.state, contender, field);
-        self.class = judge.alike(&field.contenders, pick).map(finding).collect();
-        self.findings.push(judge.finding(&self.state, chosen, field));
+        let alike: Vec<&Contender> = judge.alike(&field.contenders, pick).collect();
+        let finding = |contender: &Contender| judge.finding(&self.state, contender, &alike, field);
+        self.class = alike.iter().copied().map(finding).collect();
+        self.findings.push(finding(chosen));
         self.state = self.state.with(chosen);
         self
     }
@@ -252,6 +259,14 @@ impl Path {
 
     fn score(&self) -> f64 {
         self.state.score()
+    }
+
+    /// What was found, and how many of the last cannot be told apart; none of one alone.
+    fn named(mut self) -> (Vec<Finding>, usize) {
+        let alike = Some(self.class.len()).filter(|&alike| alike > 1).unwrap_or(0);
+        // The first is the one that was taken.
+        self.findings.extend(self.class.into_iter().take(alike).skip(1));
+        (self.findings, alike)
     }
 
     /// Takes each effect but the last away again, the rest refitted: what is not missed then was only a step on the way.

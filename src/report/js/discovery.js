@@ -2,7 +2,7 @@
 
 function discovery(data) {
   const { discover, kappa, changes } = data;
-  const maps = heatMaps(data.gap_map, discover.effects.length > 0);
+  const maps = heatMaps(data.gap_map, added(discover.effects));
   const stiffness = kappa.length ? kappaPart(kappa) : null;
   const element = section(
     'discovery',
@@ -16,7 +16,7 @@ function discovery(data) {
     maps.map((map) => map.element),
     strongest(discover.where),
     stiffness && stiffness.element,
-    discover.effects.map(effectPart),
+    discover.effects.map((effect) => effectPart(effect, discover.effects)),
     changes && changesPart(changes),
   );
   return {
@@ -153,7 +153,7 @@ function kappaPlot(own, part, place) {
   });
 }
 
-function effectPart(effect) {
+function effectPart(effect, effects) {
   const rows = Object.entries(effect.parameters).map(([name, value]) => {
     const [error, unit] = [effect.stderr[name], effect.units[name]];
     return [
@@ -170,7 +170,7 @@ function effectPart(effect) {
   return h(
     'div',
     {},
-    h('h3', {}, `${words(effect.name)} at ${words(effect.at)}`),
+    h('h3', {}, effectTitle(effect, effects)),
     h('p', {}, `It closes ${percent(effect.evidence.gap_closed, 3)} of the excess gap of the runs that judge it.`),
     h(
       'div',

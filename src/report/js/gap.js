@@ -1,10 +1,14 @@
 // Where the gap is: a map over sensors and levels, and over frequency, time or travel.
 
-function heatMaps({ before, after }, changed) {
+// The second map is that of the model with what was `added`.
+function heatMaps({ before, after }, added) {
   const kinds = [...new Map(before.map((tile) => [kindOf(tile), kindName(tile)])).entries()].sort(
     (a, b) => KINDS.indexOf(a[0]) - KINDS.indexOf(b[0]),
   );
-  const sets = [['before', before], ...(changed ? [['after', after]] : [])];
+  const sets = [
+    ['before', 'The model of the campaign', before],
+    ...(added ? [['after', `The model with ${added}`, after]] : []),
+  ];
   const place = h('div', {});
   const readout = h(
     'p',
@@ -12,9 +16,9 @@ function heatMaps({ before, after }, changed) {
     'Point at a tile, or reach the map with Tab and move with the arrow keys.',
   );
   const show = (kind) => {
-    const maps = sets.map(([role, tiles]) =>
+    const maps = sets.map(([role, caption, tiles]) =>
       heatMap(
-        role,
+        [role, caption],
         tiles.filter((tile) => kindOf(tile) === kind),
         readout,
       ),
@@ -87,7 +91,7 @@ function heatKey() {
 }
 
 // Rows are sensors at levels, columns are bands: of a sixth of an octave, or of time or travel.
-function heatMap(role, tiles, readout) {
+function heatMap([role, caption], tiles, readout) {
   const rowOf = (tile) => `${tile.channel} @ ${tile.level}`;
   const sorted = [...tiles].sort((a, b) => a.channel.localeCompare(b.channel) || a.level - b.level);
   const rows = [...new Set(sorted.map(rowOf))];
@@ -153,11 +157,7 @@ function heatMap(role, tiles, readout) {
       readout.textContent = tileText(role, tile);
     },
   });
-  return figure(
-    `gap-${role}`,
-    role === 'before' ? 'The model of the campaign' : 'The model with what was missing',
-    h('div', { class: 'scroll' }, map),
-  );
+  return figure(`gap-${role}`, caption, h('div', { class: 'scroll' }, map));
 }
 
 // How far along the bands a value is.

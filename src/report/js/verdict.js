@@ -11,15 +11,14 @@ function verdict(data) {
       fitAnswer(data),
       cleatAnswer(data),
       gapAnswer(discover),
-      ...discover.effects.map(effectAnswer),
+      ...discover.effects.map((effect) => effectAnswer(effect, discover.effects)),
     ]),
   );
   return { element };
 }
 
 function lead({ summary, discover }) {
-  if (summary.verdict === 'found')
-    return `Missing: ${discover.effects.map((effect) => `${words(effect.name)} at ${words(effect.at)}`).join(', and ')}.`;
+  if (summary.verdict === 'found') return `Missing: ${discover.effects.map(placed).join(', and ')}.`;
   return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
 }
 
@@ -28,7 +27,9 @@ function consequence(discover, { verdict: kind }, likely) {
     discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
   const [which, gap] = judged;
   const before = `${number(gap.before)} times its uncertainty`;
-  const rival = discover.effects[0] && discover.effects[0].rivals[0];
+  const [best, ...alike] = discover.effects.filter((effect) => effect.one_of);
+  const [chosen] = best ? [best] : discover.effects;
+  const rival = chosen && chosen.rivals[0];
   const next = rival
     ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${number(rival.behind, 2)} behind in the sum of squares, scaled to the scatter that is left.`
     : '';
@@ -41,10 +42,32 @@ function consequence(discover, { verdict: kind }, likely) {
     case 'found':
       return `On ${which} runs the model left a gap of ${before}; with what was missing, ${number(gap.after)} is left, and 1 is noise.${next}`;
     case 'class':
-      return `On ${which} runs the model leaves a gap of ${before}. Several effects close it alike, and these data cannot tell them apart.`;
+      return `On ${which} runs the model left a gap of ${before}; with ${added(discover.effects)} ${number(gap.after)} is left, and 1 is noise. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained as well, so that no model file is written.${next}`;
     default:
       return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.${place}`;
   }
+}
+
+function placed(effect) {
+  return `${words(effect.name)} at ${words(effect.at)}`;
+}
+
+// Of several that the data cannot tell apart it is one.
+function effectTitle(effect, effects) {
+  if (!effect.one_of) return placed(effect);
+  return `${effect === oneOf(effects) ? 'Either' : 'Or'} ${placed(effect)}`;
+}
+
+// The best of those.
+function oneOf(effects) {
+  return effects.find((effect) => effect.one_of);
+}
+
+// What the model after has beside the one before; `null` where that is nothing.
+function added(effects) {
+  const own = effects.filter((effect) => !effect.one_of || effect === oneOf(effects));
+  if (!own.length) return null;
+  return oneOf(effects) ? own.map(placed).join(' and ') : 'what was missing';
 }
 
 // A value before and after in the colours of both.
@@ -99,11 +122,11 @@ function gapAnswer({ gap, effects }) {
   return answer('Gap over its uncertainty', line('fitted', gap.fit), line('held out', gap.held_out));
 }
 
-function effectAnswer(effect) {
+function effectAnswer(effect, effects) {
   const lines = Object.entries(effect.parameters)
     .filter(([name]) => effect.stderr[name] !== null)
     .map(([name, value]) =>
       h('p', {}, h('span', { class: 'what' }, name), ' ', measured(value, effect.stderr[name], effect.units[name])),
     );
-  return answer(`${words(effect.name)} at ${words(effect.at)}`, lines);
+  return answer(effectTitle(effect, effects), lines);
 }

@@ -1,5 +1,6 @@
 //! What was discovered, as text for people and as JSON for programs.
 
+use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -35,6 +36,8 @@ struct Effect<'a> {
     name: &'a str,
     at: &'a str,
     form: Option<&'a str>,
+    /// Whether it is a member of a class.
+    one_of: bool,
     parameters: Ordered<f64>,
     stderr: Ordered<Option<f64>>,
     units: &'a BTreeMap<String, String>,
@@ -113,7 +116,8 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .findings
             .iter()
             .zip(&of.units)
-            .map(|(finding, units)| effect(of, finding, units))
+            .enumerate()
+            .map(|(place, own)| effect(of, place, own))
             .collect(),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
@@ -141,7 +145,11 @@ fn missing(of: &Answer) -> Vec<Missing> {
     }
 }
 
-fn effect<'a>(of: &'a Answer, finding: &'a Finding, units: &'a BTreeMap<String, String>) -> Effect<'a> {
+fn effect<'a>(
+    of: &'a Answer,
+    place: usize,
+    (finding, units): (&'a Finding, &'a BTreeMap<String, String>),
+) -> Effect<'a> {
     let alone = of.discovery.findings.len() == 1;
     let each = |value: fn(&(String, f64, f64)) -> f64| {
         let named = finding.parameters.iter().map(move |p| (p.0.clone(), value(p)));
@@ -151,6 +159,7 @@ fn effect<'a>(of: &'a Answer, finding: &'a Finding, units: &'a BTreeMap<String, 
         name: &finding.effect,
         at: &finding.at,
         form: finding.form.as_deref(),
+        one_of: place >= of.discovery.told_apart().0.len(),
         parameters: each(|p| p.1).into_iter().collect(),
         stderr: each(|p| p.2)
             .into_iter()
@@ -234,8 +243,8 @@ pub(super) fn text(of: &Answer) -> String {
         gaps.row(vec![name.into(), number(before, 3), number(after, 3)]);
     }
     out += &gaps.text();
-    for (finding, units) in of.discovery.findings.iter().zip(&of.units) {
-        out += &format!("\n{}", described(finding, units));
+    for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
+        out += &format!("\n{}{}", choice(of, place), described(finding, units));
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
@@ -255,18 +264,33 @@ pub(super) fn text(of: &Answer) -> String {
 
 /// The verdict in words.
 pub(crate) fn sentence(of: &Answer) -> String {
-    let names: Vec<String> = of
-        .discovery
-        .findings
-        .iter()
-        .map(|f| format!("{} at {}", f.effect, f.at))
-        .collect();
+    let (found, class) = of.discovery.told_apart();
     match of.discovery.verdict {
         Verdict::None => "nothing is missing, what is left is noise".into(),
-        Verdict::Found => format!("found {}", names.join(" and ")),
-        Verdict::Class => format!("these data cannot tell apart {}", names.join(", ")),
+        Verdict::Found => format!("found {}", listed(found)),
+        Verdict::Class if found.is_empty() => format!("these data cannot tell apart {}", listed(class)),
+        Verdict::Class => format!(
+            "found {}, and beside it these data cannot tell apart {}",
+            listed(found),
+            listed(class)
+        ),
         Verdict::Unknown => "something is missing, and no effect of the catalogue explains it".into(),
     }
+}
+
+/// What comes before the name of a finding that is one of several.
+pub(crate) fn choice(of: &Answer, place: usize) -> &'static str {
+    let found = of.discovery.told_apart().0.len();
+    match place.cmp(&found) {
+        Ordering::Less => "",
+        Ordering::Equal => "either ",
+        Ordering::Greater => "or ",
+    }
+}
+
+fn listed(findings: &[Finding]) -> String {
+    let names = findings.iter().map(|own| format!("{} at {}", own.effect, own.at));
+    names.collect::<Vec<_>>().join(" and ")
 }
 
 fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::gather::{Study, Track};
 use super::rig::Ratio;
 use crate::table::{Table, number, or_dash};
-use crate::verbs::discover::render::sentence;
+use crate::verbs::discover::render::{choice, sentence};
 use crate::verbs::simulate::compared::Sizes;
 
 /// The answer.
@@ -72,7 +72,7 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
         let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
     let _ = write!(out, "\n{}", gaps(of));
-    for (finding, units) in of.answer.discovery.findings.iter().zip(&of.answer.units) {
+    for (place, (finding, units)) in of.answer.discovery.findings.iter().zip(&of.answer.units).enumerate() {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
         let value = |(name, value, error): &(String, f64, f64)| {
             let unit = units.get(name).filter(|unit| *unit != "1");
@@ -80,7 +80,8 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
             format!("{name} = {} ± {}{unit}", number(*value, 4), number(*error, 2))
         };
         let values: Vec<String> = known.map(value).collect();
-        let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, values.join(", "));
+        let (choice, values) = (choice(&of.answer, place), values.join(", "));
+        let _ = writeln!(out, "\n{choice}{} at {}: {values}", finding.effect, finding.at);
     }
     if let Some(file) = of.answer.model.as_ref().and_then(|model| model.file.as_ref()) {
         let _ = writeln!(out, "model:  {}", file.display());

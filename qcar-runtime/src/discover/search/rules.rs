@@ -193,8 +193,8 @@ impl<'a> Judge<'a> {
         contenders[pick..].iter().filter(alike)
     }
 
-    /// What is told of a contender.
-    pub fn finding(&self, state: &State, contender: &Contender, field: &Field) -> Finding {
+    /// What is told of a contender, from which some others cannot be told.
+    pub fn finding(&self, state: &State, contender: &Contender, alike: &[&Contender], field: &Field) -> Finding {
         Finding {
             effect: contender.candidate.effect.clone(),
             at: contender.candidate.at.clone(),
@@ -202,7 +202,7 @@ impl<'a> Judge<'a> {
             parameters: contender.parameters.clone(),
             evidence: state.explanation.refit.chi2 - contender.explanation.refit.chi2,
             closed: self.closed(&state.explanation, &contender.explanation),
-            rivals: rivals(contender, field),
+            rivals: rivals(contender, alike, field),
         }
     }
 
@@ -233,10 +233,12 @@ fn vague(contender: &Contender) -> f64 {
     VAGUE * (refit.chi2 - refit.residuals as f64).max(0.0)
 }
 
-/// All that was fitted to the end beside the chosen one, and the best of the others: some, and a sensor in any case.
-fn rivals(chosen: &Contender, field: &Field) -> Vec<Rival> {
-    let mut met = BTreeSet::from([(&chosen.candidate.effect, &chosen.candidate.at)]);
-    let (mut rivals, mut has_sensor) = (Vec::new(), chosen.candidate.is_sensor());
+/// All that was fitted to the end beside the chosen one and those like it, and the best of the others: some, and a sensor in
+/// any case.
+fn rivals(chosen: &Contender, alike: &[&Contender], field: &Field) -> Vec<Rival> {
+    let names = alike.iter().map(|own| (&own.candidate.effect, &own.candidate.at));
+    let mut met: BTreeSet<_> = names.collect();
+    let (mut rivals, mut has_sensor) = (Vec::new(), alike.iter().any(|own| own.candidate.is_sensor()));
     for other in &field.contenders {
         if met.insert((&other.candidate.effect, &other.candidate.at)) {
             let behind = (other.score - chosen.score) / chosen.explanation.scatter();

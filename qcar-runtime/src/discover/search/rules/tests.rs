@@ -1,23 +1,26 @@
 //! What earns a name, of explanations with given gaps.
 
 use super::super::state::made::{RESIDUALS, contender, leaving, state, two_sweeps, with_chi2};
-use super::{Contender, Explanation, Finding, Judge, Path};
+use super::{Contender, Explanation, Field, Finding, Judge, Path};
 use crate::discover::nuisance::SENSOR;
 
-/// With so many effects that leave this.
-fn path(explanation: Explanation, effects: usize) -> Path {
-    let finding = Finding {
-        effect: "effect".into(),
+fn finding(effect: &str) -> Finding {
+    Finding {
+        effect: effect.into(),
         at: "wheel".into(),
         form: None,
         parameters: Vec::new(),
         evidence: 0.0,
         closed: 0.0,
         rivals: Vec::new(),
-    };
+    }
+}
+
+/// With so many effects that leave this.
+fn path(explanation: Explanation, effects: usize) -> Path {
     Path {
         state: state(explanation),
-        findings: vec![finding; effects],
+        findings: vec![finding("effect"); effects],
         class: Vec::new(),
     }
 }
@@ -52,6 +55,51 @@ fn what_contains_the_best_and_explains_no_more_is_no_other_answer() {
         names(judge.alike(&contenders, 0)),
         ["best", "as simple", "explains more"]
     );
+}
+
+/// Those of a class are no rivals of each other.
+#[test]
+fn the_next_best_explanations_are_those_beyond_a_class() {
+    let (evidence, before) = (two_sweeps(), leaving(10.0));
+    let judge = Judge::new(&evidence, &before);
+    let contenders = [("best", 1.0), ("alike", 1.1), ("next", 3.0)]
+        .map(|(name, gap)| contender(name, 1, leaving(gap)))
+        .into();
+    let field = Field {
+        contenders,
+        dropped: Vec::new(),
+    };
+    let alike: Vec<&Contender> = field.contenders[..2].iter().collect();
+    for member in &alike {
+        let rivals = judge.finding(&state(leaving(10.0)), member, &alike, &field).rivals;
+        assert_eq!(
+            rivals.iter().map(|own| own.effect.as_str()).collect::<Vec<_>>(),
+            ["next"]
+        );
+    }
+}
+
+/// What was found before a class is part of the answer, and no member of it.
+#[test]
+fn members_of_a_class_come_after_what_was_found_before_it() {
+    let of = |class: &[&str]| {
+        let path = Path {
+            findings: vec![finding("first"), finding("best")],
+            class: class.iter().copied().map(finding).collect(),
+            ..path(leaving(1.0), 0)
+        };
+        let (findings, alike) = path.named();
+        (
+            findings
+                .into_iter()
+                .map(|own| own.effect)
+                .collect::<Vec<_>>()
+                .join(", "),
+            alike,
+        )
+    };
+    assert_eq!(of(&["best", "alike"]), ("first, best, alike".into(), 2));
+    assert_eq!(of(&["best"]), ("first, best".into(), 0));
 }
 
 /// What leaves something unexplained cannot judge differences below a twentieth of that.
