@@ -1,14 +1,16 @@
 //! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
 
+#[path = "support/swept.rs"]
+mod swept;
+
 use std::fs;
-use std::io::Read;
 use std::path::Path;
 use std::process::Command;
 
-use flate2::read::GzDecoder;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::{Order, make};
 use serde_json::Value;
+use swept::{swept, two_sensors};
 
 /// Runs `qcar discover` on a campaign.
 fn discover(campaign: &Path, out: Option<&Path>) -> Value {
@@ -262,36 +264,6 @@ fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
     assert_near(&answer, &truth);
 }
 
-/// The sweeps of the shipped rig, with every sample of a column changed.
-fn swept(folder: &Path, changed: &mut dyn FnMut(&str, f64) -> f64) {
-    let shipped = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
-    fs::create_dir(folder.join("rig")).expect("a folder");
-    for level in ["025", "050", "100"] {
-        let file = format!("rig/sweep_{level}.csv.gz");
-        let mut text = String::new();
-        let packed = fs::File::open(shipped.join(&file)).expect("it is shipped");
-        GzDecoder::new(packed).read_to_string(&mut text).expect("text");
-        let mut lines = text.lines();
-        let names: Vec<&str> = lines.next().expect("a header").split(',').collect();
-        let mut out = names.join(",") + "\n";
-        for line in lines {
-            let cells = names.iter().zip(line.split(','));
-            let cells = cells.map(|(name, cell)| match *name {
-                "time" => cell.to_owned(),
-                name => format!("{:.5}", changed(name, cell.parse().expect("a number"))),
-            });
-            out += &(cells.collect::<Vec<_>>().join(",") + "\n");
-        }
-        fs::write(folder.join(format!("rig/sweep_{level}.csv")), out).expect("a new file");
-    }
-    let manifest = fs::read_to_string(shipped.join("campaign.toml")).expect("it is shipped");
-    let runs = manifest
-        .split("[[run]]")
-        .filter(|run| !run.contains("kind =") || run.contains("\"sweep\""));
-    let manifest = runs.collect::<Vec<_>>().join("[[run]]").replace(".csv.gz", ".csv");
-    fs::write(folder.join("campaign.toml"), manifest).expect("a new file");
-}
-
 /// The manifest of such a campaign, changed.
 fn edit(folder: &Path, change: impl Fn(&str) -> String) {
     let file = folder.join("campaign.toml");
@@ -308,7 +280,7 @@ fn refusal(campaign: &Path) -> String {
 }
 
 /// Uniform numbers by a linear congruence.
-fn noise() -> impl FnMut() -> f64 {
+pub fn noise() -> impl FnMut() -> f64 {
     let mut state = 11_u64;
     move || {
         state = state
@@ -378,16 +350,11 @@ fn sensors_that_contradict_each_other_are_no_effect() {
     );
 }
 
-/// Of pad and wheel alone a ratio is seen, and nobody can say which of both shows too much or too little.
+/// Nobody can say whether the wheel's sensor shows too much or the pad's too little.
 #[test]
 fn two_sensors_of_which_one_is_wrong_are_a_class() {
     let folder = tempfile::tempdir().expect("a folder");
-    let mut noise = noise();
-    swept(folder.path(), &mut |name, value| match name.split('_').next() {
-        Some("pad") => value,
-        Some("wheel") => 1.06 * value,
-        _ => noise(),
-    });
+    two_sensors(folder.path());
     let answer = discover(folder.path(), None);
     assert_eq!(answer["verdict"], "class", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");

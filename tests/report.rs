@@ -1,11 +1,15 @@
 //! The report as a reader meets it: in a browser, wide and narrow, light and dark, without a network.
 
+#[path = "support/swept.rs"]
+mod swept;
+
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
+use swept::two_sensors;
 
 const PROBE: &str = include_str!("browser/probe.js");
 
@@ -59,6 +63,49 @@ fn the_report_is_whole_in_a_browser() {
             assert!(map.contains("times the uncertainty"), "{place}");
             assert_eq!(verdict == "found", figures(&found).contains(&"gap-after"), "{said}");
         }
+    }
+}
+
+/// What is after is with the best of several that the data cannot tell apart, and each of them is one of these.
+#[test]
+fn a_class_is_told_as_one_of_several() {
+    let Some(browser) = browser_or_word() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let (campaign, out) = (folder.path().join("campaign"), folder.path().join("out"));
+    fs::create_dir(&campaign).unwrap();
+    two_sensors(&campaign);
+    let said = qcar(&["study", campaign.to_str().unwrap()], &out);
+    let result: Value = serde_json::from_str(&fs::read_to_string(out.join("study.json")).unwrap()).unwrap();
+    let [best, other] = [0, 1].map(|place| {
+        let own = &result["discover"]["effects"][place];
+        format!("sensor gain at {}", own["at"].as_str().unwrap())
+    });
+    for (width, theme) in PAGES {
+        let found = look(&browser, &out, width, theme);
+        let place = format!("{width} px, {theme}: {found} {said}");
+        check(
+            &found,
+            (width, &place),
+            &["rig-magnitude", "modes-before", "gap-before", "gap-after"],
+        );
+        let has = |list: &str, text: String| found[list].as_array().unwrap().contains(&Value::String(text));
+        assert!(
+            has(
+                "paragraphs",
+                format!("These data cannot tell apart {best} and {other}.")
+            ),
+            "{place}"
+        );
+        assert!(
+            has("headings", format!("Either {best}")) && has("headings", format!("Or {other}")),
+            "{place}"
+        );
+        assert!(has("captions", format!("The model with {best}")), "{place}");
+        let consequence = found["paragraphs"][1].as_str().unwrap();
+        assert!(
+            consequence.contains(&format!("With {other} instead the fitted runs are explained as well")),
+            "{place}"
+        );
     }
 }
 

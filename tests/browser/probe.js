@@ -24,6 +24,9 @@
     found.cut = [...document.querySelectorAll('.table')]
       .filter((table) => table.scrollWidth > table.clientWidth + 1)
       .map((table) => table.getAttribute('aria-label'));
+    found.headings = [...document.querySelectorAll('h3')].map((heading) => heading.textContent);
+    found.captions = [...document.querySelectorAll('figcaption')].map((caption) => caption.textContent);
+    found.paragraphs = [...document.querySelectorAll('#verdict > p')].map((paragraph) => paragraph.textContent);
     found.keyboard = keyboard();
     found.themes = themes();
     parent.postMessage(JSON.stringify(found), '*');
