@@ -36,8 +36,6 @@ const ALL_CLOSED: f64 = 0.97;
 const ACCOUNTED: f64 = 0.95;
 /// A rival that is no farther behind cannot be told apart.
 const ALIKE: f64 = 20.0;
-/// By so much an unknown without any use lowers the sum of squares, in units of the scatter, in one case of twenty.
-const BY_CHANCE: f64 = 4.0;
 /// An explanation that leaves something unexplained is no judge of differences below this share of it.
 const VAGUE: f64 = 0.05;
 /// So many rivals are told of at least, those that were left behind early among them.
@@ -177,15 +175,14 @@ impl<'a> Judge<'a> {
         contenders[..=place].rotate_right(1);
     }
 
-    /// Those that cannot be told from the one that is picked, itself included. One with more unknowns that explains no
-    /// more contains it, and is no other answer.
+    /// Those that cannot be told from the one that is picked, itself included. One with more unknowns that are not worth
+    /// their penalty contains it, and is no other answer.
     pub fn alike<'c>(&self, contenders: &'c [Contender], pick: usize) -> impl Iterator<Item = &'c Contender> {
         let best = &contenders[pick];
         let near = (ALIKE * best.explanation.scatter()).max(vague(best));
         let alike = move |contender: &&Contender| {
             let lowered = best.explanation.refit.chi2 - contender.explanation.refit.chi2;
-            let more = contender.unknowns().saturating_sub(best.unknowns()) as f64;
-            let explains_more = lowered > vague(best).max(BY_CHANCE * more * best.explanation.scatter());
+            let explains_more = lowered > vague(best) && contender.score < best.score;
             let is_it = std::ptr::eq(*contender, best);
             let is_near = contender.score - best.score < near;
             is_it || is_near && (contender.unknowns() <= best.unknowns() || explains_more)
