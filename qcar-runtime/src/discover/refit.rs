@@ -170,7 +170,7 @@ pub fn refit_with(
 /// Where the model lacks what was measured.
 pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
     let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
-    if model.about().linear || !evidence.of_role(Role::Fit).any(swept) {
+    if !evidence.of_role(Role::Fit).any(swept) {
         return Ok(refit);
     }
     let mut posterior = Posterior::new(
@@ -190,7 +190,7 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
     Ok(settled)
 }
 
-/// Rounds of a refit with what its sweeps add to their balance: the second has it from where the first arrived.
+/// Rounds of a refit with what its sweeps add to their steady harmonics: the second has it from where the first arrived.
 const ROUNDS: usize = 2;
 /// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
 const TO_SETTLE: usize = 20;

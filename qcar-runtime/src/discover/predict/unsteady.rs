@@ -1,30 +1,35 @@
 //! What a swept sine shows beyond the steady harmonics at each of its frequencies.
 //!
-//! A sweep never settles: friction remembers where it was, and lightly damped modes ring on. And a balance of few
-//! harmonics cuts off what sharp laws do. Both are small against the response and change little with the parameters. So
-//! the measured motion of the pad is replayed through the model, the responses are read from it by the estimator that
-//! read the measurement, and how much they differ from the balance is added to the balance wherever a search goes.
+//! A sweep never settles: friction remembers where it was, and lightly damped modes ring on. A balance of few harmonics
+//! cuts off what sharp laws do. And near the ends of a sweep the estimator takes a little of one harmonic for another. All
+//! are small against the response and change little with the parameters. So the measured motion of the pad is replayed
+//! through the model, the responses are read from it by the estimator that read the measurement, and how much they differ
+//! from the steady harmonics is added to these wherever a search goes.
+
+use std::collections::BTreeMap;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
 
 use super::input::{Between, Recorded};
 use super::replay::{Reading, Replay, reading};
-use super::{Misread, PredictError, excitation, nonlinear};
+use super::{Misread, PredictError, excitation, linear, nonlinear};
 use crate::campaign::Role;
 use crate::discover::evidence::sweep::{AROUND, ORDERS};
 use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
-use crate::model::Model;
+use crate::model::{Model, Signal};
 use crate::response::parameters::Values;
+use crate::response::ratio::ratio;
 use crate::response::signal::SignalError;
+use crate::spectrum::{synthesize, transform};
+use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
 
 /// A sweep is faded in and out beyond its band by this factor, and friction remembers its slow parts; what lies farther
 /// out is noise of the pad's sensor.
 const BEYOND: f64 = 4.0;
 
-/// For each series what the sweeps of the runs of one role add to the balance; nothing for series of other runs, and for
-/// all of a linear model.
+/// For each series what the sweeps of the runs of one role add to the steady harmonics; nothing for series of other runs.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
@@ -36,9 +41,6 @@ pub fn unsteady(
     role: Role,
 ) -> Result<Vec<Vec<Complex<f64>>>, PredictError> {
     let mut added = vec![Vec::new(); evidence.series.len()];
-    if model.about().linear {
-        return Ok(added);
-    }
     let runs: Vec<usize> = (0..evidence.runs.len())
         .filter(|&run| evidence.runs[run].role == role)
         .collect();
@@ -71,34 +73,101 @@ fn of_run(
     else {
         return Ok(Vec::new());
     };
-    let signal: Vec<f64> = signal.iter().map(|sample| louder * sample).collect();
-    let recorded = Recorded {
-        excitation: excitation(model, evidence, run, reference)?,
-        power: order_of(reference),
-        samples: &signal,
-    };
-    let how = Between {
-        rate: *rate,
-        band_limited: true,
-        band: (band.0 / BEYOND, band.1 * BEYOND),
-        nodes: 0,
-    };
-    let balanced = nonlinear::sweep(model, values, louder, &[], evidence, run)?;
     let about = model.about();
-    let sensors = balanced
+    let steady = if about.linear {
+        linear::sweep(model, values, &[], evidence, run)?
+    } else {
+        nonlinear::sweep(model, values, louder, &[], evidence, run)?
+    };
+    let sensors = steady
         .iter()
         .map(|p| signal_of(about, &evidence.series[p.series].sensor));
-    let readings: Vec<Reading> = sensors
-        .map(|signal| reading(about, &signal))
-        .collect::<Result<_, SignalError>>()?;
-    let replayed = Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice());
-    let swept = Swept::new(&signal, *rate, *band, ORDERS);
-    let differences = balanced.into_par_iter().zip(replayed).map(|(balanced, replayed)| {
-        let seen = seen(&swept, &replayed, &evidence.series[balanced.series]);
-        let differences = seen.iter().zip(&balanced.value).map(|(seen, balanced)| seen - balanced);
-        (balanced.series, differences.collect())
+    let driven = Driven {
+        excitation: excitation(model, evidence, run, reference)?,
+        reference,
+        samples: &signal.iter().map(|sample| louder * sample).collect::<Vec<_>>(),
+        rate: *rate,
+        band: (band.0 / BEYOND, band.1 * BEYOND),
+    };
+    let shown = if about.linear {
+        driven.answered(model, values, &sensors.collect::<Vec<_>>())?
+    } else {
+        driven.replayed(model, values, &sensors.collect::<Vec<_>>())?
+    };
+    let swept = Swept::new(driven.samples, *rate, *band, ORDERS);
+    let differences = steady.into_par_iter().zip(shown).map(|(steady, shown)| {
+        let seen = seen(&swept, &shown, &evidence.series[steady.series]);
+        let differences = seen.iter().zip(&steady.value).map(|(seen, steady)| seen - steady);
+        (steady.series, differences.collect())
     });
     Ok(differences.collect())
+}
+
+/// What the pad did in a sweep, from rest.
+struct Driven<'a> {
+    excitation: usize,
+    reference: &'a Point,
+    samples: &'a [f64],
+    rate: f64,
+    /// Hz: what lies outside is not motion but noise.
+    band: (f64, f64),
+}
+
+impl Driven<'_> {
+    /// What sensors then show of a model whose laws bend.
+    fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+        let recorded = Recorded {
+            excitation: self.excitation,
+            power: order_of(self.reference),
+            samples: self.samples,
+        };
+        let how = Between {
+            rate: self.rate,
+            band_limited: true,
+            band: self.band,
+            nodes: 0,
+        };
+        let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
+        let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
+        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice()))
+    }
+
+    /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would
+    /// stand at its beginning, were the record not continued by silence.
+    fn answered(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+        let length = 2 * self.samples.len();
+        let mut continued = self.samples.to_vec();
+        continued.resize(length, 0.0);
+        let (lines, spacing) = (transform(&continued), self.rate / length as f64);
+        let first = (self.band.0 / spacing).ceil() as usize;
+        let inside = first..((self.band.1 / spacing) as usize).clamp(first, lines.len());
+        let at: Vec<f64> = inside.clone().map(|line| line as f64 * spacing).collect();
+        let below = signal_of(model.about(), self.reference);
+        let answer = |sensor: &Signal| {
+            let response = ratio(model, values, self.excitation, sensor, &below, &at)?;
+            let mut answer = vec![Complex::ZERO; lines.len()];
+            for ((answer, line), response) in answer[inside.clone()]
+                .iter_mut()
+                .zip(&lines[inside.clone()])
+                .zip(response.value)
+            {
+                *answer = line * response;
+            }
+            let mut shown = synthesize(&answer, length);
+            shown.truncate(self.samples.len());
+            Ok(shown)
+        };
+        // A sensor has a series for each harmonic, of one and the same signal.
+        let first = |sensor: &Signal| sensors.iter().position(|other| other == sensor);
+        let is_first = |place: &usize| first(&sensors[*place]) == Some(*place);
+        let different: Vec<usize> = (0..sensors.len()).filter(is_first).collect();
+        let shown = different.par_iter().map(|&place| Ok((place, answer(&sensors[place])?)));
+        let shown: BTreeMap<usize, Vec<f64>> = shown.collect::<Result<_, SignalError>>()?;
+        Ok(sensors
+            .iter()
+            .filter_map(|sensor| shown.get(&first(sensor)?).cloned())
+            .collect())
+    }
 }
 
 /// The values of a series in a replayed signal.

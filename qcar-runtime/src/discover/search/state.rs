@@ -10,7 +10,7 @@ use super::rules::{NOISE, Wanted};
 use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::evidence::Evidence;
+use crate::discover::evidence::{Evidence, Stimulus};
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
 use crate::discover::nuisance::{Form, Nuisance};
 use crate::discover::predict::PredictError;
@@ -25,6 +25,8 @@ const LEAST_TOLERANCE: f64 = 0.003;
 /// A run whose gap, or sum of squares, is more than this share of the largest is worth a first look: what a few values show
 /// clearly and what many show together.
 const MUCH: f64 = 0.25;
+/// A ride takes the time of many sweeps, and in a first look so many tell enough.
+const RIDES: usize = 2;
 
 /// What is known so far.
 #[derive(Clone)]
@@ -256,8 +258,8 @@ impl State {
         }
     }
 
-    /// Fitted runs in which the gap is wide or heavy. Where it is next to noise, no run stands out: then one of each
-    /// kind.
+    /// Fitted runs in which the gap is wide or heavy, but no more than [`RIDES`] over obstacles, the widest. Where it is next
+    /// to noise, no run stands out: then one of each kind.
     fn telling(&self, evidence: &Evidence) -> Vec<usize> {
         let runs = self.explanation.gap.by_run(evidence);
         let is_fitted = |run: &usize| evidence.runs[*run].role == Role::Fit && runs[*run].0.is_finite();
@@ -269,6 +271,13 @@ impl State {
             let widest = fitted.iter().map(|&run| width(run)).fold(0.0, f64::max);
             let heaviest = fitted.iter().map(|&run| weight(run)).fold(0.0, f64::max);
             fitted.retain(|&run| width(run) > MUCH * widest || weight(run) > MUCH * heaviest);
+            fitted.sort_by(|&a, &b| width(b).total_cmp(&width(a)));
+            let mut rides = 0;
+            fitted.retain(|&run| {
+                let is_ride = matches!(evidence.runs[run].stimulus, Stimulus::Cleat(_));
+                rides += usize::from(is_ride);
+                !is_ride || rides <= RIDES
+            });
             return fitted;
         }
         fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
