@@ -130,9 +130,14 @@ pub fn discover(
     }
     progress(News::Doing("fitting the base model"));
     let base = State::base(workshop, setting, evidence, progress)?;
+    let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
+    progress(News::Known(&alone, &[], &base.explanation));
+    let start = base.explanation.clone();
+    let judge = Judge::new(evidence, &start);
+    let mut first = base.contenders(&judge.wanted_first(&base), evidence, progress)?;
+    judge.simplest_first(&mut first.contenders);
+    let base = base.led_by(first.contenders.first(), evidence)?;
     let before = base.explanation.clone();
-    let alone = format!("the model alone leaves a gap of {}", told(&before));
-    progress(News::Known(&alone, &[], &before));
     let judge = Judge::new(evidence, &before);
     let verdict = |verdict, (findings, alike), after: &Explanation| Discovery {
         visible: match verdict {
@@ -151,8 +156,6 @@ pub fn discover(
     } else {
         Verdict::None
     };
-    let mut first = base.contenders(&judge.wanted_first(&base), evidence, progress)?;
-    judge.simplest_first(&mut first.contenders);
     let mut best: Option<Path> = None;
     for pick in (0..first.contenders.len())
         .filter(|&pick| judge.is_significant(&base, &first.contenders[pick]))
@@ -172,6 +175,10 @@ pub fn discover(
     }
     let Some(path) = best else {
         return Ok(verdict(unexplained, (Vec::new(), 0), &before));
+    };
+    let path = match judge.is_enough(&path) {
+        true => path,
+        false => path.afresh(&base, evidence, progress)?,
     };
     if !judge.is_enough(&path) {
         return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
@@ -235,6 +242,7 @@ impl Path {
             let wanted = judge.wanted_beside(&self, more);
             let mut field = self.state.contenders(&wanted, evidence, progress)?;
             judge.simplest_first(&mut field.contenders);
+            self.state = self.state.led_by(field.contenders.first(), evidence)?;
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best, self.findings.len() + 1),
@@ -259,6 +267,18 @@ impl Path {
 
     fn score(&self) -> f64 {
         self.state.score()
+    }
+
+    /// Fitted from the campaign's values, where that ends at a better place: what the model without its effects came to,
+    /// from which they were looked for, may lie beyond a ridge.
+    fn afresh(mut self, base: &State, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
+        progress(News::Doing("fitting all of it from the start"));
+        let afresh = base.with_all(&self.findings, None, evidence, progress)?;
+        if let Some(state) = afresh.filter(|state| state.score() < self.score()) {
+            self.state = state;
+            self.state.update(&mut self.findings);
+        }
+        Ok(self)
     }
 
     /// What was found, and how many of the last cannot be told apart; none of one alone.
@@ -290,7 +310,7 @@ impl Path {
                 "trying without {} at {}",
                 self.findings[place].effect, self.findings[place].at
             )));
-            let state = base.with_all(&others, &self.state, evidence, progress)?;
+            let state = base.with_all(&others, Some(&self.state), evidence, progress)?;
             match state {
                 Some(state) if !judge.is_missed(&self.state, &state) => {
                     self.state = state;

@@ -29,7 +29,8 @@ use crate::transmissibility::harmonics::Swept;
 /// out is noise of the pad's sensor.
 const BEYOND: f64 = 4.0;
 
-/// For each series what the sweeps of the runs of one role add to the steady harmonics; nothing for series of other runs.
+/// For each series what the sweeps of the runs of one role add to the steady harmonics; nothing for series of other runs,
+/// and of sweeps whose record is not at hand.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
@@ -73,6 +74,9 @@ fn of_run(
     else {
         return Ok(Vec::new());
     };
+    if signal.is_empty() {
+        return Ok(Vec::new());
+    }
     let about = model.about();
     let steady = if about.linear {
         linear::sweep(model, values, &[], evidence, run)?

@@ -25,6 +25,10 @@ const LEAST_TOLERANCE: f64 = 0.003;
 /// A run whose gap, or sum of squares, is more than this share of the largest is worth a first look: what a few values show
 /// clearly and what many show together.
 const MUCH: f64 = 0.25;
+/// Evaluations of a fit from where another model ended,
+const TO_FOLLOW: usize = 25;
+/// and the share of the sum of squares from which on its end is another place.
+const WORTH: f64 = 1e-3;
 /// A ride takes the time of many sweeps, and in a first look so many tell enough.
 const RIDES: usize = 2;
 
@@ -163,7 +167,7 @@ impl State {
         progress(News::Doing(&what));
         let known = self.known();
         let mut entrants = vec![Entrant {
-            explanandum: self.unchanged(&known),
+            explanandum: self.unchanged(Some(&known)),
             unknowns: 0,
             name: "no change".into(),
         }];
@@ -228,12 +232,12 @@ impl State {
     }
 
     /// The present model itself.
-    fn unchanged<'a>(&'a self, known: &'a BTreeMap<String, f64>) -> Explanandum<'a> {
+    fn unchanged<'a>(&'a self, known: Option<&'a BTreeMap<String, f64>>) -> Explanandum<'a> {
         Explanandum {
             model: self.workshop.model(),
             added: &[],
             setting: &self.setting,
-            known: Some(known),
+            known,
             nuisance: self.nuisance.clone(),
         }
     }
@@ -354,14 +358,37 @@ impl State {
         state
     }
 
-    /// With all of these effects in the model, refitted from `known` values; `None` where they do not go together.
+    /// The same model refitted from where a contender ended, if that is a better place: what an effect gains by leading a
+    /// search there is not its own.
+    ///
+    /// # Errors
+    /// Where a parameter has no value.
+    pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Result<Self, PredictError> {
+        let Some(contender) = contender else { return Ok(self) };
+        let known: BTreeMap<String, f64> = contender.explanation.named.iter().cloned().collect();
+        let explanandum = self.unchanged(Some(&known));
+        let Some(start) = explanandum.starts()?.into_iter().nth(1) else {
+            return Ok(self);
+        };
+        let steady = evidence.less(&self.explanation.refit.unsteady);
+        let refit = explanandum.refit(&start, Some(&self.explanation.refit), &steady, TO_FOLLOW)?;
+        if refit.chi2 < (1.0 - WORTH) * self.explanation.refit.chi2 {
+            let explanation = explanandum.explanation(refit, evidence)?;
+            if explanation.refit.chi2 < self.explanation.refit.chi2 {
+                self.explanation = explanation;
+            }
+        }
+        Ok(self)
+    }
+
+    /// With all of these effects in the model, refitted from `known` values and those of the campaign; `None` where they do not go together.
     ///
     /// # Errors
     /// Where a parameter has no value.
     pub fn with_all(
         &self,
         findings: &[Finding],
-        known: &State,
+        known: Option<&State>,
         evidence: &Evidence,
         progress: Progress<'_>,
     ) -> Result<Option<Self>, PredictError> {
@@ -377,8 +404,8 @@ impl State {
             let taken = Taken::new(candidate, &nuisance);
             state = state.assuming(candidate, &taken, &nuisance);
         }
-        let values = known.known();
-        let explanandum = state.unchanged(&values);
+        let values = known.map(State::known);
+        let explanandum = state.unchanged(values.as_ref());
         state.explanation = alone(explanandum, evidence, progress)?;
         Ok(Some(state))
     }
