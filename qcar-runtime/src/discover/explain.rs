@@ -7,7 +7,7 @@ use super::evidence::Evidence;
 use super::gap::Gap;
 use super::nuisance::{Form, Nuisance, SENSOR};
 use super::predict::{Free, PredictError};
-use super::refit::{Refit, refit_with, settle};
+use super::refit::{Refit, refit_from, refit_with, settle};
 use crate::campaign::Role;
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
@@ -131,6 +131,37 @@ impl Explanandum<'_> {
         let earlier = earlier.filter(|_| !nuisance.suspects.is_empty());
         nuisance.start = earlier.map_or_else(Vec::new, |earlier| earlier.coefficients.clone());
         refit_with(self.model, values, &self.free(), evidence, nuisance, evaluations)
+    }
+
+    /// Fits from where another explanation ended, as far as it is of the same parameters and sensors.
+    ///
+    /// # Errors
+    /// Where the model lacks what was measured, or a parameter has no value.
+    pub fn refit_from(
+        &self,
+        other: &Explanation,
+        evidence: &Evidence,
+        evaluations: usize,
+    ) -> Result<Refit, PredictError> {
+        let named: BTreeMap<String, f64> = other.named.iter().cloned().collect();
+        let values = self.start(named, &[])?;
+        let free = self.free();
+        let factor = |free: &Free| {
+            let name = &self.model.about().parameters[free.parameter].name;
+            let place = other.named.iter().position(|(known, _)| known == name);
+            place.map_or(0.0, |place| other.refit.factor(place))
+        };
+        let mut errors = other.refit.coefficients.clone();
+        errors.resize(self.nuisance.len(), 0.0);
+        errors.extend(free.iter().map(factor));
+        refit_from(
+            self.model,
+            (&values, &errors),
+            &free,
+            evidence,
+            self.nuisance.clone(),
+            evaluations,
+        )
     }
 
     /// What a refit says of all runs.

@@ -77,6 +77,12 @@ impl Refit {
             .collect()
     }
 
+    /// The logarithm of a parameter's factor on the side that cleat runs record.
+    pub fn factor(&self, parameter: usize) -> f64 {
+        let factor = (self.side.as_slice()[parameter] / self.values.as_slice()[parameter]).ln();
+        if factor.is_finite() { factor } else { 0.0 }
+    }
+
     /// What the fitted residuals scatter by, squared; 1 where only noise is left.
     pub fn scatter(&self) -> f64 {
         (self.chi2 / self.residuals as f64).max(1.0)
@@ -155,9 +161,26 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
+    let errors = nuisance.start.clone();
+    refit_from(model, (values, &errors), free, evidence, nuisance, evaluations)
+}
+
+/// The same from a place that an earlier search came to: values, and the errors of sensors with the logarithms of the
+/// recorded side's factors behind them, zero beyond those that are known.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn refit_from(
+    model: &dyn Model,
+    (values, errors): (&Values, &[f64]),
+    free: &[Free],
+    evidence: &Evidence,
+    nuisance: Nuisance,
+    evaluations: usize,
+) -> Result<Refit, PredictError> {
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
-    start.extend(&posterior.nuisance.start);
+    start.extend(errors);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, evaluations)?;
     Ok(posterior.refit(outcome))
@@ -345,13 +368,7 @@ impl<'a> Posterior<'a> {
 
     /// The place of a refit.
     fn place(&self, refit: &Refit) -> Vec<f64> {
-        let factor =
-            |free: &Free| (refit.side.as_slice()[free.parameter] / refit.values.as_slice()[free.parameter]).ln();
-        let factors = self
-            .free
-            .iter()
-            .map(factor)
-            .map(|factor| if factor.is_finite() { factor } else { 0.0 });
+        let factors = self.free.iter().map(|free| refit.factor(free.parameter));
         let place = refit.estimate.iter().chain(&refit.coefficients).copied();
         place.chain(factors).take(self.variables()).collect()
     }

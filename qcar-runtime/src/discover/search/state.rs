@@ -365,13 +365,9 @@ impl State {
     /// Where a parameter has no value.
     pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Result<Self, PredictError> {
         let Some(contender) = contender else { return Ok(self) };
-        let known: BTreeMap<String, f64> = contender.explanation.named.iter().cloned().collect();
-        let explanandum = self.unchanged(Some(&known));
-        let Some(start) = explanandum.starts()?.into_iter().nth(1) else {
-            return Ok(self);
-        };
+        let explanandum = self.unchanged(None);
         let steady = evidence.less(&self.explanation.refit.unsteady);
-        let refit = explanandum.refit(&start, Some(&self.explanation.refit), &steady, TO_FOLLOW)?;
+        let refit = explanandum.refit_from(&contender.explanation, &steady, TO_FOLLOW)?;
         if refit.chi2 < (1.0 - WORTH) * self.explanation.refit.chi2 {
             let explanation = explanandum.explanation(refit, evidence)?;
             if explanation.refit.chi2 < self.explanation.refit.chi2 {
