@@ -133,7 +133,8 @@ impl Explanandum<'_> {
         refit_with(self.model, values, &self.free(), evidence, nuisance, evaluations)
     }
 
-    /// Fits from where another explanation ended, as far as it is of the same parameters and sensors.
+    /// Fits from where another explanation ended, as far as it is of the same parameters and sensors, and beside that from
+    /// the known values.
     ///
     /// # Errors
     /// Where the model lacks what was measured, or a parameter has no value.
@@ -143,13 +144,18 @@ impl Explanandum<'_> {
         evidence: &Evidence,
         evaluations: usize,
     ) -> Result<Refit, PredictError> {
-        let named: BTreeMap<String, f64> = other.named.iter().cloned().collect();
-        let values = self.start(named, &[])?;
+        let place = |name: &str| other.named.iter().position(|(known, _)| known == name);
+        // An effect may have replaced a law, and its parameters with it; what is tied stays tied.
+        let value = |p: &Given| {
+            let found = place(&p.name).map(|place| other.named[place].1);
+            let known = || self.known?.get(&p.name).copied();
+            (p.name.clone(), found.or_else(known).unwrap_or(p.value))
+        };
+        let values = self.start(self.setting.given.iter().map(value).collect(), &[])?;
         let free = self.free();
         let factor = |free: &Free| {
             let name = &self.model.about().parameters[free.parameter].name;
-            let place = other.named.iter().position(|(known, _)| known == name);
-            place.map_or(0.0, |place| other.refit.factor(place))
+            place(name).map_or(0.0, |place| other.refit.factor(place))
         };
         let mut errors = other.refit.coefficients.clone();
         errors.resize(self.nuisance.len(), 0.0);

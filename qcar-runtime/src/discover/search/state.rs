@@ -365,7 +365,8 @@ impl State {
     /// Where a parameter has no value.
     pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Result<Self, PredictError> {
         let Some(contender) = contender else { return Ok(self) };
-        let explanandum = self.unchanged(None);
+        let known = self.known();
+        let explanandum = self.unchanged(Some(&known));
         let steady = evidence.less(&self.explanation.refit.unsteady);
         let refit = explanandum.refit_from(&contender.explanation, &steady, TO_FOLLOW)?;
         if refit.chi2 < (1.0 - WORTH) * self.explanation.refit.chi2 {
