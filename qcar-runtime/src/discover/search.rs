@@ -136,7 +136,7 @@ pub fn discover(
     let judge = Judge::new(evidence, &start);
     let mut first = base.contenders(&judge.wanted_first(&base), evidence, progress)?;
     judge.simplest_first(&mut first.contenders);
-    let base = base.led_by(first.contenders.first(), evidence)?;
+    let base = base.led_by(first.contenders.first(), evidence);
     let before = base.explanation.clone();
     let judge = Judge::new(evidence, &before);
     let verdict = |verdict, (findings, alike), after: &Explanation| Discovery {
@@ -242,7 +242,7 @@ impl Path {
             let wanted = judge.wanted_beside(&self, more);
             let mut field = self.state.contenders(&wanted, evidence, progress)?;
             judge.simplest_first(&mut field.contenders);
-            self.state = self.state.led_by(field.contenders.first(), evidence)?;
+            self.state = self.state.led_by(field.contenders.first(), evidence);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best, self.findings.len() + 1),

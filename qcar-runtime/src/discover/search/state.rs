@@ -359,26 +359,23 @@ impl State {
     }
 
     /// The same model refitted from where a contender ended, if that is a better place: what an effect gains by leading a
-    /// search there is not its own.
-    ///
-    /// # Errors
-    /// Where a parameter has no value.
-    pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Result<Self, PredictError> {
-        let Some(contender) = contender else { return Ok(self) };
+    /// search there is not its own. Where the model without the effect gives no number there, it stays.
+    pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Self {
         let known = self.known();
         let explanandum = self.unchanged(Some(&known));
-        let steady = evidence.less(&self.explanation.refit.unsteady);
-        let refit = explanandum.refit_from(&contender.explanation, &steady, TO_FOLLOW)?;
-        if refit.chi2 < (1.0 - WORTH) * self.explanation.refit.chi2 {
-            let explanation = explanandum.explanation(refit, evidence)?;
-            if explanation.refit.chi2 < self.explanation.refit.chi2 {
-                self.explanation = explanation;
-            }
-        }
-        Ok(self)
+        let present = &self.explanation.refit;
+        let steady = evidence.less(&present.unsteady);
+        let led = contender
+            .and_then(|own| explanandum.refit_from(&own.explanation, &steady, TO_FOLLOW).ok())
+            .filter(|refit| refit.chi2 < (1.0 - WORTH) * present.chi2)
+            .and_then(|refit| explanandum.explanation(refit, evidence).ok())
+            .filter(|led| led.refit.chi2 < present.chi2);
+        self.explanation = led.unwrap_or(self.explanation);
+        self
     }
 
-    /// With all of these effects in the model, refitted from `known` values and those of the campaign; `None` where they do not go together.
+    /// With all of these effects in the model, refitted from `known` values and those of the campaign; `None` where they do
+    /// not go together.
     ///
     /// # Errors
     /// Where a parameter has no value.
