@@ -137,10 +137,11 @@ impl Driven<'_> {
     }
 
     /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would
-    /// stand at its beginning, were the record not continued by silence.
+    /// stand at its beginning, were the record not continued by silence; what a sensor reads at rest is silence too.
     fn answered(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
         let length = 2 * self.samples.len();
-        let mut continued = self.samples.to_vec();
+        let at_rest = self.samples.iter().sum::<f64>() / self.samples.len() as f64;
+        let mut continued: Vec<f64> = self.samples.iter().map(|sample| sample - at_rest).collect();
         continued.resize(length, 0.0);
         let (lines, spacing) = (transform(&continued), self.rate / length as f64);
         let first = (self.band.0 / spacing).ceil() as usize;
