@@ -178,7 +178,7 @@ pub fn discover(
     };
     let path = match judge.is_enough(&path) {
         true => path,
-        false => path.afresh(&base, evidence, progress)?,
+        false => path.afresh(&base, &judge, evidence, progress),
     };
     if !judge.is_enough(&path) {
         return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
@@ -242,7 +242,8 @@ impl Path {
             let wanted = judge.wanted_beside(&self, more);
             let mut field = self.state.contenders(&wanted, evidence, progress)?;
             judge.simplest_first(&mut field.contenders);
-            self.state = self.state.led_by(field.contenders.first(), evidence);
+            let led = self.state.led_by(field.contenders.first(), evidence);
+            self = self.moved_to(led, judge);
             let enough = judge.is_enough(&self);
             let helps = |best: &&Contender| match enough {
                 true => judge.adds_much(&self.state, best, self.findings.len() + 1),
@@ -271,14 +272,26 @@ impl Path {
 
     /// Fitted from the campaign's values, where that ends at a better place: what the model without its effects came to,
     /// from which they were looked for, may lie beyond a ridge.
-    fn afresh(mut self, base: &State, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
+    fn afresh(self, base: &State, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Self {
         progress(News::Doing("fitting all of it from the start"));
-        let afresh = base.with_all(&self.findings, None, evidence, progress)?;
-        if let Some(state) = afresh.filter(|state| state.score() < self.score()) {
-            self.state = state;
-            self.state.update(&mut self.findings);
+        // What gives no number from there has no better place there.
+        let afresh = base.with_all(&self.findings, None, evidence, progress).ok().flatten();
+        match afresh.filter(|state| state.score() < self.score()) {
+            Some(state) => self.moved_to(state, judge),
+            None => self,
         }
-        Ok(self)
+    }
+
+    /// The same effects at another place of their model; what it explains more is told of the last.
+    fn moved_to(mut self, state: State, judge: &Judge) -> Self {
+        let [before, after] = [&self.state, &state].map(|state| &state.explanation);
+        if let Some(last) = self.findings.last_mut() {
+            last.evidence += before.refit.chi2 - after.refit.chi2;
+            last.closed = 1.0 - (1.0 - last.closed) * (1.0 - judge.closed(before, after));
+        }
+        self.state = state;
+        self.state.update(&mut self.findings);
+        self
     }
 
     /// What was found, and how many of the last cannot be told apart; none of one alone.

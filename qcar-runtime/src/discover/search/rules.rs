@@ -213,7 +213,7 @@ impl<'a> Judge<'a> {
 
     /// Share of the excess of the squared gap over noise that is gone. Where the gap shows in a part of the values, or in
     /// the calibrations alone, it is closed if that is gone; one that does not show at all, if the fit gains by it.
-    fn closed(&self, before: &Explanation, after: &Explanation) -> f64 {
+    pub fn closed(&self, before: &Explanation, after: &Explanation) -> f64 {
         if self.gap(before) <= NOISE {
             let is_gone = self.is_gap(before) && !self.is_gap(after);
             let gains = after.refit.chi2 < (1.0 - FAINT) * before.refit.chi2 && !self.is_clear(after);

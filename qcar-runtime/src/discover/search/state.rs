@@ -360,7 +360,7 @@ impl State {
 
     /// The same model refitted from where a contender ended, if that is a better place: what an effect gains by leading a
     /// search there is not its own. Where the model without the effect gives no number there, it stays.
-    pub fn led_by(mut self, contender: Option<&Contender>, evidence: &Evidence) -> Self {
+    pub fn led_by(&self, contender: Option<&Contender>, evidence: &Evidence) -> Self {
         let known = self.known();
         let explanandum = self.unchanged(Some(&known));
         let present = &self.explanation.refit;
@@ -370,8 +370,9 @@ impl State {
             .filter(|refit| refit.chi2 < (1.0 - WORTH) * present.chi2)
             .and_then(|refit| explanandum.explanation(refit, evidence).ok())
             .filter(|led| led.refit.chi2 < present.chi2);
-        self.explanation = led.unwrap_or(self.explanation);
-        self
+        let mut state = self.clone();
+        state.explanation = led.unwrap_or(state.explanation);
+        state
     }
 
     /// With all of these effects in the model, refitted from `known` values and those of the campaign; `None` where they do
