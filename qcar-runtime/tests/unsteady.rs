@@ -10,8 +10,9 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
-use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::evidence::Kind;
+use nalgebra::Complex;
+use qcar_runtime::campaign::{Campaign, Quantity, Role};
+use qcar_runtime::discover::evidence::{Kind, Stimulus};
 use qcar_runtime::discover::predict::{Misread, predict, unsteady};
 use qcar_runtime::discover::refit::{refit, settle};
 use qcar_runtime::discover::{Evidence, Free, Gap};
@@ -23,6 +24,10 @@ const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0
 const DRY: Parts = Parts {
     powertrain: false,
     friction: true,
+};
+const PLAIN: Parts = Parts {
+    powertrain: false,
+    friction: false,
 };
 const RATE: f64 = 500.0;
 /// Steps of the integration for each sample.
@@ -106,10 +111,14 @@ fn campaign(folder: &Path, model: &Strut) -> Campaign {
 }
 
 fn values(model: &Strut, off: f64) -> Values {
-    let given = model.about().parameters.iter().zip(P).enumerate();
-    let given: BTreeMap<String, f64> = given
-        .map(|(k, (parameter, value))| (parameter.name.to_string(), if k >= 9 { off * value } else { value }))
-        .collect();
+    with_friction(model, [off * P[9], off * P[10]])
+}
+
+/// With this level and stiffness of its friction, where it has any.
+fn with_friction(model: &Strut, friction: [f64; 2]) -> Values {
+    let values = P[..9].iter().chain(&friction);
+    let given = model.about().parameters.iter().zip(values);
+    let given: BTreeMap<String, f64> = given.map(|(own, value)| (own.name.to_string(), *value)).collect();
     Values::resolve(model.about(), &given, &BTreeMap::new()).expect("every parameter is given")
 }
 
@@ -190,5 +199,74 @@ fn the_slopes_along_the_errors_of_sensors_are_those_of_differences() {
             expected.norm() / (errors.len() as f64).sqrt(),
         );
         assert!(error < 0.15 * size, "{k}: {error} of {size}");
+    }
+}
+
+/// Friction of next to no force, so that an axle is called one whose laws bend, and is balanced and replayed.
+const NO_FRICTION: [f64; 2] = [1e-6, 1e-6];
+
+/// What is unsteady in the sweeps that may be fitted.
+fn unsteady_of(model: &Strut, evidence: &Evidence) -> Vec<Vec<Complex<f64>>> {
+    let values = with_friction(model, NO_FRICTION);
+    unsteady(model, &values, &Misread::default(), evidence, Role::Fit).expect("the model has the sensors")
+}
+
+/// What sweeps of a linear axle show, whose pad is seen by a sensor that may be of another quantity and read something at
+/// rest.
+fn of_linear_axle(quantity: Quantity, at_rest: f64) -> (Strut, Evidence) {
+    let (folder, plain) = (tempfile::tempdir().expect("a place for files"), Strut::new(PLAIN));
+    let campaign = campaign(folder.path(), &plain);
+    let mut evidence = Evidence::from_campaign(&campaign, plain.about()).expect("the runs can be read");
+    for run in &mut evidence.runs {
+        if let Stimulus::Sweep { reference, signal, .. } = &mut run.stimulus {
+            reference.quantity = quantity;
+            signal.iter_mut().for_each(|sample| *sample += at_rest);
+        }
+    }
+    (plain, evidence)
+}
+
+fn largest(values: impl Iterator<Item = Complex<f64>>) -> f64 {
+    values.map(|value| value.norm()).fold(0.0, f64::max)
+}
+
+/// A linear axle has no harmonics, but the estimator sees some near the ends of a sweep.
+#[test]
+fn what_the_estimator_takes_for_harmonics_of_a_linear_axle_is_predicted() {
+    let (plain, evidence) = of_linear_axle(Quantity::Acceleration, 0.1);
+    let added = unsteady_of(&plain, &evidence);
+    let steady = predict(&plain, &values(&plain, 1.0), &[], &evidence, Role::Fit).expect("it has the sensors");
+    for prediction in steady {
+        let series = &evidence.series[prediction.series];
+        let left = || {
+            series
+                .value
+                .iter()
+                .zip(&prediction.value)
+                .map(|(seen, said)| seen - said)
+        };
+        let less = left().zip(&added[prediction.series]).map(|(left, added)| left - added);
+        let (without, with) = (largest(left()), largest(less));
+        let what = format!("{} {:?}", series.sensor, series.kind);
+        assert!(series.kind == Kind::Harmonic(1) || without > 1e-3, "{what}: {without}");
+        assert!(with < 5e-5, "{what}: {with}");
+    }
+}
+
+/// Whatever quantity the pad's samples are of: that of acceleration alone is what the pad did.
+#[test]
+fn a_linear_axle_answers_a_sweep_as_it_does_when_it_is_replayed() {
+    for quantity in [Quantity::Acceleration, Quantity::Velocity, Quantity::Displacement] {
+        let (plain, evidence) = of_linear_axle(quantity, 0.0);
+        let answered = unsteady_of(&plain, &evidence).concat();
+        let replayed = unsteady_of(&Strut::new(DRY), &evidence).concat();
+        let off = largest(
+            answered
+                .iter()
+                .zip(&replayed)
+                .map(|(answered, replayed)| answered - replayed),
+        );
+        let most = largest(answered.into_iter());
+        assert!(off < 0.2 * most, "{quantity:?}: {off} of {most}");
     }
 }

@@ -336,3 +336,6 @@ impl Path {
         Ok(self)
     }
 }
+
+#[cfg(test)]
+mod tests;

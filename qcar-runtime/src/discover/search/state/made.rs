@@ -7,7 +7,8 @@ use nalgebra::{Complex, DMatrix};
 use super::{Contender, State};
 use crate::campaign::{Axis, Quantity, Role};
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::evidence::{Evidence, Kind, Recordings, Run, Series, Stimulus};
+use crate::discover::evidence::means::Means;
+use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Stimulus};
 use crate::discover::explain::{Explanation, Setting};
 use crate::discover::gap::Gap;
 use crate::discover::nuisance::{Form, Nuisance};
@@ -18,21 +19,35 @@ use crate::model::{
     About, Contact, Default, Excitation, Model, Output, Parameter, ResponseLayout, ResponseMut, Signal, SignalKind,
 };
 use crate::response::parameters::Values;
+use crate::road::Road;
 use crate::transmissibility::Point;
+use crate::tyre::{Geometry, Rates, Tyre};
 
-/// A wheel that moves by a ratio of what the pad does: the least that answers to a sweep.
-pub struct Lever(About);
+/// What the wheel's travel over the pad's is for a ratio, and the derivative of that.
+type Travel = fn(f64) -> [f64; 2];
+
+/// A wheel that moves by a ratio of what the pad does: the least that answers to a sweep. It has the same ratio on another
+/// axle, of which nothing is seen.
+pub struct Lever(About, Travel);
 
 impl Lever {
     pub fn new() -> Self {
-        let parameter = Parameter {
-            name: "ratio".into(),
+        Lever::of(|ratio| [ratio, 1.0])
+    }
+
+    pub fn of(travel: Travel) -> Self {
+        let parameter = |name: &'static str, default| Parameter {
+            name: name.into(),
             unit: "1".into(),
             doc: "Travel of the wheel over that of the pad".into(),
-            default: Default::Value(1.0),
+            default,
             range: None,
             known: false,
         };
+        let ratios = vec![
+            parameter("ratio", Default::Value(1.0)),
+            parameter("ratio_other", Default::Same(0)),
+        ];
         let wheel = Output {
             name: "z_wheel_acceleration".into(),
             unit: "m/s^2".into(),
@@ -52,10 +67,10 @@ impl Lever {
             outputs: vec![0].into(),
             jacobian: vec![(0, 0)].into(),
         };
-        Lever(About {
+        let about = About {
             name: "lever".into(),
             doc: "A lever".into(),
-            parameters: vec![parameter].into(),
+            parameters: ratios.into(),
             states: Vec::new().into(),
             inputs: Vec::new().into(),
             outputs: vec![wheel].into(),
@@ -63,13 +78,14 @@ impl Lever {
             channels: Vec::new().into(),
             links: Vec::new().into(),
             contact: None,
-            constants: 1,
+            constants: 2,
             linear: true,
             matrices: Vec::new().into(),
             sensitivities: Vec::new().into(),
             parameter_jacobian: Vec::new().into(),
             responses: vec![layout].into(),
-        })
+        };
+        Lever(about, travel)
     }
 
     pub fn values(&self) -> Values {
@@ -97,14 +113,15 @@ impl Model for Lever {
     fn parameter_jacobian(&self, _: &[f64], _: &[f64], _: &[f64], _: &mut [f64]) {}
 
     fn response(&self, _: usize, p: &[f64], omega: &[f64], into: ResponseMut<'_>) {
+        let [travel, slope] = (self.1)(p[0]);
         into.im.fill(0.0);
         for (re, omega) in into.re.iter_mut().zip(omega) {
-            *re = -p[0] * omega * omega;
+            *re = -travel * omega * omega;
         }
         if let Some((re, im)) = into.jacobian {
             im.fill(0.0);
             for (re, omega) in re.iter_mut().zip(omega) {
-                *re = -omega * omega;
+                *re = -slope * omega * omega;
             }
         }
     }
@@ -118,6 +135,10 @@ pub struct Levers(Lever);
 impl Levers {
     pub fn new() -> Self {
         Levers(Lever::new())
+    }
+
+    pub fn of(travel: Travel) -> Self {
+        Levers(Lever::of(travel))
     }
 }
 
@@ -198,6 +219,17 @@ pub fn history() -> Stimulus {
         band_limited: true,
         restarts: Vec::new(),
     }
+}
+
+pub fn ride() -> Stimulus {
+    Stimulus::Cleat(Passage {
+        road: Road::flat(0.0),
+        speed: 10.0,
+        tyre: Tyre::new(0.3, 0.02, Geometry::Point, Rates::AtStaticDeflection).expect("it is a tyre"),
+        load: 4000.0,
+        duration: 1.0,
+        means: Means::new(500.0, 0.01),
+    })
 }
 
 /// Runs, in each of which the wheel was seen to move by `ratio` times what the pad does, at so many frequencies and to a
