@@ -550,6 +550,66 @@ fn friction_beside_all_levers_leaves_arms_and_top_mount_alone() {
     }
 }
 
+/// Beside the strut it adds its inertance to wheel and body as they move against each other, whatever the top mount does.
+#[test]
+fn an_inerter_between_wheel_and_body_leaves_the_top_mount_alone() {
+    let base = model("axle_b");
+    let plain = Running::new(&base, &[]);
+    let beside = in_form(&base, "inerter", "between_wheel_and_body", "damper");
+    let inertance = 20.0;
+    let running = Running::new(&beside, &[("inertance", inertance)]);
+    let rates = |of: &Running| ["vz_tm", "vz_body", "vz_wheel"].map(|name| of.rate(name, &motion));
+    let ([tm, body, wheel], [tm_before, body_before, wheel_before]) = (rates(&running), rates(&plain));
+    assert!((tm - tm_before).abs() < 1e-9 * tm.abs(), "{tm}, not {tm_before}");
+    let force = inertance * (body - wheel);
+    // The top mount's mass is none of the body's.
+    for (mass, found, before, push) in [
+        (42.0, wheel, wheel_before, force),
+        (BODY - 3.0, body, body_before, -force),
+    ] {
+        assert!(
+            (mass * (found - before) - push).abs() < 1e-9 * force.abs(),
+            "{} N, not {push}",
+            mass * (found - before)
+        );
+    }
+}
+
+/// Turned about, the sub-frame pitches the other way, and all else moves as it did.
+#[test]
+fn a_pitching_sub_frame_that_is_turned_about_moves_alike() {
+    let pitching = patched(&model("axle_d"), "subframe_pitch", "subframe");
+    let turned = |front_share, arm_offset| {
+        let own = [
+            ("inertia", 1.3),
+            ("half_length", 0.3),
+            ("front_share", front_share),
+            ("arm_offset", arm_offset),
+        ];
+        Running::new(&pitching, &own)
+    };
+    let pitched = |way: f64| {
+        move |name: &str| match name {
+            "z_sf_pitch" => way * 0.02,
+            "vz_sf_pitch" => way * 0.3,
+            _ => motion(name),
+        }
+    };
+    let (ahead, behind) = (turned(0.7, 0.1), turned(0.3, -0.1));
+    let rates = ahead.rates(&pitched(1.0), false);
+    let pitch = rates.iter().find(|(name, _)| name == "vz_sf_pitch").unwrap().1;
+    assert!(pitch.abs() > 1.0, "{pitch}");
+    for ((name, rate), (_, other)) in rates.iter().zip(behind.rates(&pitched(-1.0), false)) {
+        let expected = if name.ends_with("sf_pitch") { -rate } else { *rate };
+        assert!(
+            (other - expected).abs() <= 1e-9 * rate.abs(),
+            "{name}: {other}, not {expected}"
+        );
+    }
+    let other_way = behind.rate("vz_sf_pitch", &pitched(1.0));
+    assert!((other_way + pitch).abs() > 1e-3 * pitch.abs(), "it is not even");
+}
+
 #[test]
 fn a_tyre_that_relaxes_while_rolling_stands_as_it_was() {
     let tyre = in_form(&model("axle_c"), "tire_dynamic_stiffness", "rolling", "tire");

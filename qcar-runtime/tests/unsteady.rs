@@ -236,17 +236,12 @@ fn what_the_estimator_takes_for_harmonics_of_a_linear_axle_is_predicted() {
     let (plain, evidence) = of_linear_axle(Quantity::Acceleration, 0.1);
     let added = unsteady_of(&plain, &evidence);
     let steady = predict(&plain, &values(&plain, 1.0), &[], &evidence, Role::Fit).expect("it has the sensors");
-    for prediction in steady {
+    for mut prediction in steady {
         let series = &evidence.series[prediction.series];
-        let left = || {
-            series
-                .value
-                .iter()
-                .zip(&prediction.value)
-                .map(|(seen, said)| seen - said)
-        };
-        let less = left().zip(&added[prediction.series]).map(|(left, added)| left - added);
-        let (without, with) = (largest(left()), largest(less));
+        let left = |said: &[Complex<f64>]| largest(series.value.iter().zip(said).map(|(seen, said)| seen - said));
+        let without = left(&prediction.value);
+        prediction.add(&added[prediction.series]);
+        let with = left(&prediction.value);
         let what = format!("{} {:?}", series.sensor, series.kind);
         assert!(series.kind == Kind::Harmonic(1) || without > 1e-3, "{what}: {without}");
         assert!(with < 5e-5, "{what}: {with}");
