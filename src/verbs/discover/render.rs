@@ -311,6 +311,11 @@ fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
         finding.at,
         table.text()
     );
+    let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
+    let undetermined: Vec<&str> = undetermined.map(|(name, ..)| name.as_str()).collect();
+    if !undetermined.is_empty() {
+        let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
+    }
     for rival in finding.rivals.iter().take(4) {
         let when = if rival.early { ", when it was left behind" } else { "" };
         let _ = writeln!(
@@ -369,4 +374,25 @@ fn tiles(of: &Answer) -> String {
         ]);
     }
     table.text()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A value that comes from a start rather than from the data must not pass for one that was found.
+    #[test]
+    fn what_the_runs_do_not_determine_is_said() {
+        let finding = Finding {
+            effect: "suspended_mass".into(),
+            at: "body".into(),
+            form: None,
+            parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
+            evidence: 1e4,
+            closed: 1.0,
+            rivals: Vec::new(),
+        };
+        let said = described(&finding, &BTreeMap::new());
+        assert!(said.ends_with("the fitted runs do not determine k_pwt_x\n"), "{said}");
+    }
 }
