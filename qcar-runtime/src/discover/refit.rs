@@ -5,7 +5,8 @@
 //!
 //! A rig shakes both sides of a car and its sensors are averaged over them, while a cleat run records one side. The two
 //! corners of an axle differ by a percent or two, which shifts the modes of the after-shake by more than its noise: so
-//! each free parameter has a factor of its own on the recorded side, held by a prior.
+//! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
+//! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
 
 use std::ops::Range;
 
@@ -235,6 +236,11 @@ fn of_one_side(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Cleat(_))
 }
 
+/// True for a parameter that may differ between the sides of a car.
+fn is_of_a_side(model: &dyn Model, free: &Free) -> bool {
+    model.about().parameters[free.parameter].unit != "1"
+}
+
 /// The rows and columns of some variables of a covariance.
 fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
     let place = |k: usize| information.seen().iter().position(|&seen| seen == variables.start + k);
@@ -377,8 +383,8 @@ impl<'a> Posterior<'a> {
         let factors = self.factors(x).to_vec();
         for (k, (free, &value)) in self.free.iter().zip(x).enumerate() {
             self.values.set(free.parameter, value);
-            let factor = factors.get(k).copied().unwrap_or(0.0);
-            self.side.set(free.parameter, value * factor.exp());
+            let factor = factors.get(k).copied().filter(|_| is_of_a_side(self.model, free));
+            self.side.set(free.parameter, value * factor.unwrap_or(0.0).exp());
         }
     }
 
@@ -459,7 +465,7 @@ impl<'a> Posterior<'a> {
         };
         let one_sided = of_one_side(&self.evidence.runs[series.run]);
         for (k, slope) in prediction.slopes.iter().enumerate() {
-            if one_sided {
+            if one_sided && is_of_a_side(self.model, &self.free[k]) {
                 let factor = self.factors(x)[k].exp();
                 let of_side = of_sensors + self.nuisance.len() + k;
                 add(&mut through(slope.clone(), factor), k);
