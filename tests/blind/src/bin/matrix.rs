@@ -37,7 +37,7 @@ fn run() -> Result<(), String> {
         qcar: beside_this()?,
         seeds: vec![1],
         only: String::new(),
-        part: (0, 1),
+        part: (1, 1),
         out: None,
     };
     let mut words = std::env::args().skip(1);
@@ -50,6 +50,9 @@ fn run() -> Result<(), String> {
             "--part" => {
                 let (part, of) = value.split_once('/').ok_or("--part is K/N")?;
                 asked.part = (number(part)?, number(of)?);
+                if !(1..=asked.part.1).contains(&asked.part.0) {
+                    return Err(format!("--part {value}: K counts from 1 to N"));
+                }
             }
             "--out" => asked.out = Some(value.into()),
             "--table" => {
@@ -63,7 +66,7 @@ fn run() -> Result<(), String> {
     let wanted = all.filter(|case| case.name.contains(&asked.only) || format!("{:?}", case.kind) == asked.only);
     let (part, of) = asked.part;
     let mut outcomes = Vec::new();
-    for case in wanted.skip(part).step_by(of) {
+    for case in wanted.skip(part - 1).step_by(of) {
         let outcome = answer(&asked.qcar, &case)?;
         println!("{}", outcome.line());
         if let Some(out) = &asked.out {
