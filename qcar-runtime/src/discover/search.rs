@@ -9,6 +9,8 @@
 mod contest;
 // What earns a name.
 mod rules;
+// An effect in the model.
+mod taken;
 // A model with effects in it, and what is tried on it.
 mod state;
 // What `none` is worth.

@@ -7,9 +7,10 @@ use nalgebra::{DMatrix, DVector};
 
 use super::contest::{Entrant, Finalist, Looks, contest};
 use super::rules::{NOISE, Wanted};
+use super::taken::Taken;
 use super::{Finding, News, Progress, Rival};
 use crate::campaign::Role;
-use crate::discover::candidate::{Added, Candidate, Change, Workshop};
+use crate::discover::candidate::{Candidate, Change, Workshop};
 use crate::discover::evidence::{Evidence, Stimulus};
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
 use crate::discover::nuisance::{Form, Nuisance};
@@ -42,23 +43,6 @@ pub struct State {
     taken: Vec<Taken>,
     /// How well it explains the evidence.
     pub explanation: Explanation,
-}
-
-/// An effect in the model.
-#[derive(Clone)]
-struct Taken {
-    effect: String,
-    at: String,
-    unknowns: Vec<Unknown>,
-}
-
-/// A number that belongs to an effect, by its name in the effect.
-#[derive(Clone)]
-enum Unknown {
-    /// A parameter of the model, by its name there.
-    Parameter(String, String),
-    /// A coefficient of the sensors' errors.
-    Coefficient(String, usize, Form),
 }
 
 /// What came of all candidates.
@@ -450,56 +434,6 @@ fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
     };
     let sigma = SUSPECT[usize::from(*form == Form::Delay)];
     nuisance.clone().suspecting(location, *axis, *form, sigma)
-}
-
-impl Taken {
-    fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
-        let unknowns = match &candidate.change {
-            Change::Model { parameters, .. } => {
-                let unknown = |p: &Added| Unknown::Parameter(p.effect_name.clone(), p.name.clone());
-                parameters.iter().map(unknown).collect()
-            }
-            Change::Sensor { form, parameter, .. } => {
-                let place = nuisance.len().saturating_sub(1);
-                vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
-            }
-        };
-        Taken {
-            effect: candidate.effect.clone(),
-            at: candidate.at.clone(),
-            unknowns,
-        }
-    }
-
-    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
-    fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
-        let refit = &explanation.refit;
-        let errors = refit.stderr();
-        let scatter = explanation.scatter().sqrt();
-        let of = |unknown: &Unknown| match unknown {
-            Unknown::Parameter(effect_name, name) => {
-                let (_, value) = explanation.named.iter().find(|(known, _)| known == name)?;
-                let error = free_of(explanation, name).map_or(0.0, |free| errors[free]);
-                Some((effect_name.clone(), *value, error))
-            }
-            Unknown::Coefficient(effect_name, place, form) => {
-                let coefficient = refit.coefficients[*place];
-                let error = scatter * refit.coefficient_stderr[*place];
-                let (value, error) = match form {
-                    Form::Delay => (coefficient, error),
-                    _ => (coefficient.exp(), coefficient.exp() * error),
-                };
-                Some((effect_name.clone(), value, error))
-            }
-        };
-        self.unknowns.iter().filter_map(of).collect()
-    }
-}
-
-/// Place of a parameter among the free ones.
-fn free_of(explanation: &Explanation, name: &str) -> Option<usize> {
-    let place = explanation.named.iter().position(|(known, _)| known == name)?;
-    explanation.refit.free.iter().position(|free| free.parameter == place)
 }
 
 impl Contender {

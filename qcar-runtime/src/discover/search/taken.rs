@@ -1,0 +1,76 @@
+//! An effect that was taken into the model: what of it is unknown, and what an explanation says of that.
+
+use crate::discover::candidate::{Added, Candidate, Change};
+use crate::discover::explain::Explanation;
+use crate::discover::nuisance::{Form, Nuisance};
+
+/// An effect in the model.
+#[derive(Clone)]
+pub struct Taken {
+    /// Its name.
+    pub effect: String,
+    /// Its place.
+    pub at: String,
+    /// What is to be found of it.
+    pub unknowns: Vec<Unknown>,
+}
+
+/// A number that belongs to an effect, by its name in the effect.
+#[derive(Clone)]
+pub enum Unknown {
+    /// A parameter of the model, by its name there.
+    Parameter(String, String),
+    /// A coefficient of the sensors' errors.
+    Coefficient(String, usize, Form),
+}
+
+impl Taken {
+    /// A candidate, with the sensors as it suspects them.
+    pub fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
+        let unknowns = match &candidate.change {
+            Change::Model { parameters, .. } => {
+                let unknown = |p: &Added| Unknown::Parameter(p.effect_name.clone(), p.name.clone());
+                parameters.iter().map(unknown).collect()
+            }
+            Change::Sensor { form, parameter, .. } => {
+                let place = nuisance.len().saturating_sub(1);
+                vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
+            }
+        };
+        Taken {
+            effect: candidate.effect.clone(),
+            at: candidate.at.clone(),
+            unknowns,
+        }
+    }
+
+    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
+    pub fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
+        let refit = &explanation.refit;
+        let errors = refit.stderr();
+        let scatter = explanation.scatter().sqrt();
+        let of = |unknown: &Unknown| match unknown {
+            Unknown::Parameter(effect_name, name) => {
+                let (_, value) = explanation.named.iter().find(|(known, _)| known == name)?;
+                let error = free_of(explanation, name).map_or(0.0, |free| errors[free]);
+                Some((effect_name.clone(), *value, error))
+            }
+            Unknown::Coefficient(effect_name, place, form) => {
+                let coefficient = refit.coefficients[*place];
+                let error = scatter * refit.coefficient_stderr[*place];
+                let (value, error) = match form {
+                    Form::Delay => (coefficient, error),
+                    _ => (coefficient.exp(), coefficient.exp() * error),
+                };
+                Some((effect_name.clone(), value, error))
+            }
+        };
+        self.unknowns.iter().filter_map(of).collect()
+    }
+}
+
+/// Place of a parameter among the free ones.
+fn free_of(explanation: &Explanation, name: &str) -> Option<usize> {
+    let place = explanation.named.iter().position(|(known, _)| known == name)?;
+    explanation.refit.free.iter().position(|free| free.parameter == place)
+}
