@@ -1,11 +1,16 @@
-//! Programs interpreted at run time: the operations of the generated code, in its order.
+//! Programs interpreted at run time: the operations of the generated code, in an order of their own.
 
-// One of them.
+// What it reads.
+mod given;
+// Which operation comes after which.
+mod order;
+// One program.
 mod code;
 
 use crate::about::About;
 use crate::schedule::Compiled;
-use code::{Code, Given, Part};
+use code::Code;
+use given::{Given, Part};
 
 /// A compiled model, ready to be evaluated.
 ///
@@ -107,7 +112,7 @@ impl Evaluator {
 
     /// Computes once what depends on the parameters alone.
     pub fn prepare(&self, p: &[f64], constants: &mut [f64]) {
-        self.prepare.run(&Given { p, ..Given::default() }, constants);
+        self.prepare.run(&Given::default().with(Part::Parameters, p), constants);
     }
 
     /// `dx = f(x, u)`
@@ -169,11 +174,9 @@ impl Evaluator {
         let Some(response) = self.responses.get(excitation) else {
             return;
         };
-        let given = Given {
-            constants,
-            omega,
-            ..Given::default()
-        };
+        let given = Given::default()
+            .with(Part::Constants, constants)
+            .with(Part::Frequency, omega);
         let sweep = |code: &Code, into: &mut [&mut [f64]]| code.sweep(&given, &[Part::Frequency], omega.len(), into);
         match jacobian {
             None => sweep(&response.value, &mut [re, im]),
@@ -185,10 +188,8 @@ impl Evaluator {
     pub fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
         let mut force = [0.0];
         if let Some(rolling) = &self.rolling {
-            let given = Given {
-                contact: &[s, v],
-                ..prepared(constants, x, &[])
-            };
+            let contact = [s, v];
+            let given = prepared(constants, x, &[]).with(Part::Contact, &contact);
             rolling.contact_force.run(&given, &mut force);
         }
         force[0]
@@ -197,40 +198,30 @@ impl Evaluator {
     /// The equations of motion while the tyre rolls; those of the standing model where no tyre can.
     pub fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.derivative);
-        let given = Given {
-            contact: &contact.entries(),
-            ..prepared(constants, x, u)
-        };
+        let contact = contact.entries();
+        let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.derivative).run(&given, dx);
     }
 
     /// The outputs while the tyre rolls; those of the standing model where no tyre can.
     pub fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.outputs);
-        let given = Given {
-            contact: &contact.entries(),
-            ..prepared(constants, x, u)
-        };
+        let contact = contact.entries();
+        let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.outputs).run(&given, y);
     }
 }
 
 /// What a program reads that sees the parameters through what was prepared of them.
 fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    Given {
-        constants,
-        x,
-        u,
-        ..Given::default()
-    }
+    moving(x, u).with(Part::Constants, constants)
 }
 
 /// What a program reads that sees the parameters themselves.
 fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    Given {
-        p,
-        x,
-        u,
-        ..Given::default()
-    }
+    moving(x, u).with(Part::Parameters, p)
+}
+
+fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    Given::default().with(Part::States, x).with(Part::Inputs, u)
 }

@@ -32,6 +32,23 @@ pub enum Op {
 }
 
 impl Op {
+    /// The values that it is computed from, in order; none for a leaf.
+    pub fn arguments(self) -> impl Iterator<Item = Value> {
+        let three = match self {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => [None; 3],
+            Op::Neg(a) | Op::Call(_, a) => [Some(a), None, None],
+            Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => [Some(a), Some(b), None],
+            Op::Pow(a, b) | Op::Min(a, b) | Op::Max(a, b) => [Some(a), Some(b), None],
+            Op::Select(test, a, b) => [Some(test), Some(a), Some(b)],
+        };
+        three.into_iter().flatten()
+    }
+
+    /// True where nothing is computed: a number, or what the caller gives.
+    pub fn is_leaf(self) -> bool {
+        matches!(self, Op::Constant(_) | Op::Input(_) | Op::Prepared(_))
+    }
+
     /// The same operation on values of other numbers.
     pub fn renumbered(self, new: impl Fn(Value) -> Value) -> Op {
         match self {

@@ -52,7 +52,7 @@ impl<'a> Pieces<'a> {
     /// The values that a piece takes from an earlier one.
     pub fn taken(&self, piece: usize) -> BTreeSet<Value> {
         let values = &self.pieces[piece];
-        let used = values.iter().flat_map(|&value| operands(op(self.program, value)));
+        let used = values.iter().flat_map(|&value| op(self.program, value).arguments());
         used.filter(|&value| is_computed(self.program, value) && value < values[0])
             .collect()
     }
@@ -61,7 +61,7 @@ impl<'a> Pieces<'a> {
     pub fn read(&self, piece: usize) -> BTreeMap<Leaf, Value> {
         let used = self.pieces[piece]
             .iter()
-            .flat_map(|&value| operands(op(self.program, value)));
+            .flat_map(|&value| op(self.program, value).arguments());
         let stored = self.stored(piece).into_iter().map(|(_, value)| value);
         used.chain(stored)
             .filter_map(|value| Some((as_leaf(self.program, value)?, value)))
@@ -103,15 +103,5 @@ fn computed(program: &Program) -> impl Iterator<Item = Value> {
 }
 
 fn is_computed(program: &Program, value: Value) -> bool {
-    !matches!(op(program, value), Op::Constant(_) | Op::Input(_) | Op::Prepared(_))
-}
-
-fn operands(op: Op) -> Vec<Value> {
-    match op {
-        Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => vec![],
-        Op::Neg(a) | Op::Call(_, a) => vec![a],
-        Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => vec![a, b],
-        Op::Pow(a, b) | Op::Min(a, b) | Op::Max(a, b) => vec![a, b],
-        Op::Select(a, b, c) => vec![a, b, c],
-    }
+    !op(program, value).is_leaf()
 }
