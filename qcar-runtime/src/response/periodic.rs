@@ -16,6 +16,7 @@ mod factors;
 // The balance at one excitation, and its solution.
 mod balance;
 
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix};
@@ -49,14 +50,40 @@ pub struct Drive {
 pub struct Cycle {
     /// Fourier coefficients of the states, where the next search may start.
     pub coefficients: Vec<f64>,
-    /// For each output asked for: amplitudes of its harmonics from 0, relative in phase to the excitation.
-    pub outputs: Vec<Vec<Complex<f64>>>,
-    /// For each parameter asked for the derivatives of `outputs`.
-    pub slopes: Vec<Vec<Vec<Complex<f64>>>>,
-    /// Where there are such parameters, the derivatives of `outputs` by the logarithm of the drive's amplitude.
-    pub louder: Vec<Vec<Complex<f64>>>,
     /// False where the search gave up; the response is then that of its best point.
     pub converged: bool,
+    /// The outputs that were asked for, in ascending order.
+    outputs: Vec<usize>,
+    /// Amplitudes of their harmonics, a column for each output, and behind these for each of their derivatives.
+    harmonics: DMatrix<Complex<f64>>,
+}
+
+/// Of outputs, by their places in `y`.
+///
+/// # Panics
+/// Where the output has not been asked for.
+impl Cycle {
+    /// Amplitudes of the harmonics from 0, relative in phase to the excitation.
+    pub fn output(&self, output: usize) -> &[Complex<f64>] {
+        self.column(0, output)
+    }
+
+    /// Their derivatives along a group of the parameters asked for.
+    pub fn slope(&self, group: usize, output: usize) -> &[Complex<f64>] {
+        self.column(1 + group, output)
+    }
+
+    /// Where there are such groups, their derivatives by the logarithm of the drive's amplitude.
+    pub fn louder(&self, output: usize) -> &[Complex<f64>] {
+        self.column(self.harmonics.ncols() / self.outputs.len() - 1, output)
+    }
+
+    fn column(&self, along: usize, output: usize) -> &[Complex<f64>] {
+        let place = self.outputs.partition_point(|&own| own < output);
+        assert!(self.outputs.get(place) == Some(&output), "an output that was asked for");
+        let (first, rows) = (along * self.outputs.len() + place, self.harmonics.nrows());
+        &self.harmonics.as_slice()[first * rows..][..rows]
+    }
 }
 
 impl<'m> Periodic<'m> {
@@ -82,23 +109,34 @@ impl<'m> Periodic<'m> {
         groups: &[Vec<usize>],
         start: Option<&[f64]>,
     ) -> Cycle {
+        self.cycle_of(&mut self.balance(p), drive, &each_once(outputs), groups, start)
+    }
+
+    /// The same of a balance, whatever it was driven by before.
+    fn cycle_of(
+        &self,
+        balance: &mut Balance,
+        drive: &Drive,
+        outputs: &[usize],
+        groups: &[Vec<usize>],
+        start: Option<&[f64]>,
+    ) -> Cycle {
         let rest = vec![0.0; self.states.len() * self.basis.terms()];
-        let mut balance = self.balance(p, drive);
+        self.drive(balance, drive);
         let (mut x, mut converged) = balance.solve(start.unwrap_or(&rest));
         if !converged {
-            (x, converged) = self.climb(p, drive, &rest);
+            (x, converged) = self.climb(balance, drive, &rest);
         }
         balance.sample(&x);
-        let mut slopes = Vec::new();
+        let mut series = balance.outputs(outputs).as_slice().to_vec();
         if !groups.is_empty() {
-            slopes = balance.slopes(outputs, groups);
+            series.extend_from_slice(balance.slopes(outputs, groups).as_slice());
         }
         Cycle {
-            outputs: balance.outputs(outputs),
-            louder: slopes.pop().unwrap_or_default(),
-            slopes,
             coefficients: x,
             converged,
+            outputs: outputs.to_vec(),
+            harmonics: self.basis.harmonics(&series),
         }
     }
 
@@ -107,10 +145,11 @@ impl<'m> Periodic<'m> {
     /// At high frequencies masses hold still and laws hardly bend; from there the search keeps its footing all the way
     /// down, where it would often fail from rest.
     pub fn walk(&self, p: &[f64], drives: &[Drive], outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Cycle> {
+        let (mut balance, outputs) = (self.balance(p), each_once(outputs));
         let mut cycles: Vec<Cycle> = Vec::with_capacity(drives.len());
         for drive in drives.iter().rev() {
             let start = cycles.last().map(|cycle| cycle.coefficients.as_slice());
-            let cycle = self.cycle(p, drive, outputs, groups, start);
+            let cycle = self.cycle_of(&mut balance, drive, &outputs, groups, start);
             cycles.push(cycle);
         }
         cycles.reverse();
@@ -118,7 +157,7 @@ impl<'m> Periodic<'m> {
     }
 
     /// From a small amplitude, where every smooth law is linear, up to the one that is wanted.
-    fn climb(&self, p: &[f64], drive: &Drive, rest: &[f64]) -> (Vec<f64>, bool) {
+    fn climb(&self, balance: &mut Balance, drive: &Drive, rest: &[f64]) -> (Vec<f64>, bool) {
         const STEPS: i32 = 12;
         const RATIO: f64 = 2.0;
         let mut x = rest.to_vec();
@@ -127,23 +166,20 @@ impl<'m> Periodic<'m> {
             let amplitude = drive.amplitude * RATIO.powi(-step);
             // A larger response is more of the same, to first order.
             x.iter_mut().for_each(|x| *x *= RATIO);
-            let smaller = Drive { amplitude, ..*drive };
-            (x, converged) = self.balance(p, &smaller).solve(&x);
+            self.drive(balance, &Drive { amplitude, ..*drive });
+            (x, converged) = balance.solve(&x);
         }
         (x, converged)
     }
 
-    fn balance(&self, p: &[f64], drive: &Drive) -> Balance<'_> {
+    fn balance(&self, p: &[f64]) -> Balance<'_> {
+        Balance::new(self.model, p, &self.states, &self.basis)
+    }
+
+    fn drive(&self, balance: &mut Balance, drive: &Drive) {
         let omega = TAU * drive.frequency;
         let phasor = drive.amplitude / Complex::new(0.0, omega).powi(drive.power);
-        Balance::new(
-            self.model,
-            p,
-            &self.states,
-            &self.basis,
-            omega,
-            self.inputs(phasor, omega),
-        )
+        balance.drive(omega, self.inputs(phasor, omega));
     }
 
     /// A row for each sample of a period, a column for each input.
@@ -162,6 +198,11 @@ impl<'m> Periodic<'m> {
             _ => 0.0,
         })
     }
+}
+
+/// In ascending order, however often each is asked for.
+fn each_once(outputs: &[usize]) -> Vec<usize> {
+    BTreeSet::from_iter(outputs).into_iter().copied().collect()
 }
 
 /// The states that depend on the excitation, by the nonzeros of A and B.

@@ -8,9 +8,10 @@ use nalgebra::{Complex, DMatrix, DVector, DVectorView, Dyn, U1};
 use super::basis::Basis;
 use super::factors::{Factors, Straight};
 use super::period::Period;
+use super::product::{add, product};
 use crate::model::{Entry, Matrix, Model};
 
-/// The balance of a model at one drive.
+/// The balance of a model, at one drive after another.
 pub struct Balance<'a> {
     model: &'a dyn Model,
     states: &'a [usize],
@@ -18,7 +19,9 @@ pub struct Balance<'a> {
     places: Vec<Option<usize>>,
     basis: &'a Basis,
     omega: f64,
-    /// The present point.
+    /// The present point: its coefficients, none before a drive has been looked at,
+    at: Vec<f64>,
+    /// and its samples.
     period: Period<'a>,
     /// The states that were straight at the last point whose Jacobian was wanted.
     straight: Option<Rc<Straight>>,
@@ -38,24 +41,27 @@ const STRAIGHT: f64 = 0.2;
 const SHORTEST: f64 = 1e-3;
 
 impl<'a> Balance<'a> {
-    pub fn new(
-        model: &'a dyn Model,
-        p: &[f64],
-        states: &'a [usize],
-        basis: &'a Basis,
-        omega: f64,
-        inputs: DMatrix<f64>,
-    ) -> Self {
+    /// Without a drive yet.
+    pub fn new(model: &'a dyn Model, p: &[f64], states: &'a [usize], basis: &'a Basis) -> Self {
         let place = |state| states.iter().position(|&s| s == state);
         Self {
             model,
             states,
             places: (0..model.about().states.len()).map(place).collect(),
             basis,
-            omega,
-            period: Period::new(model, p, inputs),
+            omega: 0.0,
+            at: Vec::new(),
+            period: Period::new(model, p, basis.samples()),
             straight: None,
         }
+    }
+
+    /// Takes a drive: its frequency (rad/s) and a row of inputs for each sample.
+    pub fn drive(&mut self, omega: f64, inputs: DMatrix<f64>) {
+        self.omega = omega;
+        self.period.inputs = inputs;
+        self.at.clear();
+        self.straight = None;
     }
 
     /// Searches from `start`: the coefficients, and whether they settled.
@@ -67,9 +73,7 @@ impl<'a> Balance<'a> {
         let mut residual = self.residual(&x);
         let mut kept = None;
         for _ in 0..ITERATIONS {
-            let factors = kept.take().or_else(|| self.factorise());
-            let step = factors.as_ref().and_then(|factors| factors.solve(&residual));
-            let (Some(factors), Some(step)) = (factors, step) else {
+            let Some((factors, step)) = kept.take().or_else(|| self.newton(&residual)) else {
                 return (x.as_slice().to_vec(), false);
             };
             let (mut share, length) = (1.0_f64, self.length(&step, &(&x - &step)));
@@ -79,93 +83,134 @@ impl<'a> Balance<'a> {
             while !is_monotonic && share >= SHORTEST {
                 let trial = &x - &step * share;
                 let trial_residual = self.residual(&trial);
-                let next = factors.solve(&trial_residual).map(|next| self.length(&next, &trial));
-                if let Some(next) = next.filter(|next| next.is_finite()) {
+                let next = factors
+                    .solve(&trial_residual)
+                    .map(|step| (self.length(&step, &trial), step));
+                if let Some((next, step)) = next.filter(|(next, _)| next.is_finite()) {
                     is_monotonic = next <= (1.0 - 0.25 * share) * length;
                     if is_monotonic || best.as_ref().is_none_or(|(least, ..)| next < *least) {
-                        best = Some((next, share, (trial, trial_residual)));
+                        best = Some((next, share, (trial, trial_residual, step)));
                     }
                 }
                 share *= 0.5;
             }
-            let Some((next, share, point)) = best else {
+            let Some((next, share, (trial, trial_residual, step))) = best else {
                 return (x.as_slice().to_vec(), length < SETTLED.sqrt());
             };
-            (x, residual) = point;
+            (x, residual) = (trial, trial_residual);
             if next < SETTLED {
                 return (x.as_slice().to_vec(), true);
             }
             let is_straight = is_monotonic && share == 1.0 && next < STRAIGHT * length;
-            kept = is_straight.then_some(factors);
+            kept = is_straight.then_some((factors, step));
         }
         (x.as_slice().to_vec(), false)
     }
 
+    /// The factors at the present point, and the step by them.
+    fn newton(&mut self, residual: &DVector<f64>) -> Option<(Factors, DVector<f64>)> {
+        let factors = self.factorise()?;
+        let step = factors.solve(residual)?;
+        Some((factors, step))
+    }
+
     /// Takes a point as the present one.
     pub fn sample(&mut self, x: &[f64]) {
-        self.residual(&DVector::from_column_slice(x));
+        if self.at != x {
+            self.residual(&DVector::from_column_slice(x));
+        }
     }
 
-    /// Harmonics of some outputs at the present point.
-    pub fn outputs(&self, outputs: &[usize]) -> Vec<Vec<Complex<f64>>> {
-        let samples = self.period.outputs().select_columns(outputs);
-        self.series((&self.basis.analysis * samples).as_slice())
+    /// Coefficients of some outputs at the present point, one after the other.
+    pub fn outputs(&self, outputs: &[usize]) -> DMatrix<f64> {
+        product(&self.basis.analysis, &self.period.outputs().select_columns(outputs))
     }
 
-    /// How the harmonics of some outputs move along each group of parameters, and last along the logarithm of the
-    /// amplitude of the drive. States that cannot be told of stay.
-    pub fn slopes(&mut self, outputs: &[usize], groups: &[Vec<usize>]) -> Vec<Vec<Vec<Complex<f64>>>> {
+    /// How the coefficients of some outputs move along each group of parameters, and last along the logarithm of the
+    /// amplitude of the drive: a column for each. States that cannot be told of stay.
+    pub fn slopes(&mut self, outputs: &[usize], groups: &[Vec<usize>]) -> DMatrix<f64> {
         let factors = self.factorise();
         self.period.differentiate();
-        // Each output once, however often it is asked for.
-        let rows: Vec<usize> = BTreeSet::from_iter(outputs).into_iter().copied().collect();
-        let (pushes, mut moves) = self.pushes(&rows, groups);
+        let (pushes, mut moves) = self.pushes(outputs, groups);
         if let Some(moved) = factors.and_then(|factors| factors.solve_all(&pushes)) {
-            moves += self.rows(Matrix::C, &rows) * moved;
+            self.show(&moved, outputs, &mut moves);
         }
-        let along = |moves: DVectorView<f64>| {
-            let series = self.series(moves.as_slice());
-            let of = |output| series[rows.partition_point(|row| row < output)].clone();
-            outputs.iter().map(of).collect()
-        };
-        moves.column_iter().map(along).collect()
+        moves
     }
 
     /// What each of [`Self::slopes`] does to the states that move, and to the outputs beside them: a column for each.
     fn pushes(&self, outputs: &[usize], groups: &[Vec<usize>]) -> (DMatrix<f64>, DMatrix<f64>) {
-        let (about, terms) = (self.model.about(), self.basis.terms());
+        let terms = self.basis.terms();
         let none = |rows: usize| DMatrix::zeros(rows * terms, groups.len() + 1);
         let (mut on_states, mut on_outputs) = (none(self.states.len()), none(outputs.len()));
-        let mut push = |is_output: bool, row: u16, along: usize, by: DVectorView<f64>| {
-            let row = usize::from(row);
-            let (side, place) = if is_output {
-                (&mut on_outputs, outputs.iter().position(|&output| output == row))
+        let (pushes, samples) = self.sampled_pushes(outputs, groups);
+        let coefficients = product(&self.basis.analysis, &samples);
+        for (push, by) in pushes.iter().zip(coefficients.column_iter()) {
+            let side = if push.on_output {
+                &mut on_outputs
             } else {
-                (&mut on_states, self.places[row])
+                &mut on_states
             };
-            if let Some(place) = place {
-                let mut pushed = side.view_mut((place * terms, along), (terms, 1));
-                pushed += by;
-            }
-        };
-        let by_parameter = &self.basis.analysis * &self.period.by_parameter;
-        for (&(is_output, row, parameter), by) in about.parameter_jacobian.iter().zip(by_parameter.column_iter()) {
-            for along in (0..groups.len()).filter(|&along| groups[along].contains(&usize::from(parameter))) {
-                push(is_output, row, along, by);
-            }
-        }
-        for (at, by) in self.entries(Matrix::B).chain(self.entries(Matrix::D)) {
-            let input = self.period.inputs.column(usize::from(at.column));
-            let louder = &self.basis.analysis * by.component_mul(&input);
-            push(at.matrix == Matrix::D, at.row, groups.len(), louder.column(0));
+            let mut pushed = side.view_mut((push.place * terms, push.along), (terms, 1));
+            pushed += by;
         }
         (on_states, on_outputs)
     }
 
-    /// Harmonics of series whose coefficients stand one after the other.
-    fn series(&self, coefficients: &[f64]) -> Vec<Vec<Complex<f64>>> {
-        let series = coefficients.chunks_exact(self.basis.terms());
-        series.map(|series| self.basis.harmonics(series)).collect()
+    /// The same piece by piece, with the samples of each.
+    fn sampled_pushes(&self, outputs: &[usize], groups: &[Vec<usize>]) -> (Vec<Push>, DMatrix<f64>) {
+        let (mut pushes, mut samples) = (Vec::new(), Vec::new());
+        let place = |on_output: bool, row: u16| match on_output {
+            true => outputs.iter().position(|&output| output == usize::from(row)),
+            false => self.places[usize::from(row)],
+        };
+        let by_parameter = self.period.by_parameter.column_iter();
+        for (&(on_output, row, parameter), by) in self.model.about().parameter_jacobian.iter().zip(by_parameter) {
+            let Some(place) = place(on_output, row) else { continue };
+            for along in (0..groups.len()).filter(|&along| groups[along].contains(&usize::from(parameter))) {
+                samples.extend_from_slice(by.as_slice());
+                pushes.push(Push {
+                    on_output,
+                    place,
+                    along,
+                });
+            }
+        }
+        for (at, by) in self.entries(Matrix::B).chain(self.entries(Matrix::D)) {
+            let (on_output, along) = (at.matrix == Matrix::D, groups.len());
+            let Some(place) = place(on_output, at.row) else {
+                continue;
+            };
+            let input = self.period.inputs.column(usize::from(at.column));
+            samples.extend(by.as_slice().iter().zip(input.as_slice()).map(|(by, input)| by * input));
+            pushes.push(Push {
+                on_output,
+                place,
+                along,
+            });
+        }
+        let samples = DMatrix::from_vec(self.basis.samples(), pushes.len(), samples);
+        (pushes, samples)
+    }
+
+    /// Adds what some outputs show of moves of the states.
+    fn show(&self, moved: &DMatrix<f64>, outputs: &[usize], shown: &mut DMatrix<f64>) {
+        let terms = self.basis.terms();
+        for (at, weights) in self.entries(Matrix::C) {
+            let output = outputs.iter().position(|&output| output == usize::from(at.row));
+            let (Some(row), Some(column)) = (output, self.places[usize::from(at.column)]) else {
+                continue;
+            };
+            let weight = held(&weights).ok_or_else(|| self.basis.weighted(&weights));
+            for (mut shown, moved) in shown.column_iter_mut().zip(moved.column_iter()) {
+                let shown = &mut shown.as_mut_slice()[row * terms..][..terms];
+                let moved = &moved.as_slice()[column * terms..][..terms];
+                match &weight {
+                    Ok(weight) => add(moved, &[*weight], shown),
+                    Err(weights) => add(weights.as_slice(), moved, shown),
+                }
+            }
+        }
     }
 
     /// Samples of all series, a column for each state.
@@ -183,6 +228,7 @@ impl<'a> Balance<'a> {
     fn residual(&mut self, x: &DVector<f64>) -> DVector<f64> {
         let series = self.synthesis(x);
         self.period.move_to(self.states, &series);
+        x.as_slice().clone_into(&mut self.at);
         let forced = self.analysis(&self.period.rates);
         let terms = self.basis.terms();
         DVector::from_fn(x.len(), |row, _| {
@@ -229,7 +275,7 @@ impl<'a> Balance<'a> {
     fn jacobian(&self, of: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
         let states: Vec<usize> = of.iter().map(|&place| self.states[place]).collect();
-        let mut jacobian = -self.rows(Matrix::A, &states);
+        let mut jacobian = -self.rows(&states);
         for (row, &state) in of.iter().enumerate() {
             let mut own = jacobian.view_mut((row * terms, state * terms), (terms, terms));
             for term in 0..terms {
@@ -248,11 +294,11 @@ impl<'a> Balance<'a> {
             .filter(move |(at, _)| at.matrix == of)
     }
 
-    /// What the states that move do to some rows of A or C, term by term.
-    fn rows(&self, matrix: Matrix, rows: &[usize]) -> DMatrix<f64> {
+    /// What the states that move do to some rows of A, term by term.
+    fn rows(&self, rows: &[usize]) -> DMatrix<f64> {
         let terms = self.basis.terms();
         let mut found = DMatrix::zeros(rows.len() * terms, self.states.len() * terms);
-        for (at, weights) in self.entries(matrix) {
+        for (at, weights) in self.entries(Matrix::A) {
             let row = rows.iter().position(|&row| row == usize::from(at.row));
             let (Some(row), Some(column)) = (row, self.places[usize::from(at.column)]) else {
                 continue;
@@ -283,12 +329,22 @@ impl<'a> Balance<'a> {
     }
 }
 
+/// A piece of what pushes a state or an output.
+struct Push {
+    on_output: bool,
+    /// Among the states that move, or the outputs asked for.
+    place: usize,
+    /// The slope that it is a part of.
+    along: usize,
+}
+
 /// What has the same value at all samples.
 fn held(samples: &DVectorView<f64>) -> Option<f64> {
     let first = samples[0];
-    samples
+    // Without a way out before the end the samples are compared several at once.
+    let is_held = samples
         .as_slice()
         .iter()
-        .all(|&sample| sample == first)
-        .then_some(first)
+        .fold(true, |held, &sample| held & (sample == first));
+    is_held.then_some(first)
 }

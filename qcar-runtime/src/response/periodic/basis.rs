@@ -71,27 +71,38 @@ impl Basis {
             &self.finer,
             &DMatrix::from_column_slice(weights.len(), 1, weights.as_slice()),
         );
-        let even = |n: usize| if n == 0 { 2.0 * weights[0] } else { weights[2 * n - 1] };
-        let odd = |n: usize| if n == 0 { 0.0 } else { weights[2 * n] };
-        DMatrix::from_fn(self.terms, self.terms, |row, column| {
-            let (to, from) = (row.div_ceil(2), column.div_ceil(2));
+        let even = |n: usize| if n == 0 { weights[0] } else { 0.5 * weights[2 * n - 1] };
+        let odd = |n: usize| if n == 0 { 0.0 } else { 0.5 * weights[2 * n] };
+        let mut matrix = DMatrix::zeros(self.terms, self.terms);
+        for (from, to) in (0..=self.terms / 2).flat_map(|from| (0..=self.terms / 2).map(move |to| (from, to))) {
             let (sum, difference) = (to + from, to.abs_diff(from));
             let odd_difference = if to > from { odd(difference) } else { -odd(difference) };
-            let both = match (is_sine(row), is_sine(column)) {
-                (false, false) => even(difference) + even(sum),
-                (true, true) => even(difference) - even(sum),
-                (false, true) => odd(sum) - odd_difference,
-                (true, false) => odd(sum) + odd_difference,
-            };
-            if row == 0 { 0.25 * both } else { 0.5 * both }
-        })
+            let pairs = [
+                [even(difference) + even(sum), odd(sum) - odd_difference],
+                [odd(sum) + odd_difference, even(difference) - even(sum)],
+            ];
+            // Harmonic 0 is a cosine without a sine, and its coefficient is not doubled.
+            let share = if to == 0 { 0.5 } else { 1.0 };
+            for (sine_to, sine_from) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+                if sine_to <= to && sine_from <= from {
+                    let at = |harmonic: usize, sine: usize| (2 * harmonic + sine).saturating_sub(1);
+                    matrix[(at(to, sine_to), at(from, sine_from))] = share * pairs[sine_to][sine_from];
+                }
+            }
+        }
+        matrix
     }
 
-    /// Amplitudes of the harmonics from 0: `Re Y_n exp(jnθ)`.
-    pub fn harmonics(&self, coefficients: &[f64]) -> Vec<Complex<f64>> {
-        let constant = Complex::from(coefficients[0]);
-        let others = coefficients[1..].chunks(2).map(|pair| Complex::new(pair[0], -pair[1]));
-        std::iter::once(constant).chain(others).collect()
+    /// Amplitudes of the harmonics from 0, `Re Y_n exp(jnθ)`: a column for each series, whose coefficients stand one
+    /// after the other.
+    pub fn harmonics(&self, coefficients: &[f64]) -> DMatrix<Complex<f64>> {
+        let amplitudes = |series: &[f64], harmonic: usize| match harmonic {
+            0 => Complex::from(series[0]),
+            _ => Complex::new(series[2 * harmonic - 1], -series[2 * harmonic]),
+        };
+        let series = |place: usize| &coefficients[place * self.terms..][..self.terms];
+        let (rows, columns) = (self.terms / 2 + 1, coefficients.len() / self.terms);
+        DMatrix::from_fn(rows, columns, |harmonic, place| amplitudes(series(place), harmonic))
     }
 }
 

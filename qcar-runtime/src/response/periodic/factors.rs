@@ -7,14 +7,12 @@ use std::rc::Rc;
 
 use nalgebra::{Complex, DMatrix, DVector, Dyn, LU};
 
-use super::product::product;
+use super::product::{add, product};
 
 /// A factorised Jacobian.
 pub struct Factors {
     straight: Rc<Straight>,
-    /// The places among the rows of the straight states of those that the bent ones see.
-    seen: Vec<usize>,
-    /// What they do to the bent ones.
+    /// What the straight states do to the bent ones.
     pull: DMatrix<f64>,
     /// Of what is left: the bent states, and what they do to themselves by way of the straight ones.
     lu: LU<f64, Dyn, Dyn>,
@@ -24,28 +22,29 @@ pub struct Factors {
 pub struct Straight {
     /// Their rows of A, and the states that are bent.
     of: (DMatrix<f64>, Vec<usize>),
-    /// Their rows of the Jacobian.
+    /// Their rows of the Jacobian, harmonic by harmonic.
     rows: Vec<usize>,
-    /// The rows of the bent states.
+    /// The rows of the bent states, in the same order.
     bent: Vec<usize>,
     /// How pushes on them move them.
-    moves: DMatrix<f64>,
+    moves: Harmonics,
     /// How they move with the bent states.
-    follow: DMatrix<f64>,
+    follow: Harmonics,
 }
 
+/// A matrix that ties each harmonic to itself alone: its blocks from harmonic 0, for rows that go harmonic by harmonic.
+struct Harmonics(Vec<DMatrix<f64>>);
+
 impl Factors {
-    /// Of a Jacobian in which the bent states have these `rows`.
+    /// Of a Jacobian in which the bent states, one after the other, have these `rows`.
     pub fn new(straight: Rc<Straight>, rows: &DMatrix<f64>) -> Self {
+        let bent: Vec<usize> = (0..straight.of.1.len()).collect();
+        let rows = rows.select_rows(&rows_of(&bent, straight.follow.0.len()));
         let pull = rows.select_columns(&straight.rows);
-        let is_seen = |&place: &usize| pull.column(place).iter().any(|&by| by != 0.0);
-        let seen: Vec<usize> = (0..pull.ncols()).filter(is_seen).collect();
-        let pull = pull.select_columns(&seen);
-        let by_way = product(&pull, &straight.follow.select_rows(&seen));
+        let by_way = straight.follow.after(&pull);
         Self {
             lu: (rows.select_columns(&straight.bent) + by_way).lu(),
             straight,
-            seen,
             pull,
         }
     }
@@ -58,17 +57,18 @@ impl Factors {
 
     /// The same for many, a column each.
     pub fn solve_all(&self, pushes: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-        let mut straight = product(&self.straight.moves, &pushes.select_rows(&self.straight.rows));
+        let mut straight = self.straight.moves.of(&pushes.select_rows(&self.straight.rows));
         let mut bent = pushes.select_rows(&self.straight.bent);
-        bent -= product(&self.pull, &straight.select_rows(&self.seen));
+        bent -= product(&self.pull, &straight);
         let is_solved = bent.is_empty() || self.lu.solve_mut(&mut bent);
         is_solved.then_some(())?;
-        straight += product(&self.straight.follow, &bent);
+        straight += self.straight.follow.of(&bent);
         let mut x = DMatrix::zeros(pushes.nrows(), pushes.ncols());
-        for (mut x, (straight, bent)) in x.column_iter_mut().zip(straight.column_iter().zip(bent.column_iter())) {
-            let rows = self.straight.rows.iter().chain(&self.straight.bent);
-            for (&row, &value) in rows.zip(straight.iter().chain(&bent)) {
-                x[row] = value;
+        for (rows, found) in [(&self.straight.rows, straight), (&self.straight.bent, bent)] {
+            for (mut x, found) in x.column_iter_mut().zip(found.column_iter()) {
+                for (&row, &value) in rows.iter().zip(found.as_slice()) {
+                    x[row] = value;
+                }
             }
         }
         Some(x)
@@ -79,7 +79,6 @@ impl Straight {
     /// Of states whose rows of the Jacobian are `jnω - A`, of which `a` has the rows; `turns` are `jnω` for each harmonic
     /// from 0, and `bent` are all other states. `None` where a harmonic is singular.
     pub fn new(a: DMatrix<f64>, turns: &[Complex<f64>], bent: Vec<usize>) -> Option<Self> {
-        let terms = 2 * turns.len() - 1;
         let own: Vec<usize> = (0..a.ncols()).filter(|state| !bent.contains(state)).collect();
         let (among, pushes) = (a.select_columns(&own), a.select_columns(&bent));
         let inverse = |&turn: &Complex<f64>| {
@@ -90,10 +89,10 @@ impl Straight {
         let pushes = pushes.map(Complex::from);
         let following: Vec<_> = compliance.iter().map(|compliance| compliance * &pushes).collect();
         Some(Straight {
-            rows: rows_of(&own, terms),
-            bent: rows_of(&bent, terms),
-            moves: on_terms(&compliance),
-            follow: on_terms(&following),
+            rows: rows_of(&own, turns.len()),
+            bent: rows_of(&bent, turns.len()),
+            moves: Harmonics::new(&compliance),
+            follow: Harmonics::new(&following),
             of: (a, bent),
         })
     }
@@ -104,31 +103,66 @@ impl Straight {
     }
 }
 
-/// A matrix for the amplitudes of each harmonic from 0, as one for the terms of all.
-fn on_terms(harmonics: &[DMatrix<Complex<f64>>]) -> DMatrix<f64> {
-    let terms = 2 * harmonics.len() - 1;
-    let (rows, columns) = harmonics[0].shape();
-    let mut all = DMatrix::zeros(rows * terms, columns * terms);
-    for (harmonic, matrix) in harmonics.iter().enumerate() {
-        for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
-            let value = matrix[(row, column)];
-            if harmonic == 0 {
-                all[(row * terms, column * terms)] = value.re;
-                continue;
-            }
-            // The amplitude of a cos + b sin is a - jb.
-            let first = 2 * harmonic - 1;
-            let mut pair = all.view_mut((row * terms + first, column * terms + first), (2, 2));
-            pair.copy_from_slice(&[value.re, -value.im, value.im, value.re]);
-        }
+impl Harmonics {
+    /// Of a matrix for the amplitudes of each harmonic from 0.
+    fn new(amplitudes: &[DMatrix<Complex<f64>>]) -> Self {
+        // The amplitude of a cos + b sin is a - jb.
+        let block = |matrix: &DMatrix<Complex<f64>>| {
+            DMatrix::from_fn(2 * matrix.nrows(), 2 * matrix.ncols(), |row, column| {
+                let value = matrix[(row / 2, column / 2)];
+                match (row % 2, column % 2) {
+                    (1, 0) => -value.im,
+                    (0, 1) => value.im,
+                    _ => value.re,
+                }
+            })
+        };
+        let constant = std::iter::once(amplitudes[0].map(|value| value.re));
+        Self(constant.chain(amplitudes[1..].iter().map(block)).collect())
     }
-    all
+
+    /// Its product with a matrix on its right.
+    fn of(&self, other: &DMatrix<f64>) -> DMatrix<f64> {
+        let mut product = DMatrix::zeros(self.0.iter().map(DMatrix::nrows).sum(), other.ncols());
+        for (mut into, factors) in product.column_iter_mut().zip(other.column_iter()) {
+            let (mut into, mut factors) = (into.as_mut_slice(), factors.as_slice());
+            for block in &self.0 {
+                add(
+                    block.as_slice(),
+                    factors.split_off(..block.ncols()).unwrap_or_default(),
+                    into.split_off_mut(..block.nrows()).unwrap_or_default(),
+                );
+            }
+        }
+        product
+    }
+
+    /// Its product with a matrix on its left.
+    fn after(&self, other: &DMatrix<f64>) -> DMatrix<f64> {
+        let rows = other.nrows();
+        let mut product = DMatrix::zeros(rows, self.0.iter().map(DMatrix::ncols).sum());
+        let mut others = other.as_slice();
+        let mut into = product.column_iter_mut();
+        for block in &self.0 {
+            let columns = others.split_off(..rows * block.nrows()).unwrap_or_default();
+            for (factors, mut into) in block.column_iter().zip(&mut into) {
+                add(columns, factors.as_slice(), into.as_mut_slice());
+            }
+        }
+        product
+    }
 }
 
-/// The rows of some states.
-fn rows_of(states: &[usize], terms: usize) -> Vec<usize> {
-    let rows = states.iter().flat_map(|state| state * terms..(state + 1) * terms);
-    rows.collect()
+/// The rows of some states, harmonic by harmonic.
+fn rows_of(states: &[usize], harmonics: usize) -> Vec<usize> {
+    let terms = 2 * harmonics - 1;
+    let of = |harmonic: usize| {
+        let terms_of = (2 * harmonic).saturating_sub(1)..=2 * harmonic;
+        states
+            .iter()
+            .flat_map(move |state| terms_of.clone().map(move |term| state * terms + term))
+    };
+    (0..harmonics).flat_map(of).collect()
 }
 
 #[cfg(test)]
@@ -137,35 +171,40 @@ mod tests {
 
     #[test]
     fn the_solution_is_that_of_the_whole_jacobian() {
-        // Three states of five terms each, the middle one bent.
-        let (omega, constant) = (3.0, 1e-3);
-        let a = DMatrix::from_row_slice(3, 3, &[-0.5, 2.0, 1.0, 9.0, 9.0, 9.0, -4.0, 0.7, 0.3]);
-        let bent = DMatrix::from_fn(5, 15, |i, j| ((7 * i + 3 * j) % 11) as f64 - 4.5);
-        let mut whole = DMatrix::zeros(15, 15);
-        for (row, column) in [(0, 0), (0, 1), (0, 2), (2, 0), (2, 1), (2, 2)] {
-            let block = DMatrix::from_diagonal_element(5, 5, -a[(row, column)]);
-            whole.view_mut((5 * row, 5 * column), (5, 5)).copy_from(&block);
-        }
-        for first in [0, 10] {
-            whole[(first, first)] += constant;
-            for (harmonic, cosine) in [(1.0, first + 1), (2.0, first + 3)] {
-                whole[(cosine, cosine + 1)] += omega * harmonic;
-                whole[(cosine + 1, cosine)] -= omega * harmonic;
+        // Three states of five terms each, some of them straight.
+        for own in [vec![0, 2], vec![1], vec![0], vec![0, 1]] {
+            let (omega, constant) = (3.0, 1e-3);
+            let bent_states: Vec<usize> = (0..3).filter(|state| !own.contains(state)).collect();
+            let a = DMatrix::from_row_slice(3, 3, &[-0.5, 2.0, 1.0, 0.9, -1.1, 0.4, -4.0, 0.7, 0.3]);
+            let bent = DMatrix::from_fn(5 * bent_states.len(), 15, |i, j| ((7 * i + 3 * j) % 11) as f64 - 4.5);
+            let mut whole = DMatrix::zeros(15, 15);
+            for (&row, column) in own.iter().flat_map(|row| (0..3).map(move |column| (row, column))) {
+                let block = DMatrix::from_diagonal_element(5, 5, -a[(row, column)]);
+                whole.view_mut((5 * row, 5 * column), (5, 5)).copy_from(&block);
             }
+            for state in own.iter().map(|state| 5 * state) {
+                whole[(state, state)] += constant;
+                for (harmonic, cosine) in [(1.0, state + 1), (2.0, state + 3)] {
+                    whole[(cosine, cosine + 1)] += omega * harmonic;
+                    whole[(cosine + 1, cosine)] -= omega * harmonic;
+                }
+            }
+            for (place, state) in bent_states.iter().enumerate() {
+                whole.rows_mut(5 * state, 5).copy_from(&bent.rows(5 * place, 5));
+            }
+            let push = DVector::from_fn(15, |i, _| (i * i % 5) as f64 - 1.5);
+            let expected = whole.lu().solve(&push).unwrap();
+            let turns = [
+                Complex::from(constant),
+                Complex::new(0.0, omega),
+                Complex::new(0.0, 2.0 * omega),
+            ];
+            let straight = Straight::new(a.select_rows(&own), &turns, bent_states).unwrap();
+            let solved = Factors::new(Rc::new(straight), &bent).solve(&push).unwrap();
+            assert!(
+                (&solved - &expected).amax() < 1e-9 * expected.amax(),
+                "{solved} {expected}"
+            );
         }
-        whole.rows_mut(5, 5).copy_from(&bent);
-        let push = DVector::from_fn(15, |i, _| (i * i % 5) as f64 - 1.5);
-        let expected = whole.lu().solve(&push).unwrap();
-        let turns = [
-            Complex::from(constant),
-            Complex::new(0.0, omega),
-            Complex::new(0.0, 2.0 * omega),
-        ];
-        let straight = Straight::new(a.select_rows(&[0, 2]), &turns, vec![1]).unwrap();
-        let solved = Factors::new(Rc::new(straight), &bent).solve(&push).unwrap();
-        assert!(
-            (&solved - &expected).amax() < 1e-9 * expected.amax(),
-            "{solved} {expected}"
-        );
     }
 }

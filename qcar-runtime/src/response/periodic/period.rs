@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 
 use crate::model::{Model, Points};
 
-/// The samples of one drive.
+/// The samples of a drive.
 pub struct Period<'a> {
     model: &'a dyn Model,
     p: Vec<f64>,
@@ -21,12 +21,12 @@ pub struct Period<'a> {
 }
 
 impl<'a> Period<'a> {
-    /// With all states at rest; rates, matrices and derivatives by parameters are zero until they are asked for.
-    pub fn new(model: &'a dyn Model, p: &[f64], inputs: DMatrix<f64>) -> Self {
+    /// At rest and without a drive; rates, matrices and derivatives by parameters are zero until they are asked for.
+    pub fn new(model: &'a dyn Model, p: &[f64], samples: usize) -> Self {
         let about = model.about();
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
-        let samples = |columns| DMatrix::zeros(inputs.nrows(), columns);
+        let samples = |columns| DMatrix::zeros(samples, columns);
         Self {
             model,
             p: p.to_vec(),
@@ -35,7 +35,7 @@ impl<'a> Period<'a> {
             rates: samples(about.states.len()),
             matrices: samples(about.matrices.len()),
             by_parameter: samples(about.parameter_jacobian.len()),
-            inputs,
+            inputs: samples(about.inputs.len()),
         }
     }
 

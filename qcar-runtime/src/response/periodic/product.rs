@@ -18,34 +18,33 @@ pub fn product(one: &DMatrix<f64>, other: &DMatrix<f64>) -> DMatrix<f64> {
         return one * other;
     }
     let mut product = DMatrix::zeros(one.nrows(), other.ncols());
-    if !one.is_empty() {
-        widest(Product {
-            rows: one.nrows(),
-            one: one.as_slice(),
-            columns: other.as_slice().chunks_exact(other.nrows()),
-            into: product.as_mut_slice(),
-        });
+    for (mut into, factors) in product.column_iter_mut().zip(other.column_iter()) {
+        add(one.as_slice(), factors.as_slice(), into.as_mut_slice());
     }
     product
 }
 
-struct Product<'a> {
-    rows: usize,
-    one: &'a [f64],
-    columns: std::slice::ChunksExact<'a, f64>,
+/// Adds the columns of a matrix, each with its factor.
+pub fn add(columns: &[f64], factors: &[f64], into: &mut [f64]) {
+    if !into.is_empty() {
+        widest(Sum { columns, factors, into });
+    }
+}
+
+struct Sum<'a> {
+    columns: &'a [f64],
+    factors: &'a [f64],
     into: &'a mut [f64],
 }
 
-impl Loops for Product<'_> {
+impl Loops for Sum<'_> {
     type Result = ();
 
     #[inline(always)]
     fn run(self) {
-        for (into, factors) in self.into.chunks_exact_mut(self.rows).zip(self.columns) {
-            for (column, factor) in self.one.chunks_exact(self.rows).zip(factors) {
-                for (sum, value) in into.iter_mut().zip(column) {
-                    *sum += factor * value;
-                }
+        for (column, factor) in self.columns.chunks_exact(self.into.len()).zip(self.factors) {
+            for (sum, value) in self.into.iter_mut().zip(column) {
+                *sum += factor * value;
             }
         }
     }
