@@ -7,6 +7,8 @@
 
 use std::f64::consts::PI;
 
+use nalgebra::Complex;
+
 /// Samples on each side of a mean, below which its pulse no longer tells a signal from its alias: that of 50 Hz is then
 /// let through by 0.1 %.
 const FEWEST: usize = 4;
@@ -18,22 +20,26 @@ pub struct Means {
     rate: f64,
     /// Samples on each side of a mean.
     reach: usize,
+    /// From the angle of a pulse at one sample to that at the next.
+    turn: Complex<f64>,
 }
 
 impl Means {
     /// Means over `half` s to each side, in whole samples and at least `FEWEST` of them.
     pub fn new(rate: f64, half: f64) -> Self {
-        Self {
-            rate,
-            reach: ((half * rate).round() as usize).max(FEWEST),
-        }
+        Self::reaching(rate, ((half * rate).round() as usize).max(FEWEST))
     }
 
     /// The same means of a record that has no more samples than they need.
     pub fn sparse(&self) -> Self {
+        Self::reaching(FEWEST as f64 / self.half(), FEWEST)
+    }
+
+    fn reaching(rate: f64, reach: usize) -> Self {
         Self {
-            rate: FEWEST as f64 / self.half(),
-            reach: FEWEST,
+            rate,
+            reach,
+            turn: Complex::cis(-PI / reach as f64),
         }
     }
 
@@ -58,11 +64,41 @@ impl Means {
         let first = (place - reach).ceil().max(0.0) as usize;
         let last = ((place + reach).floor() + 1.0).clamp(0.0, samples.len() as f64) as usize;
         let (mut mean, mut slope) = (0.0, 0.0);
-        for (k, sample) in samples.iter().enumerate().take(last).skip(first) {
-            let angle = PI * (place - k as f64) / reach;
-            mean += sample * (1.0 + angle.cos());
-            slope -= sample * angle.sin();
+        let mut angle = Complex::cis(PI * (place - first as f64) / reach);
+        for sample in samples.iter().take(last).skip(first) {
+            mean += sample * (1.0 + angle.re);
+            slope -= sample * angle.im;
+            angle *= self.turn;
         }
         (mean / (2.0 * reach), slope * PI * self.rate / (2.0 * reach * reach))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_is_the_sum_of_all_samples_by_its_pulse() {
+        let samples: Vec<f64> = (0..900).map(|k| ((7 * k) % 31) as f64 - 11.0).collect();
+        for (rate, half) in [(500.0, 0.008), (2000.0, 0.01), (10_000.0, 0.02)] {
+            let means = Means::new(rate, half);
+            let pulse = |t: f64| (t.abs() < half).then(|| (1.0 + (PI * t / half).cos()) / (2.0 * half * rate));
+            let slope = |t: f64| (t.abs() < half).then(|| -(PI * t / half).sin() * PI / (2.0 * half * half * rate));
+            let sum = |weight: &dyn Fn(f64) -> Option<f64>, t: f64| -> f64 {
+                let all = samples.iter().zip(0..);
+                all.map(|(y, k)| y * weight(t - f64::from(k) / rate).unwrap_or(0.0))
+                    .sum()
+            };
+            // Within the record, and where the pulse hangs over either end of it.
+            for t in [0.3 * half, 3.37 * half, samples.len() as f64 / rate - 0.21 * half] {
+                let (found, expected) = (means.at(&samples, t), (sum(&pulse, t), sum(&slope, t)));
+                assert!((found.0 - expected.0).abs() < 1e-11, "{found:?}, not {expected:?}");
+                assert!(
+                    (found.1 - expected.1).abs() < 1e-11 / half,
+                    "{found:?}, not {expected:?}"
+                );
+            }
+        }
     }
 }

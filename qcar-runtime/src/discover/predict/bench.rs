@@ -24,6 +24,8 @@ pub struct Instant {
     pub speed: f64,
     /// s since the instant before.
     pub step: f64,
+    /// Whether the force is wanted.
+    pub is_read: bool,
 }
 
 /// Places in a model on the rig.
@@ -105,23 +107,42 @@ impl Bench {
         })
     }
 
-    /// The force on the wheel (N) at each instant of a path that begins at rest: with these parameters, and with each of
-    /// some sets that are so near that one Newton step leads from the one to the other.
+    /// The force on the wheel (N) at each instant that is read of a path that begins at rest: with these parameters, and
+    /// with each of some sets that are so near that one Newton step leads from the one to the other.
     pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Vec<Vec<f64>> {
         let mut first = Drive::new(self, model, p);
-        let mut near: Vec<Drive> = near.iter().map(|p| Drive::new(self, model, p)).collect();
+        // What the rig does not feel leaves the forces as they are.
+        let felt = (1..).zip(near).filter(|(_, other)| self.feels(model.about(), p, other));
+        let mut near_drives: Vec<(usize, Drive)> = felt.map(|(set, p)| (set, Drive::new(self, model, p))).collect();
         let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
         for instant in path {
             first.hold(instant);
             let factor = first.follow(instant.step);
-            forces[0].push(first.force());
-            for (drive, forces) in near.iter_mut().zip(&mut forces[1..]) {
+            let read = forces[0].len();
+            if instant.is_read {
+                let force = first.force();
+                forces.iter_mut().for_each(|forces| forces.push(force));
+            }
+            for (set, drive) in &mut near_drives {
                 drive.hold(instant);
                 drive.follow_near(&first.x, factor.as_ref(), instant.step);
-                forces.push(drive.force());
+                if instant.is_read {
+                    forces[*set][read] = drive.force();
+                }
             }
         }
         forces
+    }
+
+    /// Whether anything that differs between two parameter sets acts on what the rig looks at.
+    fn feels(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
+        let held = [self.wheel_speed, self.held_speed];
+        let is_seen = |row: usize| held.contains(&row) || self.between.iter().any(|b| b.row() == row);
+        let mut jacobian = about.parameter_jacobian.iter();
+        jacobian.any(|&(is_output, row, parameter)| {
+            let parameter = usize::from(parameter);
+            !is_output && is_seen(usize::from(row)) && p[parameter] != other[parameter]
+        })
     }
 }
 
@@ -236,7 +257,7 @@ impl<'a> Drive<'a> {
         for _ in 0..STEPS {
             let missing = self.missing(&last, h);
             factor = Factor::of(self.slope(h));
-            let step = factor.as_ref().and_then(|factor| factor.solve(&missing));
+            let step = factor.as_ref().and_then(|factor| factor.solve(missing));
             let Some(step) = step else { return factor };
             if self.step(&step, &last, h) {
                 break;
@@ -252,7 +273,7 @@ impl<'a> Drive<'a> {
             self.x[b.place] = arrived[b.place];
         }
         let missing = self.missing(&last, h);
-        if let Some(step) = factor.and_then(|factor| factor.solve(&missing)) {
+        if let Some(step) = factor.and_then(|factor| factor.solve(missing)) {
             self.step(&step, &last, h);
         }
     }
@@ -337,10 +358,10 @@ impl Factor {
     }
 
     /// `None` without a number.
-    fn solve(&self, missing: &DVector<f64>) -> Option<DVector<f64>> {
+    fn solve(&self, mut missing: DVector<f64>) -> Option<DVector<f64>> {
         let step = match self {
-            Factor::Regular(factor) => factor.solve(missing),
-            Factor::Singular(factor) => factor.solve(missing, f64::EPSILON).ok(),
+            Factor::Regular(factor) => factor.solve_mut(&mut missing).then_some(missing),
+            Factor::Singular(factor) => factor.solve(&missing, f64::EPSILON).ok(),
         };
         step.filter(|step| step.iter().all(|step| step.is_finite()))
     }

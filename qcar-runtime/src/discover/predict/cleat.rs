@@ -18,7 +18,7 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// The integration: its error stays far below what a tyre model is good for.
 const SETTINGS: Settings = Settings {
-    method: Method::Adaptive(3e-7),
+    method: Method::Adaptive(3e-6),
     most_steps: 100_000,
 };
 /// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: large against

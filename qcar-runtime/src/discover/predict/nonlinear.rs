@@ -57,8 +57,8 @@ pub(super) fn sweep(
     let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
     let groups = groups(about, values, free);
     let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
-    let predict = |(column, reading): (usize, &Reading)| reading.prediction(column, &drives, &cycles, free.len());
-    Ok(readings.iter().enumerate().map(predict).collect())
+    let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
+    Ok(readings.iter().map(predict).collect())
 }
 
 /// For each free parameter those that move with it.
@@ -82,8 +82,7 @@ struct Reading<'a> {
 }
 
 impl Reading<'_> {
-    /// From cycles that have its output at `column`.
-    fn prediction(&self, column: usize, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
+    fn prediction(&self, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
         let Kind::Harmonic(harmonic) = self.series.kind else {
             unreachable!("a sweep has no other series")
         };
@@ -94,13 +93,13 @@ impl Reading<'_> {
             let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
             Complex::new(0.0, omega).powi(self.power) / drive.amplitude
         };
-        let value = |&place: &usize| cycles[place].outputs[column][harmonic] * scale(place);
+        let value = |&place: &usize| cycles[place].output(self.output)[harmonic] * scale(place);
         let slope = |k: usize| {
-            let along = |&place: &usize| cycles[place].slopes[k][column][harmonic] * scale(place);
+            let along = |&place: &usize| cycles[place].slope(k, self.output)[harmonic] * scale(place);
             places.iter().map(along).collect()
         };
         let louder = |&place: &usize| {
-            let moved = cycles[place].louder[column][harmonic] - cycles[place].outputs[column][harmonic];
+            let moved = cycles[place].louder(self.output)[harmonic] - cycles[place].output(self.output)[harmonic];
             moved * scale(place)
         };
         Prediction {

@@ -82,43 +82,36 @@ struct Course {
 }
 
 enum Reading {
-    /// Where the way there and the way back are, each through so many travels.
-    Ways { there: usize, back: usize, count: usize },
-    /// Pieces of a sine of this amplitude (m), and where the path has the first of them.
-    Turns {
-        first: usize,
-        turns: Vec<Turn>,
-        amplitude: f64,
-    },
+    /// The way there and the way back, each through so many travels.
+    Ways { count: usize },
+    /// Pieces of a sine of this amplitude (m).
+    Turns { turns: Vec<Turn>, amplitude: f64 },
 }
 
 impl Course {
     /// A slow cycle between two ends, there and back through some travels.
     fn cycle([low, high]: [f64; 2], travels: &[f64]) -> Self {
-        let (count, last) = (travels.len(), travels[travels.len() - 1]);
-        let there = way(0.0, low)
-            .chain(way(low, travels[0]))
-            .chain(travels[1..].iter().copied());
-        let back = way(last, high)
-            .chain(way(high, last))
-            .chain(travels.iter().rev().skip(1).copied());
+        let [first, last] = [travels[0], travels[travels.len() - 1]];
+        let unread = |from: f64, to: f64| way(from, to).map(|travel| (travel, false));
+        let there = unread(0.0, low)
+            .chain(unread(low, first).take(APPROACH - 1))
+            .chain(travels.iter().map(|&travel| (travel, true)));
+        let back = unread(last, high)
+            .chain(unread(high, last).take(APPROACH - 1))
+            .chain(travels.iter().rev().map(|&travel| (travel, true)));
         let mut before = 0.0;
-        let instant = |travel: f64| {
+        let instant = |(travel, is_read): (f64, bool)| {
             let way: f64 = travel - std::mem::replace(&mut before, travel);
             Instant {
                 travel,
                 speed: SLOW * way.signum(),
                 step: (way.abs() / SLOW).max(SHORTEST),
+                is_read,
             }
         };
-        let path: Vec<Instant> = there.chain(back).map(instant).collect();
         Self {
-            reading: Reading::Ways {
-                there: 2 * APPROACH - 1,
-                back: path.len() - count,
-                count,
-            },
-            path,
+            path: there.chain(back).map(instant).collect(),
+            reading: Reading::Ways { count: travels.len() },
         }
     }
 
@@ -129,47 +122,41 @@ impl Course {
             travel,
             speed: omega * amplitude,
             step: 1.0 / (frequency * PARTS as f64),
+            is_read: false,
         });
         let turns: Vec<Turn> = (0..PARTS + PARTS / 2).flat_map(Turn::of_part).collect();
         let swing = turns.iter().map(|turn| Instant {
             travel: amplitude * turn.angle.cos(),
             speed: -omega * amplitude * turn.angle.sin(),
             step: turn.width / omega,
+            is_read: turn.settled,
         });
         Self {
             path: approach.chain(swing).collect(),
             reading: Reading::Turns {
-                first: APPROACH,
-                turns,
+                turns: turns.into_iter().filter(|turn| turn.settled).collect(),
                 amplitude,
             },
         }
     }
 
-    /// The values of a series: middle or half width of a cycle at its travels, or a harmonic over the amplitude.
+    /// From the forces that are read the values of a series: middle or half width of a cycle at its travels, or a harmonic
+    /// over the amplitude.
     fn read(&self, kind: Kind, forces: &[f64]) -> Vec<Complex<f64>> {
         match (&self.reading, kind) {
-            (Reading::Ways { there, back, count }, _) => {
+            (Reading::Ways { count }, _) => {
                 let sign = if kind == Kind::Width { -0.5 } else { 0.5 };
-                let back = forces[*back..][..*count].iter().rev();
-                let pairs = forces[*there..][..*count].iter().zip(back);
+                let (there, back) = forces.split_at(*count);
+                let pairs = there.iter().zip(back.iter().rev());
                 pairs
                     .map(|(there, back)| Complex::from(0.5 * there + sign * back))
                     .collect()
             }
-            (
-                Reading::Turns {
-                    first,
-                    turns,
-                    amplitude,
-                },
-                Kind::Cycle(order),
-            ) => {
-                let settled = turns.iter().zip(&forces[*first..]).filter(|(turn, _)| turn.settled);
+            (Reading::Turns { turns, amplitude }, Kind::Cycle(order)) => {
                 let part = |(turn, force): (&Turn, &f64)| {
                     Complex::from_polar(turn.width / PI, -(order as f64) * turn.angle) * force / amplitude
                 };
-                vec![settled.map(part).sum()]
+                vec![turns.iter().zip(forces).map(part).sum()]
             }
             _ => Vec::new(),
         }
