@@ -8,18 +8,22 @@
 //! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
 //! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
 
+// With what sweeps show beyond their steady harmonics.
+mod settle;
+
 use std::ops::Range;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::{Nuisance, STRAINED};
-use super::predict::{Free, PredictError, Prediction, predict_sides, unsteady};
+use super::predict::{Free, PredictError, Prediction, predict_sides};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
+pub use settle::settle;
 
 /// The explanation that was found.
 #[derive(Clone, Debug)]
@@ -121,7 +125,7 @@ impl Refit {
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
         posterior.side = side;
         let mut residual = vec![0.0; posterior.residuals()];
-        posterior.look(&self.coefficients, &mut residual, &[]);
+        posterior.look(&self.coefficients, &mut residual, false);
         residual.truncate(posterior.residuals);
         residual
             .iter()
@@ -187,38 +191,6 @@ pub fn refit_from(
     Ok(posterior.refit(outcome))
 }
 
-/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone does not look at: see
-/// [`unsteady`].
-///
-/// # Errors
-/// Where the model lacks what was measured.
-pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
-    let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
-    if !evidence.of_role(Role::Fit).any(swept) {
-        return Ok(refit);
-    }
-    let mut posterior = Posterior::new(
-        model,
-        refit.values.clone(),
-        &refit.free,
-        evidence,
-        refit.nuisance.clone(),
-    );
-    let mut settled = refit;
-    for _ in 0..ROUNDS {
-        let misread = settled.nuisance.misread(evidence, &settled.coefficients);
-        posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
-        let outcome = posterior.search(&posterior.place(&settled), TO_SETTLE)?;
-        settled = posterior.refit(outcome);
-    }
-    Ok(settled)
-}
-
-/// Rounds of a refit with what its sweeps add to their steady harmonics: the second has it from where the first arrived.
-const ROUNDS: usize = 2;
-/// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
-const TO_SETTLE: usize = 20;
-
 impl Free {
     /// How far it is from its start, in units of [`STRAY`], and the derivative of that.
     fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
@@ -261,6 +233,14 @@ pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>
             into.push(value.re / sigma);
         }
     }
+}
+
+/// A slope by the factors with which a sensor shows it, scaled.
+fn through(slope: &[Complex<f64>], factors: &[Complex<f64>], scale: f64) -> impl Iterator<Item = Complex<f64>> {
+    slope
+        .iter()
+        .zip(factors)
+        .map(move |(slope, factor)| slope * factor * scale)
 }
 
 /// True for a run whose derivatives cost little beside its prediction: a sweep's come from the same factorisation.
@@ -413,10 +393,10 @@ impl<'a> Posterior<'a> {
         Ok([swept, predict(free, false)?])
     }
 
-    /// Writes the residual; the columns of the Jacobian, of the data alone, are those along `free`, the first of all that
-    /// are free, and along the sensors' errors and sides.
-    fn look(&mut self, x: &[f64], residual: &mut [f64], free: &[Free]) -> Vec<Vec<f64>> {
-        let [swept, others] = match self.predictions(x, free) {
+    /// Writes the residual, and gives the columns of the Jacobian, of the data alone, where they are wanted.
+    fn look(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
+        let free = if sloped { self.free.clone() } else { Vec::new() };
+        let [swept, others] = match self.predictions(x, &free) {
             Ok(predictions) => predictions,
             Err(error) => {
                 self.refused = Some(error);
@@ -426,7 +406,9 @@ impl<'a> Posterior<'a> {
         };
         let mut predictions: Vec<&Prediction> = swept.iter().chain(&others).collect();
         predictions.sort_by_key(|own| own.series);
-        let (mut rows, mut columns) = (Vec::new(), vec![Vec::new(); self.variables()]);
+        let mut rows = Vec::with_capacity(residual.len());
+        let count = if sloped { self.variables() } else { 0 };
+        let mut columns: Vec<Vec<f64>> = (0..count).map(|_| Vec::with_capacity(residual.len())).collect();
         for prediction in predictions {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
@@ -440,7 +422,8 @@ impl<'a> Posterior<'a> {
     }
 
     /// Adds the rows of one prediction to columns that grow together. A column may be moved in more ways than one: the gain
-    /// of a reference scales what is shown, and says how hard the run was driven.
+    /// of a reference scales what is shown, and says how hard the run was driven. Without columns there is the residual
+    /// alone.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
         let of_sensors = self.free.len();
@@ -450,32 +433,32 @@ impl<'a> Posterior<'a> {
         let first = residual.len();
         let left = series.value.iter().zip(&shown.value);
         scaled(series, left.map(|(measured, shown)| measured - shown), residual);
+        if columns.is_empty() {
+            return;
+        }
         for column in columns.iter_mut() {
             column.resize(residual.len(), 0.0);
         }
+        let mut rows = Vec::with_capacity(residual.len() - first);
         let mut add = |slope: &mut dyn Iterator<Item = Complex<f64>>, place: usize| {
-            let mut rows = Vec::with_capacity(residual.len() - first);
+            rows.clear();
             scaled(series, slope.map(|slope| -slope), &mut rows);
             let sums = columns[place][first..].iter_mut();
-            sums.zip(rows).for_each(|(sum, row)| *sum += row);
-        };
-        let through = |slope: Vec<Complex<f64>>, scale: f64| {
-            let slopes = slope.into_iter().zip(&shown.factor);
-            slopes.map(move |(slope, factor)| slope * factor * scale)
+            sums.zip(&rows).for_each(|(sum, row)| *sum += row);
         };
         let one_sided = of_one_side(&self.evidence.runs[series.run]);
         for (k, slope) in prediction.slopes.iter().enumerate() {
             if one_sided && is_of_a_side(self.model, &self.free[k]) {
                 let factor = self.factors(x)[k].exp();
                 let of_side = of_sensors + self.nuisance.len() + k;
-                add(&mut through(slope.clone(), factor), k);
-                add(&mut through(slope.clone(), factor * x[k]), of_side);
+                add(&mut through(slope, &shown.factor, factor), k);
+                add(&mut through(slope, &shown.factor, factor * x[k]), of_side);
             } else {
-                add(&mut through(slope.clone(), 1.0), k);
+                add(&mut through(slope, &shown.factor, 1.0), k);
             }
         }
         for (k, slope) in self.nuisance.misread_slopes(self.evidence, prediction) {
-            add(&mut through(slope, 1.0), of_sensors + k);
+            add(&mut through(&slope, &shown.factor, 1.0), of_sensors + k);
         }
         for (k, slope) in shown.slopes {
             add(&mut slope.into_iter(), of_sensors + k);
@@ -493,7 +476,7 @@ impl Problem for Posterior<'_> {
     }
 
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        let columns = self.look(x, residual, &self.free.clone());
+        let columns = self.look(x, residual, true);
         for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
             into.fill(0.0);
             into[..column.len()].copy_from_slice(column);
@@ -506,7 +489,7 @@ impl Problem for Posterior<'_> {
 
     /// Differentiated by differences, rides and histories cost many times more than alone.
     fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        self.look(x, residual, &[]);
+        self.look(x, residual, false);
         true
     }
 }

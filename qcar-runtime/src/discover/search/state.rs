@@ -30,8 +30,8 @@ const MUCH: f64 = 0.25;
 const TO_FOLLOW: usize = 25;
 /// and the share of the sum of squares from which on its end is another place.
 const WORTH: f64 = 1e-3;
-/// A ride takes the time of many sweeps, and in a first look so many tell enough.
-const RIDES: usize = 2;
+/// A ride takes the time of many sweeps, and until the last look so many tell enough.
+const RIDES: usize = 1;
 
 /// What is known so far.
 #[derive(Clone)]
@@ -235,10 +235,11 @@ impl State {
     /// what is wrong with it must be seen. What it shows beyond steady harmonics changes little with one effect more, and
     /// would hide a faint one.
     fn looks<'e>(&self, wanted: &Wanted, evidence: &'e Evidence) -> Looks<'e> {
-        let telling = self.telling(evidence);
+        let (telling, most) = (self.telling(evidence), self.widest(evidence));
         let steady = evidence.less(&self.explanation.refit.unsteady);
         Looks {
             first: steady.only(|run| telling.contains(&run)),
+            most: steady.only(|run| most.contains(&run)),
             all: steady,
             whole: evidence,
             tolerance: self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE),
@@ -246,37 +247,37 @@ impl State {
         }
     }
 
-    /// Fitted runs in which the gap is wide or heavy, but no more than [`RIDES`] over obstacles, the widest. Where it is next
-    /// to noise, no run stands out: then one of each kind.
-    fn telling(&self, evidence: &Evidence) -> Vec<usize> {
+    /// The fitted runs but for most rides, those with the widest gaps first.
+    fn widest(&self, evidence: &Evidence) -> Vec<usize> {
         let runs = self.explanation.gap.by_run(evidence);
         let is_fitted = |run: &usize| evidence.runs[*run].role == Role::Fit && runs[*run].0.is_finite();
         let mut fitted: Vec<usize> = (0..runs.len()).filter(is_fitted).collect();
+        fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
+        with_few_rides(fitted, evidence)
+    }
+
+    /// Of the widest runs those whose gap is wide or heavy. Where it is next to noise, no run stands out: then one of each
+    /// kind.
+    fn telling(&self, evidence: &Evidence) -> Vec<usize> {
+        let runs = self.explanation.gap.by_run(evidence);
+        let mut telling = self.widest(evidence);
         if self.explanation.gap.fit > NOISE {
             // What is no more than noise tells nothing, however much of it there is.
             let width = |run: usize| (runs[run].0.powi(2) - 1.0).max(0.0).sqrt();
             let weight = |run: usize| runs[run].1 * (1.0 - runs[run].0.powi(-2)).max(0.0);
-            let widest = fitted.iter().map(|&run| width(run)).fold(0.0, f64::max);
-            let heaviest = fitted.iter().map(|&run| weight(run)).fold(0.0, f64::max);
-            fitted.retain(|&run| width(run) > MUCH * widest || weight(run) > MUCH * heaviest);
-            fitted.sort_by(|&a, &b| width(b).total_cmp(&width(a)));
-            let mut rides = 0;
-            fitted.retain(|&run| {
-                let is_ride = matches!(evidence.runs[run].stimulus, Stimulus::Cleat(_));
-                rides += usize::from(is_ride);
-                !is_ride || rides <= RIDES
-            });
-            return fitted;
+            let most = |of: &dyn Fn(usize) -> f64| telling.iter().map(|&run| of(run)).fold(0.0, f64::max);
+            let (widest, heaviest) = (most(&width), most(&weight));
+            telling.retain(|&run| width(run) > MUCH * widest || weight(run) > MUCH * heaviest);
+            return telling;
         }
-        fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
         let mut kinds = Vec::new();
-        fitted.retain(|&run| {
+        telling.retain(|&run| {
             let kind = std::mem::discriminant(&evidence.runs[run].stimulus);
             let is_first = !kinds.contains(&kind);
             kinds.push(kind);
             is_first
         });
-        fitted
+        telling
     }
 
     /// Sum of squares with the penalty of all that was taken.
@@ -403,6 +404,17 @@ impl State {
     }
 }
 
+/// Of some runs the first [`RIDES`] over obstacles, and all others.
+fn with_few_rides(mut runs: Vec<usize>, evidence: &Evidence) -> Vec<usize> {
+    let mut rides = 0;
+    runs.retain(|&run| {
+        let is_ride = matches!(evidence.runs[run].stimulus, Stimulus::Cleat(_));
+        rides += usize::from(is_ride);
+        !is_ride || rides <= RIDES
+    });
+    runs
+}
+
 /// The best fit of one model.
 fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) -> Result<Explanation, PredictError> {
     // What cannot be predicted at all is an error here, where among many it only drops out.
@@ -413,8 +425,12 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
         unknowns: 0,
         name: "the model alone".into(),
     };
+    let fitted = (0..evidence.runs.len()).filter(|&run| evidence.runs[run].role == Role::Fit);
+    let few = with_few_rides(fitted.collect(), evidence);
+    let most = evidence.only(|run| few.contains(&run));
     let looks = Looks {
-        first: evidence.clone(),
+        first: most.clone(),
+        most,
         all: evidence.clone(),
         whole: evidence,
         tolerance: TOLERANCE,

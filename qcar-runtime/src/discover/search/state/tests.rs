@@ -33,14 +33,16 @@ fn a_first_look_is_at_runs_whose_gap_is_wide_or_heavy() {
 }
 
 #[test]
-fn a_first_look_is_at_the_two_widest_rides_and_at_every_sweep() {
-    let of_runs = [8.0, 7.0, 10.0, 6.0, 9.0].map(|gap| (50, gap));
-    let stimuli = [ride(), sweep(), ride(), sweep(), ride()];
-    let runs = stimuli.map(|stimulus| (Role::Fit, stimulus, 50));
-    assert_eq!(
-        with_residuals(8.0, &of_runs).telling(&evidence(1.0, runs.to_vec())),
-        [2, 4, 1, 3]
-    );
+fn until_the_last_look_it_is_at_the_widest_ride_and_at_every_sweep() {
+    let of_runs = [8.0, 7.0, 10.0, 6.0, 2.0].map(|gap| (50, gap));
+    let stimuli = [ride(), sweep(), ride(), sweep(), sweep()];
+    let evidence = evidence(1.0, stimuli.map(|stimulus| (Role::Fit, stimulus, 50)).to_vec());
+    let state = with_residuals(8.0, &of_runs);
+    assert_eq!(state.widest(&evidence), [2, 1, 3, 4]);
+    assert_eq!(state.telling(&evidence), [2, 1, 3]);
+    let looks = state.looks(&ANYTHING, &evidence);
+    let runs = [&looks.first, &looks.most, &looks.all].map(|of| of.runs.len());
+    assert_eq!(runs, [3, 4, 5]);
 }
 
 #[test]

@@ -1,0 +1,39 @@
+//! The end of a refit: what its sweeps show beyond their steady harmonics.
+
+use super::{Posterior, Refit};
+use crate::campaign::Role;
+use crate::discover::evidence::{Evidence, Series, Stimulus};
+use crate::discover::predict::{PredictError, unsteady};
+use crate::model::Model;
+
+/// Rounds of a refit with what its sweeps add to their steady harmonics: the second has it from where the first arrived.
+const ROUNDS: usize = 2;
+/// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
+const TO_SETTLE: usize = 20;
+
+/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone does not look at: see
+/// [`unsteady`].
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
+    let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
+    if !evidence.of_role(Role::Fit).any(swept) {
+        return Ok(refit);
+    }
+    let mut posterior = Posterior::new(
+        model,
+        refit.values.clone(),
+        &refit.free,
+        evidence,
+        refit.nuisance.clone(),
+    );
+    let mut settled = refit;
+    for _ in 0..ROUNDS {
+        let misread = settled.nuisance.misread(evidence, &settled.coefficients);
+        posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
+        let outcome = posterior.search(&posterior.place(&settled), TO_SETTLE)?;
+        settled = posterior.refit(outcome);
+    }
+    Ok(settled)
+}
