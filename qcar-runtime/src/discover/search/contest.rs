@@ -2,7 +2,7 @@
 //!
 //! A wrong model that is pressed to fit a precise measurement hides its fault in all its parameters and ends in a poor
 //! local minimum. So each explanation is first fitted from several starts to a part of the lines, with a tolerance in
-//! which only the large features count. The best go on, sharply; all lines are kept for the last.
+//! which only the large features count. The best go on, sharply; all lines and all rides are kept for the last.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -20,6 +20,8 @@ use crate::response::parameters::Values;
 pub struct Looks<'a> {
     /// What is worth a first look: a part of all.
     pub first: Evidence,
+    /// Enough to choose by: all but what takes much time and tells little more.
+    pub most: Evidence,
     /// All there is, less what no search looks at: see [`settle`](crate::discover::refit::settle).
     pub all: Evidence,
     /// What the last word is about.
@@ -30,10 +32,18 @@ pub struct Looks<'a> {
     pub least: f64,
 }
 
+/// Which runs a round looks at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Look {
+    First,
+    Most,
+    All,
+}
+
 /// A round of the knock-out.
 struct Stage {
-    /// Whether it looks at a part only.
-    first: bool,
+    /// Which runs it looks at.
+    look: Look,
     /// It looks at every so many-th value.
     thinned: usize,
     /// Whether large features alone count.
@@ -44,57 +54,75 @@ struct Stage {
     starts: usize,
     /// Explanations that go on,
     kept: usize,
-    /// if they gain this share of what the best of them gains over no change at all, where a share is asked for.
+    /// if they gain this share of what the best of them gains over no change at all, where a share is asked for,
     share: Option<f64>,
+    /// and leave no more than so many times what the best leaves.
+    times_best: f64,
 }
 
-const STAGES: [Stage; 5] = [
+const STAGES: [Stage; 6] = [
     // Of many starts most are far from any use.
     Stage {
-        first: true,
+        look: Look::First,
         thinned: 6,
         tolerant: true,
         evaluations: 1,
         starts: 2,
         kept: usize::MAX,
         share: None,
+        times_best: f64::INFINITY,
     },
     Stage {
-        first: true,
+        look: Look::First,
         thinned: 6,
         tolerant: true,
         evaluations: 3,
         starts: 2,
-        kept: 14,
+        kept: 12,
         // So few steps tell who is far from any use, not yet who is better than no change.
         share: None,
+        times_best: f64::INFINITY,
     },
     Stage {
-        first: false,
+        look: Look::Most,
         thinned: 3,
         tolerant: true,
-        evaluations: 8,
+        evaluations: 4,
         starts: 2,
-        kept: 8,
+        kept: 7,
+        share: None,
+        times_best: f64::INFINITY,
+    },
+    // Who is far behind after the first steps on all sweeps needs no more of them.
+    Stage {
+        look: Look::Most,
+        thinned: 3,
+        tolerant: true,
+        evaluations: 6,
+        starts: 2,
+        kept: 7,
         share: Some(0.3),
+        times_best: f64::INFINITY,
     },
     Stage {
-        first: false,
+        look: Look::Most,
         thinned: 3,
         tolerant: false,
         evaluations: 12,
         starts: 1,
         kept: 4,
         share: Some(0.3),
+        times_best: 5.0,
     },
     Stage {
-        first: false,
+        look: Look::All,
         thinned: 1,
         tolerant: false,
         evaluations: 25,
         starts: 1,
         kept: 4,
         share: Some(0.0),
+        times_best: 3.0,
     },
 ];
 
@@ -116,7 +144,7 @@ impl Stage {
     /// resonance is not dropped for want of a few steps.
     fn evaluations(&self, entrant: &Entrant, entrants: &[Entrant]) -> usize {
         let is_linear = |entrant: &Entrant| entrant.explanandum.model.about().linear;
-        let times = match (self.first, is_linear(entrant), is_linear(&entrants[0])) {
+        let times = match (self.look == Look::First, is_linear(entrant), is_linear(&entrants[0])) {
             (true, true, _) => PATIENCE,
             (true, false, false) => LESS_PATIENCE,
             _ => 1,
@@ -201,6 +229,8 @@ pub fn contest(
         }
         progress(News::Doing(&told(entrants, &field)));
     }
+    // The measure has done its work, unless it is all there is.
+    field.retain(|runner| entrants.len() == 1 || entrants[runner.entrant].unknowns > 0);
     let finalists = field.into_par_iter().map(|runner| {
         let entrant = &entrants[runner.entrant];
         let refit = runner.refit.ok_or(PredictError::NoNumber)?;
@@ -226,7 +256,12 @@ impl Entrant<'_> {
 
 impl Looks<'_> {
     fn at(&self, stage: &Stage) -> Evidence {
-        let thinned = if stage.first { &self.first } else { &self.all }.thinned(stage.thinned);
+        let seen = match stage.look {
+            Look::First => &self.first,
+            Look::Most => &self.most,
+            Look::All => &self.all,
+        };
+        let thinned = seen.thinned(stage.thinned);
         if stage.tolerant {
             thinned.tolerant(self.tolerance)
         } else {
@@ -297,6 +332,9 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
         }
         _ => f64::INFINITY,
     };
+    let farthest = field
+        .first()
+        .map_or(f64::INFINITY, |first| stage.times_best * first.score);
     let mut passed: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
     field.retain(|runner| {
         let is_measure = entrants[runner.entrant].unknowns == 0;
@@ -307,7 +345,7 @@ fn best(mut field: Vec<Runner>, entrants: &[Entrant], stage: &Stage, least_gain:
         let room = has_passed || names.len() < stage.kept;
         let starts = passed.get(&runner.entrant).map_or(&[][..], Vec::as_slice);
         let is_there = starts.iter().any(|score| runner.score - score < SAME * score);
-        let is_wanted = is_measure || room && runner.score <= least;
+        let is_wanted = is_measure || room && runner.score <= least.min(farthest);
         let passes = is_wanted && !is_there && starts.len() < stage.starts;
         if passes {
             passed.entry(runner.entrant).or_default().push(runner.score);

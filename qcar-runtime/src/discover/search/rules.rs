@@ -136,11 +136,14 @@ impl<'a> Judge<'a> {
 
     /// True where an effect earns a place beside others that explain enough: it closes as much of what they leave as a
     /// first one must, the data determine all of its parameters, and it makes one of so many `effects` that explain enough.
+    /// Where calibrations alone are strained, it gains more than it would on a clean campaign.
     pub fn adds_much(&self, state: &State, contender: &Contender, effects: usize) -> bool {
         let determined = contender.parameters.iter().all(|(_, _, error)| error.is_finite());
         let closes = self.closed(&state.explanation, &contender.explanation) > CLOSED;
         let explains = self.leaves_enough(&contender.explanation, effects);
-        determined && closes && explains && self.is_significant(state, contender)
+        let is_faint = state.lowered(contender) < FAINT * state.explanation.refit.chi2;
+        let shows = self.is_clear(&state.explanation) || !is_faint;
+        determined && closes && explains && shows && self.is_significant(state, contender)
     }
 
     /// True where what is left does not matter any more.

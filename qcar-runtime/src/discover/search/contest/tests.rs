@@ -65,6 +65,17 @@ fn half_of_the_gain_is_enough_while_large_features_alone_count() {
 }
 
 #[test]
+fn what_leaves_many_times_what_the_best_leaves_goes_no_further() {
+    let sharp = STAGES.iter().find(|stage| !stage.tolerant).expect("a sharp look");
+    let runners = [
+        ("best", 10.0),
+        ("near", 9.0 * sharp.times_best),
+        ("far", 11.0 * sharp.times_best),
+    ];
+    assert_eq!(kept(sharp, 0.0, &runners), ["best", "near", "no change"]);
+}
+
+#[test]
 fn a_first_look_drops_nobody_for_a_small_gain() {
     assert_eq!(kept(&STAGES[0], 0.1, &[("little", 990.0)]), ["little", "no change"]);
 }
@@ -74,7 +85,7 @@ fn a_first_look_drops_nobody_for_a_small_gain() {
 fn forms_of_one_effect_take_the_room_of_one() {
     let last = STAGES.last().expect("a last look");
     let others: Vec<String> = (1..=last.kept).map(|k| format!("other {k}")).collect();
-    let mut runners = vec![("many", 100.0), ("many", 110.0), ("many", 120.0), ("many", 900.0)];
+    let mut runners = vec![("many", 100.0), ("many", 110.0), ("many", 120.0), ("many", 290.0)];
     let scores = (0..).map(|k| 200.0 + 10.0 * f64::from(k));
     runners.extend(others.iter().map(String::as_str).zip(scores));
     let kept = kept(last, 0.0, &runners);

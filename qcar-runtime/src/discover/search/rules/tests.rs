@@ -145,6 +145,18 @@ fn a_further_effect_must_earn_its_place() {
     assert!(!adds(1.4, &contender("complex", 200, leaving(1.0))), "that is chance");
 }
 
+/// What the errors of sensors and sides let an effect gain where nothing is missing is a few percent.
+#[test]
+fn where_calibrations_alone_are_strained_a_further_effect_gains_more_than_by_chance() {
+    let (evidence, before) = (two_sweeps(), leaving(20.0));
+    let judge = Judge::new(&evidence, &before);
+    let present = state(strained(leaving(1.0), 4.0));
+    let adds = |left: f64| judge.adds_much(&present, &contender("gain", 1, leaving(left)), 2);
+    let by_chance = contender("gain", 1, leaving(0.96));
+    assert!(judge.is_significant(&present, &by_chance) && !adds(0.96));
+    assert!(adds(0.9));
+}
+
 /// Several effects bend to much that they are not the cause of.
 #[test]
 fn several_effects_must_leave_no_more_than_noise_and_one_a_little() {
