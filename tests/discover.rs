@@ -113,6 +113,25 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     assert_near(&answer, &truth);
 }
 
+/// A light mass on a stiff mount is nearly a spring: it is told from one only once it is fitted to all runs together, which
+/// takes its three parameters more steps than that one.
+#[test]
+fn a_light_top_mount_is_told_from_a_spring_in_series() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let truth = [("m_tm", 3.0), ("k_tm", 800e3), ("c_tm", 900.0)];
+    let order = Order {
+        effects: vec![Hidden::new("top_mount", "damper", &truth)],
+        ..Order::clean("c", 2000)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "top_mount");
+    assert_near(&answer, &truth[..2]);
+    assert_eq!(answer["effects"][0]["rivals"][0]["effect"], "series_compliance");
+}
+
 /// Its law has a kink where the damper turns, at which no step of a search is sure to help.
 #[test]
 fn a_damper_that_is_harder_in_rebound_is_found() {

@@ -126,9 +126,9 @@ const STAGES: [Stage; 6] = [
     },
 ];
 
-/// So many times as many evaluations are for a linear model in a first look, which costs little,
+/// So many times as many evaluations are for a linear model where large features alone count, which costs little,
 const PATIENCE: usize = 3;
-/// and for one beside a bent law, where all cost alike.
+/// and in a first look for one beside a bent law, where all cost alike.
 const LESS_PATIENCE: usize = 2;
 
 /// Starts of one entrant whose scores differ by less than this share have come to the same place.
@@ -140,13 +140,13 @@ impl Stage {
         if self.tolerant { 0.5 } else { 1.0 }
     }
 
-    /// Evaluations of a fit of this entrant: in a first look one that costs no more than no change has time, and one more
-    /// resonance is not dropped for want of a few steps.
+    /// Evaluations of a fit of this entrant: before the sharp looks one that costs no more than no change has time, and
+    /// one more resonance is not dropped for want of a few steps, neither in a first look nor where more runs join.
     fn evaluations(&self, entrant: &Entrant, entrants: &[Entrant]) -> usize {
         let is_linear = |entrant: &Entrant| entrant.explanandum.model.about().linear;
-        let times = match (self.look == Look::First, is_linear(entrant), is_linear(&entrants[0])) {
-            (true, true, _) => PATIENCE,
-            (true, false, false) => LESS_PATIENCE,
+        let times = match self.look {
+            _ if self.tolerant && is_linear(entrant) => PATIENCE,
+            Look::First if !is_linear(&entrants[0]) => LESS_PATIENCE,
             _ => 1,
         };
         self.evaluations * times
