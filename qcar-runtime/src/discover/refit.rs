@@ -261,8 +261,10 @@ struct Posterior<'a> {
     /// Where the search began.
     start: Vec<f64>,
     residuals: usize,
-    /// Why the model cannot say anything of the evidence at all.
+    /// Why the model cannot say anything of the evidence at all,
     refused: Option<PredictError>,
+    /// or that it has said something: where it gives no number from then on, a step went too far.
+    has_answered: bool,
     /// What the sweeps add to their balance, series by series.
     unsteady: Vec<Vec<Complex<f64>>>,
     /// Where the residual was looked at last, and what sweeps show there: a step that is taken asks for it again.
@@ -284,6 +286,7 @@ impl<'a> Posterior<'a> {
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
+            has_answered: false,
             unsteady: vec![Vec::new(); evidence.series.len()],
             looked: None,
         }
@@ -399,11 +402,12 @@ impl<'a> Posterior<'a> {
         let [swept, others] = match self.predictions(x, &free) {
             Ok(predictions) => predictions,
             Err(error) => {
-                self.refused = Some(error);
+                self.refused = (!self.has_answered).then_some(error);
                 residual.fill(f64::NAN);
                 return Vec::new();
             }
         };
+        self.has_answered = true;
         let mut predictions: Vec<&Prediction> = swept.iter().chain(&others).collect();
         predictions.sort_by_key(|own| own.series);
         let mut rows = Vec::with_capacity(residual.len());

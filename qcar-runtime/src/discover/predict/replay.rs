@@ -31,7 +31,7 @@ pub struct Replay<'a> {
 }
 
 /// How many times finer the steps are taken when a replay runs away: laws may be stiffer than any sampling foresees.
-const FINER: [usize; 3] = [1, 4, 16];
+const FINER: [usize; 2] = [1, 4];
 
 impl<'a> Replay<'a> {
     /// Prepares a replay; the nodes of `how` are overruled.

@@ -60,11 +60,14 @@ struct Stage {
     times_best: f64,
 }
 
+/// A first look is at every so many-th value.
+pub const THINNED_AT_FIRST: usize = 6;
+
 const STAGES: [Stage; 6] = [
     // Of many starts most are far from any use.
     Stage {
         look: Look::First,
-        thinned: 6,
+        thinned: THINNED_AT_FIRST,
         tolerant: true,
         evaluations: 1,
         starts: 2,
@@ -74,7 +77,7 @@ const STAGES: [Stage; 6] = [
     },
     Stage {
         look: Look::First,
-        thinned: 6,
+        thinned: THINNED_AT_FIRST,
         tolerant: true,
         evaluations: 3,
         starts: 2,
@@ -137,7 +140,7 @@ const SAME: f64 = 0.005;
 impl Stage {
     /// The part of a gain that must show by now: where large features alone count, some of it is forgiven.
     fn credit(&self) -> f64 {
-        if self.tolerant { 0.5 } else { 1.0 }
+        if self.tolerant { 0.25 } else { 1.0 }
     }
 
     /// Evaluations of a fit of this entrant: before the sharp looks one that costs no more than no change has time, and

@@ -27,12 +27,12 @@ const CLOSE: f64 = 0.5;
 /// All effects together must close so much of the excess gap of the held-out runs,
 const CLOSED: f64 = 0.6;
 /// and leave no more than this, or close [`ALL_CLOSED`] of the excess, where it is one effect; several bend to much that
-/// they are not the cause of, and must leave no more than noise.
+/// they are not the cause of, and must do both, or leave no more than noise.
 const LEFT: f64 = 1.5;
 /// See [`LEFT`].
 const ALL_CLOSED: f64 = 0.97;
-/// A model is good that accounts for so much of the variance of records over time: hardware does not repeat itself to
-/// the precision of its sensors.
+/// A model with one effect is good that accounts for so much of the variance of records over time: hardware does not repeat
+/// itself to the precision of its sensors.
 const ACCOUNTED: f64 = 0.95;
 /// A rival that is no farther behind cannot be told apart.
 const ALIKE: f64 = 20.0;
@@ -152,14 +152,15 @@ impl<'a> Judge<'a> {
     }
 
     fn leaves_enough(&self, after: &Explanation, effects: usize) -> bool {
-        let closed = self.closed(self.before, after);
+        let (gap, closed) = (self.gap(after), self.closed(self.before, after));
         let missed = after.gap.missed(self.evidence, self.role);
         let is_good = missed.is_some_and(|missed| 1.0 - missed > ACCOUNTED);
-        let little = match effects {
-            0 | 1 => self.gap(after) < LEFT || closed > ALL_CLOSED,
-            _ => self.gap(after) < NOISE,
+        let is_little = match effects {
+            0 => false,
+            1 => gap < LEFT || closed > ALL_CLOSED || is_good,
+            _ => gap < LEFT && closed > ALL_CLOSED || gap < NOISE,
         };
-        effects > 0 && (little || is_good) && closed > CLOSED
+        is_little && closed > CLOSED
     }
 
     /// True where the effects that are left do much worse.
