@@ -119,6 +119,8 @@ pub struct Passage {
     pub duration: f64,
     /// How a ride is sampled and read.
     pub means: Means,
+    /// The most steps in which a second of it may be simulated.
+    pub most_steps: f64,
 }
 
 /// Signals of one record; at least one.
@@ -274,6 +276,17 @@ impl Evidence {
             values.for_each(|(value, sigma)| *sigma = sigma.hypot(share * value.norm()));
         }
         tolerant
+    }
+
+    /// The same for a search among many, in which a ride that takes far longer than others is refused.
+    pub fn hurried(&self) -> Self {
+        let mut hurried = self.clone();
+        for run in &mut hurried.runs {
+            if let Stimulus::Cleat(passage) = &mut run.stimulus {
+                passage.most_steps = cleat::HURRIED;
+            }
+        }
+        hurried
     }
 
     /// The same with every so many-th value of each series, for a first look; of a history and a ride their beginning,

@@ -29,6 +29,11 @@ const FLOOR: f64 = 0.002;
 const AROUND: usize = 10;
 /// A quiet start with fewer samples tells no noise.
 const QUIET: usize = 20;
+/// The most steps for a second of a ride.
+const PATIENT: f64 = 1e5;
+/// The same among many. Five hundred to two thousand are enough for what cars have; dry friction that a search has made next
+/// to none, and as stiff as ever, takes ten times as many.
+pub(super) const HURRIED: f64 = 4e3;
 
 impl Evidence {
     pub(super) fn add_cleat(
@@ -75,6 +80,7 @@ impl Evidence {
                     load,
                     duration: window.end(),
                     means: window.means.sparse(),
+                    most_steps: PATIENT,
                     road: cleat.road,
                 }),
             });

@@ -18,9 +18,6 @@ use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride
 
 /// The integration: its error stays far below what a tyre model is good for.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// The most steps for a second of a ride. Five hundred to two thousand are enough for what cars have; dry friction that a
-/// search has made next to none, and as stiff as ever, takes ten times as many, and is refused.
-const MOST_STEPS: f64 = 4000.0;
 /// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: large against
 /// the error of the integration, small against the curvature.
 const DIFFERENCE: f64 = 3e-3;
@@ -103,7 +100,7 @@ fn accelerations(
     };
     let settings = Settings {
         method: METHOD,
-        most_steps: (MOST_STEPS * passage.duration).ceil() as usize,
+        most_steps: (passage.most_steps * passage.duration).ceil() as usize,
     };
     let ride = ride(&car, &drive, &settings)?;
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())

@@ -241,7 +241,7 @@ impl State {
     /// would hide a faint one.
     fn looks<'e>(&self, wanted: &Wanted, evidence: &'e Evidence) -> Looks<'e> {
         let (telling, most) = (self.telling(evidence), self.widest(evidence));
-        let steady = evidence.less(&self.explanation.refit.unsteady);
+        let steady = evidence.less(&self.explanation.refit.unsteady).hurried();
         let first = steady.only(|run| telling.contains(&run));
         Looks {
             tolerance: self.tolerance(&first, evidence),

@@ -229,6 +229,7 @@ pub fn ride() -> Stimulus {
         load: 4000.0,
         duration: 1.0,
         means: Means::new(500.0, 0.01),
+        most_steps: 1e5,
     })
 }
 

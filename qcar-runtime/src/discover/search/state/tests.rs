@@ -1,7 +1,7 @@
 //! What is tried on a state, and what that is held against.
 
 use super::made::{Levers, contender, evidence, history, leaving, ride, setting, state, sweep};
-use super::{Evidence, Given, Role, Setting, State, Wanted};
+use super::{Evidence, Given, Role, Setting, State, Stimulus, Wanted};
 use nalgebra::Complex;
 
 const ANYTHING: Wanted = Wanted {
@@ -52,6 +52,20 @@ fn a_first_look_is_at_one_run_of_each_kind_beside_but_at_no_ride_for_that() {
     let stimuli = [sweep(), ride(), sweep(), history(), history()];
     let evidence = evidence(1.0, stimuli.map(|stimulus| (Role::Fit, stimulus, 50)).to_vec());
     assert_eq!(with_residuals(8.0, &of_runs).telling(&evidence), [0, 2, 3]);
+}
+
+#[test]
+fn a_ride_may_take_fewer_steps_for_one_of_many_than_for_the_last_word() {
+    let evidence = evidence(1.0, vec![(Role::Fit, ride(), 50)]);
+    let state = with_residuals(8.0, &[(50, 8.0)]);
+    let looks = state.looks(&ANYTHING, &evidence);
+    let most = |of: &Evidence| match &of.runs[0].stimulus {
+        Stimulus::Cleat(passage) => passage.most_steps,
+        other => panic!("{other:?} is no ride"),
+    };
+    for look in [&looks.first, &looks.most, &looks.all] {
+        assert!(most(look) < most(looks.whole));
+    }
 }
 
 #[test]
