@@ -1,7 +1,7 @@
 //! Runs the blind matrix: makes campaigns, lets `qcar discover` answer, and prints how often it is right.
 //!
-//! `matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--out FILE]` runs cases and adds a line for each to
-//! FILE; `matrix --table FILE` prints the Markdown table of all lines in it.
+//! `matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--keep FOLDER] [--out FILE]` runs cases, leaves their
+//! campaigns in FOLDER, and adds a line for each to FILE; `matrix --table FILE` prints the Markdown table of all lines in it.
 
 use std::fs;
 use std::io::Write as _;
@@ -11,7 +11,8 @@ use std::process::{Command, ExitCode};
 use qcar_blind::matrix::{Case, cases};
 use qcar_blind::outcome::{Outcome, table};
 
-const USAGE: &str = "matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--out FILE] | matrix --table FILE";
+const USAGE: &str = "matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--keep FOLDER] [--out FILE] | \
+                     matrix --table FILE";
 
 fn main() -> ExitCode {
     match run() {
@@ -29,6 +30,7 @@ struct Asked {
     seeds: Vec<u64>,
     only: String,
     part: (usize, usize),
+    keep: Option<PathBuf>,
     out: Option<PathBuf>,
 }
 
@@ -38,6 +40,7 @@ fn run() -> Result<(), String> {
         seeds: vec![1],
         only: String::new(),
         part: (1, 1),
+        keep: None,
         out: None,
     };
     let mut words = std::env::args().skip(1);
@@ -54,6 +57,7 @@ fn run() -> Result<(), String> {
                     return Err(format!("--part {value}: K counts from 1 to N"));
                 }
             }
+            "--keep" => asked.keep = Some(value.into()),
             "--out" => asked.out = Some(value.into()),
             "--table" => {
                 print!("{}", table(&read(Path::new(&value))?));
@@ -67,7 +71,7 @@ fn run() -> Result<(), String> {
     let (part, of) = asked.part;
     let mut outcomes = Vec::new();
     for case in wanted.skip(part - 1).step_by(of) {
-        let outcome = answer(&asked.qcar, &case)?;
+        let outcome = answer(&asked.qcar, &case, asked.keep.as_deref())?;
         println!("{}", outcome.line());
         if let Some(out) = &asked.out {
             let file = fs::OpenOptions::new().create(true).append(true).open(out);
@@ -95,11 +99,14 @@ fn read(path: &Path) -> Result<Vec<Outcome>, String> {
     text.lines().map(Outcome::parse).collect()
 }
 
-fn answer(qcar: &Path, case: &Case) -> Result<Outcome, String> {
-    let folder = tempfile::tempdir().map_err(|e| e.to_string())?;
-    qcar_blind::make(case.order.clone(), folder.path())?;
+fn answer(qcar: &Path, case: &Case, keep: Option<&Path>) -> Result<Outcome, String> {
+    let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
+    let folder = keep.map_or(passing.path().into(), |keep| {
+        keep.join(case.name.replace([' ', '/'], "_"))
+    });
+    qcar_blind::make(case.order.clone(), &folder)?;
     let mut command = Command::new(qcar);
-    command.arg("discover").arg(folder.path()).args(["--format", "json"]);
+    command.arg("discover").arg(&folder).args(["--format", "json"]);
     let output = command.output();
     let output = output.map_err(|e| format!("{}: {e}; build it first: cargo build --release", qcar.display()))?;
     if !output.status.success() {
