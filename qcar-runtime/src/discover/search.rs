@@ -239,7 +239,7 @@ impl Path {
 
     /// Takes further effects until nothing that matters is left, or nothing helps.
     fn follow(mut self, judge: &Judge, evidence: &Evidence, progress: Progress<'_>) -> Result<Self, PredictError> {
-        while self.findings.len() < MOST_EFFECTS && judge.is_gap(&self.state.explanation) && self.class.len() < 2 {
+        while self.findings.len() < MOST_EFFECTS && judge.wants_more(&self) && self.class.len() < 2 {
             let more = MOST_EFFECTS - self.findings.len();
             let wanted = judge.wanted_beside(&self, more);
             let mut field = self.state.contenders(&wanted, evidence, progress)?;

@@ -146,6 +146,14 @@ impl<'a> Judge<'a> {
         determined && closes && explains && shows && self.is_significant(state, contender)
     }
 
+    /// True where a further effect is looked for. What several that explain enough leave beside noise is the difference of
+    /// their laws from the true ones, to which a third would only bend; a strained calibration may still be a sensor's.
+    pub fn wants_more(&self, path: &Path) -> bool {
+        let explanation = &path.state.explanation;
+        let is_of_laws = path.findings.len() > 1 && self.is_enough(path) && self.is_clear(explanation);
+        self.is_gap(explanation) && !is_of_laws
+    }
+
     /// True where what is left does not matter any more.
     pub fn is_enough(&self, path: &Path) -> bool {
         self.leaves_enough(&path.state.explanation, path.findings.len())

@@ -174,6 +174,17 @@ fn one_effect_must_leave_little_or_close_next_to_all_and_several_both() {
     assert!(!enough(20.0, 1.1, 0), "nothing explains nothing");
 }
 
+#[test]
+fn beside_several_that_leave_little_nothing_is_looked_for_but_a_sensor() {
+    let evidence = two_sweeps();
+    let before = leaving(20.0);
+    let judge = Judge::new(&evidence, &before);
+    let more = |after: Explanation, effects: usize| judge.wants_more(&path(after, effects));
+    assert!(more(leaving(1.4), 1) && !more(leaving(1.4), 2));
+    assert!(more(leaving(3.0), 2), "that is not enough");
+    assert!(!more(leaving(1.1), 1) && more(strained(leaving(1.1), 4.0), 2));
+}
+
 /// One that leaves little of little has closed too little of it.
 #[test]
 fn what_is_enough_has_closed_most_of_the_gap() {
