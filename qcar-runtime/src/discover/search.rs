@@ -185,7 +185,7 @@ pub fn discover(
     if !judge.is_enough(&path) {
         return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
     }
-    let path = path.without_what_is_not_missed(&base, &judge, evidence, progress)?;
+    let path = path.without_what_is_not_missed(&base, &judge, evidence, progress);
     if !judge.is_enough(&path) {
         return Ok(verdict(unexplained, (Vec::new(), 0), &path.state.explanation));
     }
@@ -311,7 +311,7 @@ impl Path {
         judge: &Judge,
         evidence: &Evidence,
         progress: Progress<'_>,
-    ) -> Result<Self, PredictError> {
+    ) -> Self {
         let mut place = 0;
         while self.findings.len() > 1 && place + 1 < self.findings.len() {
             let others: Vec<Finding> = self
@@ -325,8 +325,9 @@ impl Path {
                 "trying without {} at {}",
                 self.findings[place].effect, self.findings[place].at
             )));
-            let state = base.with_all(&others, Some(&self.state), evidence, progress)?;
-            match state {
+            // What gives no number without an effect misses it.
+            let state = base.with_all(&others, Some(&self.state), evidence, progress).ok();
+            match state.flatten() {
                 Some(state) if !judge.is_missed(&self.state, &state) => {
                     self.state = state;
                     self.findings = others;
@@ -335,7 +336,7 @@ impl Path {
             }
         }
         self.state.update(&mut self.findings);
-        Ok(self)
+        self
     }
 }
 

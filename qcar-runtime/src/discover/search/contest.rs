@@ -244,10 +244,19 @@ pub fn contest(
             explanation,
         })
     });
-    let mut finalists = finalists.collect::<Result<Vec<_>, PredictError>>()?;
+    let mut finalists = that_answer(finalists.collect(), entrants.len() == 1)?;
     // What sweeps show beyond their steady harmonics is seen only now, and may change the order.
     finalists.sort_by(|a, b| a.score.total_cmp(&b.score));
     Ok((finalists, dropped))
+}
+
+/// Those that say something of all runs: of many, one that gives no number in some is no explanation; of one `alone`, the
+/// reason is told.
+fn that_answer(finalists: Vec<Result<Finalist, PredictError>>, alone: bool) -> Result<Vec<Finalist>, PredictError> {
+    if alone {
+        return finalists.into_iter().collect();
+    }
+    Ok(finalists.into_iter().filter_map(Result::ok).collect())
 }
 
 impl Entrant<'_> {

@@ -1,9 +1,10 @@
 //! Who goes on, of runners with given scores.
 
-use super::{Entrant, Runner, STAGES, Stage, best, told};
+use super::{Entrant, Finalist, Runner, STAGES, Stage, best, that_answer, told};
 use crate::discover::explain::Explanandum;
 use crate::discover::nuisance::Nuisance;
-use crate::discover::search::state::made::{Lever, setting, two_sweeps};
+use crate::discover::predict::PredictError;
+use crate::discover::search::state::made::{Lever, leaving, setting, two_sweeps};
 
 /// No change at all, and an entrant with one unknown for each of these names.
 fn with_entrants<R>(names: &[&str], ask: impl FnOnce(&[Entrant]) -> R) -> R {
@@ -91,6 +92,18 @@ fn forms_of_one_effect_take_the_room_of_one() {
     let kept = kept(last, 0.0, &runners);
     let count = |start: &str| kept.iter().filter(|name| name.starts_with(start)).count();
     assert_eq!((count("many"), count("other")), (4, last.kept - 1), "{kept:?}");
+}
+
+#[test]
+fn of_many_one_that_gives_no_number_drops_out_and_one_alone_says_why() {
+    let answer = || Finalist {
+        entrant: 0,
+        explanation: leaving(1.0),
+        score: 1.0,
+    };
+    let of = |alone: bool| that_answer(vec![Ok(answer()), Err(PredictError::NoNumber)], alone);
+    assert_eq!(of(false).expect("one answers").len(), 1);
+    assert!(matches!(of(true), Err(PredictError::NoNumber)));
 }
 
 /// An effect that has several forms or starts is named once.
