@@ -34,18 +34,30 @@ pub struct Looks<'a> {
 
 /// Which runs a round looks at.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Look {
+pub enum Look {
+    /// A part of them.
     First,
+    /// All but most rides.
     Most,
+    /// All.
     All,
+}
+
+impl Look {
+    /// It looks at every so many-th value.
+    pub fn thinned(self) -> usize {
+        match self {
+            Look::First => 6,
+            Look::Most => 3,
+            Look::All => 1,
+        }
+    }
 }
 
 /// A round of the knock-out.
 struct Stage {
     /// Which runs it looks at.
     look: Look,
-    /// It looks at every so many-th value.
-    thinned: usize,
     /// Whether large features alone count.
     tolerant: bool,
     /// Evaluations of a fit.
@@ -60,66 +72,50 @@ struct Stage {
     times_best: f64,
 }
 
-/// A first look is at every so many-th value.
-pub const THINNED_AT_FIRST: usize = 6;
+/// So few steps tell who is far from any use, not yet who is better than no change.
+const FIRST: Stage = Stage {
+    look: Look::First,
+    tolerant: true,
+    evaluations: 3,
+    starts: 2,
+    kept: 12,
+    share: None,
+    times_best: f64::INFINITY,
+};
+
+/// Who is far behind after the first steps on all sweeps needs no more of them.
+const MOST: Stage = Stage {
+    look: Look::Most,
+    evaluations: 6,
+    kept: 7,
+    share: Some(0.3),
+    ..FIRST
+};
 
 const STAGES: [Stage; 6] = [
     // Of many starts most are far from any use.
     Stage {
-        look: Look::First,
-        thinned: THINNED_AT_FIRST,
-        tolerant: true,
         evaluations: 1,
-        starts: 2,
         kept: usize::MAX,
-        share: None,
-        times_best: f64::INFINITY,
+        ..FIRST
     },
+    FIRST,
     Stage {
-        look: Look::First,
-        thinned: THINNED_AT_FIRST,
-        tolerant: true,
-        evaluations: 3,
-        starts: 2,
-        kept: 12,
-        // So few steps tell who is far from any use, not yet who is better than no change.
-        share: None,
-        times_best: f64::INFINITY,
-    },
-    Stage {
-        look: Look::Most,
-        thinned: 3,
-        tolerant: true,
         evaluations: 4,
-        starts: 2,
-        kept: 7,
         share: None,
-        times_best: f64::INFINITY,
+        ..MOST
     },
-    // Who is far behind after the first steps on all sweeps needs no more of them.
+    MOST,
     Stage {
-        look: Look::Most,
-        thinned: 3,
-        tolerant: true,
-        evaluations: 6,
-        starts: 2,
-        kept: 7,
-        share: Some(0.3),
-        times_best: f64::INFINITY,
-    },
-    Stage {
-        look: Look::Most,
-        thinned: 3,
         tolerant: false,
         evaluations: 12,
         starts: 1,
         kept: 4,
-        share: Some(0.3),
         times_best: 5.0,
+        ..MOST
     },
     Stage {
         look: Look::All,
-        thinned: 1,
         tolerant: false,
         evaluations: 25,
         starts: 1,
@@ -273,7 +269,7 @@ impl Looks<'_> {
             Look::Most => &self.most,
             Look::All => &self.all,
         };
-        let thinned = seen.thinned(stage.thinned);
+        let thinned = seen.thinned(stage.look.thinned());
         if stage.tolerant {
             thinned.tolerant(self.tolerance)
         } else {

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::contest::{Entrant, Finalist, Looks, THINNED_AT_FIRST, contest};
+use super::contest::{Entrant, Finalist, Look, Looks, contest};
 use super::rules::{NOISE, Wanted};
 use super::taken::Taken;
 use super::{Finding, News, Progress, Rival};
@@ -269,7 +269,7 @@ impl State {
         let known = self.known();
         let explanandum = self.unchanged(Some(&known));
         let beside_known = explanandum.starts().ok().and_then(|starts| starts.into_iter().nth(1));
-        let seen = first.thinned(THINNED_AT_FIRST);
+        let seen = first.thinned(Look::First.thinned());
         let bent = beside_known.and_then(|start| explanandum.refit(&start, None, &seen, TO_BEND).ok());
         bent.is_some_and(|refit| refit.chi2 < NOISE.powi(2) * refit.residuals as f64)
     }
