@@ -1,43 +1,29 @@
 //! A model with the effects that were taken so far, and what is tried on it.
 
+// What it is looked at with.
+mod looks;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::contest::{Entrant, Finalist, Look, Looks, contest};
-use super::rules::{NOISE, Wanted};
+use super::contest::{Entrant, Finalist, contest};
+use super::rules::Wanted;
 use super::taken::Taken;
 use super::{Finding, News, Progress, Rival};
-use crate::campaign::Role;
 use crate::discover::candidate::{Candidate, Change, Workshop};
-use crate::discover::evidence::{Evidence, Stimulus};
+use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanandum, Explanation, Given, Setting};
 use crate::discover::nuisance::{Form, Nuisance};
 use crate::discover::predict::PredictError;
 
 /// How wrong a sensor under suspicion may be: a factor of e, and 20 ms.
 const SUSPECT: [f64; 2] = [1.0, 0.02];
-/// The most that is forgiven at first, as a share of every value.
-const TOLERANCE: f64 = 0.1;
-/// The least: what lines differ by from what a smooth response would be.
-const LEAST_TOLERANCE: f64 = 0.003;
-
-/// Where the present model bends to all that a first look shows, that forgives too much: so many times less is forgiven,
-const SHARPER: f64 = 3.0;
-/// and again, while this many evaluations come to no more than noise.
-const TO_BEND: usize = 9;
-
-/// A run whose gap, or sum of squares, is more than this share of the largest is worth a first look: what a few values show
-/// clearly and what many show together.
-const MUCH: f64 = 0.25;
 /// Evaluations of a fit from where another model ended,
 const TO_FOLLOW: usize = 25;
 /// and the share of the sum of squares from which on its end is another place.
 const WORTH: f64 = 1e-3;
-/// A ride takes the time of many sweeps, and until the last look so many tell enough.
-const RIDES: usize = 1;
-
 /// What is known so far.
 #[derive(Clone)]
 pub struct State {
@@ -236,75 +222,6 @@ impl State {
         self.explanation.named.iter().cloned().collect()
     }
 
-    /// First at the fitted runs in which the present model is wrong most, and with as much tolerance as it needs itself:
-    /// what is wrong with it must be seen. What it shows beyond steady harmonics changes little with one effect more, and
-    /// would hide a faint one.
-    fn looks<'e>(&self, wanted: &Wanted, evidence: &'e Evidence) -> Looks<'e> {
-        let (telling, most) = (self.telling(evidence), self.widest(evidence));
-        let steady = evidence.less(&self.explanation.refit.unsteady).hurried();
-        let first = steady.only(|run| telling.contains(&run));
-        Looks {
-            tolerance: self.tolerance(&first, evidence),
-            first,
-            most: steady.only(|run| most.contains(&run)),
-            all: steady,
-            whole: evidence,
-            least: wanted.least,
-        }
-    }
-
-    /// What is forgiven until looks are sharp: what the present model needs, but less where a wide gap would not be seen in a
-    /// first look any more.
-    fn tolerance(&self, first: &Evidence, evidence: &Evidence) -> f64 {
-        let mut tolerance = self.explanation.misfit(evidence).clamp(LEAST_TOLERANCE, TOLERANCE);
-        let is_wide = self.explanation.gap.fit > NOISE;
-        while is_wide && tolerance > LEAST_TOLERANCE && self.bends_to(&first.tolerant(tolerance)) {
-            tolerance = (tolerance / SHARPER).max(LEAST_TOLERANCE);
-        }
-        tolerance
-    }
-
-    /// True where the present model, refitted, leaves no more than noise of what a first look shows.
-    fn bends_to(&self, first: &Evidence) -> bool {
-        let known = self.known();
-        let explanandum = self.unchanged(Some(&known));
-        let beside_known = explanandum.starts().ok().and_then(|starts| starts.into_iter().nth(1));
-        let seen = first.thinned(Look::First.thinned());
-        let bent = beside_known.and_then(|start| explanandum.refit(&start, None, &seen, TO_BEND).ok());
-        bent.is_some_and(|refit| refit.chi2 < NOISE.powi(2) * refit.residuals as f64)
-    }
-
-    /// The fitted runs but for most rides, those with the widest gaps first.
-    fn widest(&self, evidence: &Evidence) -> Vec<usize> {
-        let runs = self.explanation.gap.by_run(evidence);
-        let is_fitted = |run: &usize| evidence.runs[*run].role == Role::Fit && runs[*run].0.is_finite();
-        let mut fitted: Vec<usize> = (0..runs.len()).filter(is_fitted).collect();
-        fitted.sort_by(|&a, &b| runs[b].0.total_cmp(&runs[a].0));
-        with_few_rides(fitted, evidence)
-    }
-
-    /// Of the widest runs those whose gap is wide or heavy. Where it is next to noise, no run stands out: then one of each
-    /// kind. One of each stands beside those that do, too, since a model may bend to what runs of one kind show, and not to
-    /// all at once; but no ride does.
-    fn telling(&self, evidence: &Evidence) -> Vec<usize> {
-        let runs = self.explanation.gap.by_run(evidence);
-        let mut telling = self.widest(evidence);
-        let firsts = first_of_each_kind(&telling, evidence);
-        if self.explanation.gap.fit <= NOISE {
-            return firsts;
-        }
-        // What is no more than noise tells nothing, however much of it there is.
-        let width = |run: usize| (runs[run].0.powi(2) - 1.0).max(0.0).sqrt();
-        let weight = |run: usize| runs[run].1 * (1.0 - runs[run].0.powi(-2)).max(0.0);
-        let most = |of: &dyn Fn(usize) -> f64| telling.iter().map(|&run| of(run)).fold(0.0, f64::max);
-        let (widest, heaviest) = (most(&width), most(&weight));
-        telling.retain(|&run| {
-            let stands_out = width(run) > MUCH * widest || weight(run) > MUCH * heaviest;
-            stands_out || firsts.contains(&run) && !is_ride(evidence, run)
-        });
-        telling
-    }
-
     /// Sum of squares with the penalty of all that was taken.
     pub fn score(&self) -> f64 {
         let unknowns: usize = self.taken.iter().map(|taken| taken.unknowns.len()).sum();
@@ -429,34 +346,6 @@ impl State {
     }
 }
 
-/// True for a run over an obstacle.
-fn is_ride(evidence: &Evidence, run: usize) -> bool {
-    matches!(evidence.runs[run].stimulus, Stimulus::Cleat(_))
-}
-
-/// Of some runs the first [`RIDES`] over obstacles, and all others.
-fn with_few_rides(mut runs: Vec<usize>, evidence: &Evidence) -> Vec<usize> {
-    let mut rides = 0;
-    runs.retain(|&run| {
-        let is_ride = is_ride(evidence, run);
-        rides += usize::from(is_ride);
-        !is_ride || rides <= RIDES
-    });
-    runs
-}
-
-/// Of some runs the first of each kind.
-fn first_of_each_kind(runs: &[usize], evidence: &Evidence) -> Vec<usize> {
-    let mut kinds = Vec::new();
-    let is_first = |run: &&usize| {
-        let kind = std::mem::discriminant(&evidence.runs[**run].stimulus);
-        let is_first = !kinds.contains(&kind);
-        kinds.push(kind);
-        is_first
-    };
-    runs.iter().filter(is_first).copied().collect()
-}
-
 /// The best fit of one model.
 fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) -> Result<Explanation, PredictError> {
     // What cannot be predicted at all is an error here, where among many it only drops out.
@@ -467,18 +356,10 @@ fn alone(explanandum: Explanandum, evidence: &Evidence, progress: Progress<'_>) 
         unknowns: 0,
         name: "the model alone".into(),
     };
-    let fitted = (0..evidence.runs.len()).filter(|&run| evidence.runs[run].role == Role::Fit);
-    let few = with_few_rides(fitted.collect(), evidence);
-    let most = evidence.only(|run| few.contains(&run));
-    let looks = Looks {
-        first: most.clone(),
-        most,
-        all: evidence.clone(),
-        whole: evidence,
-        tolerance: TOLERANCE,
-        least: 0.0,
-    };
-    let best = contest(&[entrant], &looks, progress)?.0.into_iter().next();
+    let best = contest(&[entrant], &looks::of_one(evidence), progress)?
+        .0
+        .into_iter()
+        .next();
     best.map(|finalist| finalist.explanation).ok_or(PredictError::NoNumber)
 }
 
