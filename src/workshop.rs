@@ -8,7 +8,7 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::difference::difference;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::Axis;
-use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
+use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::nuisance::Form;
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
@@ -144,5 +144,6 @@ fn added(parameter: &NewParameter) -> Added {
         start: parameter.start,
         range: parameter.range,
         known: parameter.known,
+        role: ParameterRole::Other,
     }
 }

@@ -12,8 +12,9 @@ use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
-use qcar_runtime::discover::search::{Discovery, Finding, News, Verdict, discover};
-use qcar_runtime::discover::{Evidence, Sweeps};
+use qcar_runtime::discover::predict::PredictError;
+use qcar_runtime::discover::search::{Discovery, Finding, News, Progress, Verdict, discover};
+use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::model::About;
 
 use crate::catalogue;
@@ -50,6 +51,9 @@ pub struct Arguments {
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
+    /// Search by the rules of the first version, for comparison
+    #[arg(long, hide = true)]
+    by_rules: bool,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -75,6 +79,10 @@ pub(crate) struct Answer {
     pub seconds: f64,
 }
 
+/// A search for what is missing.
+pub(crate) type Search =
+    fn(Box<dyn Workshop>, &Setting, &Evidence, Progress<'_>) -> std::result::Result<Discovery, PredictError>;
+
 /// The model with the effects in it.
 pub(crate) struct Written {
     /// Its name.
@@ -88,7 +96,8 @@ pub(crate) struct Written {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref())?;
+    let search = if arguments.by_rules { discover } else { select::discover };
+    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), search)?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -102,7 +111,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 ///
 /// # Errors
 /// A campaign that says nothing of the model, or a model that the compiler refuses.
-pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path>) -> Result<Answer, Failure> {
+pub(crate) fn answer(
+    campaign: &Campaign,
+    model: Option<&str>,
+    out: Option<&Path>,
+    search: Search,
+) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
@@ -122,7 +136,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
             }
         }
     };
-    let discovery = discover(
+    let discovery = search(
         Box::new(bench.clone()),
         &setting(campaign, bench.model().about()),
         &evidence,

@@ -52,6 +52,22 @@ pub struct Added {
     pub range: (f64, f64),
     /// Given, not to be found: it stays at its start, or at what the vehicle says.
     pub known: bool,
+    /// What it does to the effect.
+    pub role: ParameterRole,
+}
+
+/// What a parameter does to its effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterRole {
+    /// It says how strong the effect is.
+    Strength {
+        /// Where the effect vanishes: zero, another number, or infinity.
+        vanishes_at: f64,
+    },
+    /// It says where the effect acts: a gap, a travel, a corner frequency.
+    Shape,
+    /// Neither.
+    Other,
 }
 
 impl Candidate {

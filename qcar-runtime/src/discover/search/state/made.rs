@@ -174,6 +174,7 @@ fn added(name: &str) -> Added {
         start: 1.0,
         range: (0.5, 2.0),
         known: false,
+        role: crate::discover::candidate::ParameterRole::Other,
     }
 }
 
