@@ -21,14 +21,31 @@ struct Overlap {
 /// Half a millimetre: the width of a column of the sum.
 const COLUMN: f64 = 5e-4;
 
+/// The columns that may reach into the ground: the others are above its highest point under the circle.
+fn touching(road: &Road, radius: f64, centre: [f64; 2]) -> (usize, usize) {
+    let above = centre[1] - road.highest(centre[0] - radius, centre[0] + radius);
+    if above >= radius {
+        return (0, 0);
+    }
+    let half = (radius * radius - above.max(0.0).powi(2)).sqrt();
+    let columns = (2.0 * radius / COLUMN) as usize;
+    let first = ((radius - half) / COLUMN) as usize;
+    let end = ((radius + half) / COLUMN) as usize;
+    (first.saturating_sub(2), (end + 2).min(columns))
+}
+
 fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Overlap {
     let mut sum = Overlap::default();
-    let columns = (2.0 * radius / COLUMN) as usize;
     let reach = |dx: f64| (radius * radius - dx * dx).max(0.0).sqrt();
     let depth = |dx: f64| road.height(centre[0] + dx) - centre[1] + reach(dx);
-    let mut left = depth(-radius);
-    for k in 0..columns {
-        let dx = -radius + (k as f64 + 0.5) * COLUMN;
+    let middle = |k: usize| -radius + (k as f64 + 0.5) * COLUMN;
+    let (first, end) = touching(road, radius, centre);
+    let mut left = match first {
+        0 => depth(-radius),
+        _ => depth(middle(first - 1) + COLUMN / 2.0),
+    };
+    for k in first..end {
+        let dx = middle(k);
         let right = depth(dx + COLUMN / 2.0);
         let inside = left.max(0.0) + right.max(0.0);
         // Of the column at an edge only a part is in the ground. Counted as a whole, it would come and go with a jolt.

@@ -48,4 +48,13 @@ impl Road {
         let i = place as usize;
         self.z[i] + (self.z[i + 1] - self.z[i]) * (place - i as f64)
     }
+
+    /// The highest point between two places, m: the top of the step, or an end where it is not between them.
+    pub fn highest(&self, from: f64, to: f64) -> f64 {
+        let top = (START / SPACING) as usize + 1;
+        if (from..=to).contains(&(top as f64 * SPACING)) {
+            return self.z[top];
+        }
+        self.height(from).max(self.height(to))
+    }
 }
