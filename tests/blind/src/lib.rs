@@ -48,6 +48,8 @@ pub mod matrix;
 
 pub mod outcome;
 
+pub mod tables;
+
 use std::path::Path;
 
 use axle::{Axle, Layout, Mount};
