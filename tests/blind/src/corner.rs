@@ -33,8 +33,10 @@ pub const X_SF: usize = 12;
 pub const X_PWT: usize = 13;
 /// See [`X_WHEEL`].
 pub const X_OTHER: usize = 14;
+/// How far the body bends up where the suspension acts.
+pub const FLEX: usize = 15;
 /// How many coordinates.
-pub const COORDINATES: usize = 15;
+pub const COORDINATES: usize = 16;
 const FRICTION: usize = 2 * COORDINATES;
 const TM_BRANCH: usize = FRICTION + 1;
 const PWT_BRANCH: usize = FRICTION + 2;
@@ -83,6 +85,16 @@ impl Corner<'_> {
         a.m_corner - rest
     }
 
+    /// How much less of the body's bending its sensor sees than the suspension's end of it does.
+    pub fn sensor_beside_bend(&self) -> f64 {
+        self.laws.flexible.map_or(0.0, |mode| 1.0 - mode.at_sensor)
+    }
+
+    /// Share of the damping that is left at a share of a run.
+    fn warm(&self, share: f64) -> f64 {
+        self.laws.heat.map_or(1.0, |heat| heat.left(share))
+    }
+
     /// Which coordinate touches the road.
     pub fn ring(&self) -> usize {
         if self.laws.belt.is_some() { BELT } else { WHEEL }
@@ -101,7 +113,7 @@ impl Corner<'_> {
         f[BODY] -= self.laws.body_drag.unwrap_or(0.0) * y[COORDINATES + BODY];
         f[WHEEL] -= self.laws.wheel_drag.unwrap_or(0.0) * y[COORDINATES + WHEEL];
         self.longitudinal(y, &mut f);
-        self.accelerate(&f, gravity, &mut dy);
+        self.accelerate(y, &f, gravity, &mut dy);
         dy
     }
 
@@ -225,14 +237,18 @@ impl Corner<'_> {
         }
         let engaged = l.free_play.is_none_or(|gap| s.abs() > gap / 2.0);
         let quadratic = l.quadratic_damping.unwrap_or(0.0) * v * v.abs();
-        if engaged { c * v + quadratic } else { 0.0 }
+        if engaged {
+            self.warm(share) * (c * v + quadratic)
+        } else {
+            0.0
+        }
     }
 
     fn damper(&self, share: f64, s: f64, v: f64, y: &State, dy: &mut State) -> f64 {
         let Some(k) = self.laws.k_series else {
             return self.damper_law(share, s, v);
         };
-        dy[SERIES] = k * (v - y[SERIES] / self.axle.c_wheel_z);
+        dy[SERIES] = k * (v - y[SERIES] / (self.warm(share) * self.axle.c_wheel_z));
         y[SERIES]
     }
 
@@ -322,7 +338,7 @@ impl Corner<'_> {
         s.signum() * curvature * beyond * beyond
     }
 
-    fn accelerate(&self, f: &Forces, gravity: bool, dy: &mut State) {
+    fn accelerate(&self, y: &State, f: &Forces, gravity: bool, dy: &mut State) {
         let (a, l) = (self.axle, self.laws);
         let g = if gravity { GRAVITY } else { 0.0 };
         let acceleration = &mut dy[COORDINATES..FRICTION];
@@ -349,6 +365,11 @@ impl Corner<'_> {
         }
         if let Some(apparent) = l.apparent {
             self.couple_by_body(apparent, f, g, acceleration);
+        }
+        if let Some(mode) = l.flexible {
+            let elastic = mode.omega * (mode.omega * y[FLEX] + 2.0 * mode.damping * y[COORDINATES + FLEX]);
+            acceleration[FLEX] = f[BODY] / (mode.generalised() * self.body()) - elastic;
+            acceleration[BODY] += acceleration[FLEX];
         }
         if let Some(pitch) = l.pitch {
             acceleration[PITCH] = f[PITCH] / pitch.inertia;

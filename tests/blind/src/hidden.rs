@@ -1,5 +1,7 @@
 //! What a campaign hides: the effects of the catalogue and some outside of it, by name, with hand-written laws.
 
+use crate::hardware::{Cams, Flexible, Hardware, Heat};
+
 /// An effect with its true parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hidden {
@@ -79,6 +81,12 @@ pub struct Laws {
     pub quadratic_damping: Option<f64>,
     /// Outside the catalogue: the top mount stiffens with the square of its stretch, N/m³.
     pub cubic_top_mount: Option<f64>,
+    /// A flaw of hardware: the body bends.
+    pub flexible: Option<Flexible>,
+    /// A flaw of hardware: the damper warms up.
+    pub heat: Option<Heat>,
+    /// A flaw of hardware: the tyre's law over a cleat.
+    pub cams: Option<Cams>,
 }
 
 macro_rules! law {
@@ -130,6 +138,16 @@ impl Laws {
             laws.add(effect);
         }
         laws
+    }
+
+    /// The same in a car that has flaws.
+    pub fn on(self, hardware: &Hardware) -> Self {
+        Self {
+            flexible: hardware.flexible(),
+            heat: hardware.heat(),
+            cams: hardware.cams(),
+            ..self
+        }
     }
 
     fn add(&mut self, effect: &Hidden) {
