@@ -8,7 +8,7 @@ use crate::source::Span;
 // What changes a model.
 mod effect;
 
-pub use effect::{Change, Effect, EffectParameter, Form, Pattern, PlaceKind};
+pub use effect::{Change, Effect, EffectParameter, Form, Pattern, PlaceKind, Role, VanishesAt};
 
 /// A name, or a word that chooses something.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -230,4 +230,8 @@ codes! {
     StartOfOtherUnit = "start_of_other_unit",
     /// A start that is not between its bounds.
     StartOutsideRange = "start_outside_range",
+    /// A second strength of a form.
+    SecondStrength = "second_strength",
+    /// A strength that vanishes where it never is.
+    VanishesOutsideRange = "vanishes_outside_range",
 }

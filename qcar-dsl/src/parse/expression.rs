@@ -103,7 +103,7 @@ fn literal(tokens: &mut Tokens) -> Parsed<Expression> {
     let number = unit::number(tokens)?;
     if let Some(word) = tokens
         .peek()
-        .filter(|word| !["in", "if", "else", "from", "by"].contains(&word.as_str()))
+        .filter(|word| !["in", "if", "else", "from", "by", "vanishes"].contains(&word.as_str()))
     {
         return Err(Box::new(reading::missing_operator(
             tokens.span(),

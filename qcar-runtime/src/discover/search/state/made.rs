@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix};
 
 use super::{Contender, State};
 use crate::campaign::{Axis, Quantity, Role};
-use crate::discover::candidate::{Added, Candidate, Change, Workshop};
+use crate::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use crate::discover::evidence::means::Means;
 use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Stimulus};
 use crate::discover::explain::{Explanation, Setting};
@@ -174,7 +174,7 @@ fn added(name: &str) -> Added {
         start: 1.0,
         range: (0.5, 2.0),
         known: false,
-        role: crate::discover::candidate::ParameterRole::Other,
+        role: ParameterRole::Other,
     }
 }
 
