@@ -132,6 +132,9 @@ pub struct Recordings {
     pub signals: Vec<(Point, Vec<f64>)>,
 }
 
+/// A record keeps at least this part of its length: what it begins with need not tell what comes later.
+const MOST_SHORTENED: usize = 2;
+
 impl Stimulus {
     /// Leaves less of a record through which a model has to be driven, so many times less of a history and half of a
     /// ride whose values stand `at` these times: when it ends now, and by how much fewer of its values are then to be
@@ -139,7 +142,7 @@ impl Stimulus {
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
             Stimulus::History { inputs, rate, .. } => {
-                let length = inputs.signals[0].1.len() / times;
+                let length = inputs.signals[0].1.len() / times.min(MOST_SHORTENED);
                 let signals = inputs.signals.iter_mut();
                 signals.for_each(|(_, samples)| samples.truncate(length));
                 (inputs.start + (length as f64 - 0.5) / *rate, 1)

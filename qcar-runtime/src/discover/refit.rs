@@ -106,12 +106,13 @@ impl Refit {
         (self.chi2 / self.residuals as f64).max(1.0)
     }
 
-    /// The residuals of the `model` that was fitted, those of the data before those of what is held by a prior, and their
-    /// Jacobian along all unknowns.
+    /// The residuals of the `model` that was fitted, in units of their noise, those of the data before those of what is held
+    /// by a prior, and their Jacobian along all unknowns.
     pub fn linearised(&self, model: &dyn Model, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
         let mut posterior = Posterior::of(self, model, evidence);
         let place = posterior.place(self);
         posterior.start.clone_from(&place);
+        posterior.whitens = false;
         let mut residual = DVector::zeros(posterior.residuals());
         let mut jacobian = DMatrix::zeros(posterior.residuals(), posterior.variables());
         posterior.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
@@ -137,7 +138,6 @@ impl Refit {
             }
         }
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
-        posterior.discrepancy = self.discrepancy_of(evidence);
         posterior.side = side;
         let mut residual = vec![0.0; posterior.residuals()];
         posterior.look(coefficients, &mut residual, false);
@@ -336,6 +336,8 @@ struct Posterior<'a> {
     centre: Values,
     /// and what that is.
     discrepancy: Option<Discrepancy>,
+    /// Whether residuals are independent by it.
+    whitens: bool,
     residuals: usize,
     /// Why the model cannot say anything of the evidence at all,
     refused: Option<PredictError>,
@@ -360,6 +362,7 @@ impl<'a> Posterior<'a> {
             start: Vec::new(),
             centre: values.clone(),
             discrepancy: None,
+            whitens: true,
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
@@ -577,7 +580,7 @@ impl<'a> Posterior<'a> {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
         self.looked = Some((x.to_vec(), swept));
-        if let Some(discrepancy) = &self.discrepancy {
+        if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
             discrepancy.whiten(&mut rows);
             columns.iter_mut().for_each(|column| discrepancy.whiten(column));
         }

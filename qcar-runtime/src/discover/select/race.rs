@@ -40,13 +40,13 @@ const ROUNDS: [Round; 4] = [
     Round {
         evidence: |all| &all.coarse,
         budget: (1, 3),
-        kept: 10,
+        kept: 8,
         starts: 2,
     },
     Round {
         evidence: |all| &all.coarse,
         budget: (2, 6),
-        kept: 6,
+        kept: 5,
         starts: 1,
     },
     Round {
@@ -63,8 +63,13 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
+/// The first of them enter with all their starts until so many run, the others with their best.
+const STARTED: usize = 12;
 /// Candidates that enter.
-const ENTRANTS: usize = 16;
+const ENTRANTS: usize = 10;
+/// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
+/// thousand.
+const CLOSE: f64 = 10.0;
 /// How many times as many evaluations a linear model has: they cost little.
 const LINEAR: usize = 3;
 
@@ -123,7 +128,8 @@ pub fn race(
     let mut field: Vec<Runner<'_>> = Vec::new();
     for (prospect, hypothesis) in entering.iter().zip(&hypotheses) {
         let Some(hypothesis) = hypothesis else { continue };
-        field.extend(prospect.starts.iter().map(|(place, _)| Runner {
+        let starts = if field.len() < STARTED { prospect.starts.len() } else { 1 };
+        field.extend(prospect.starts[..starts].iter().map(|(place, _)| Runner {
             candidate: prospect.candidate,
             hypothesis,
             place: place.clone(),
@@ -138,8 +144,15 @@ pub fn race(
             .into_par_iter()
             .filter_map(|runner| run(runner, seen, round))
             .collect();
+        if std::env::var_os("QCAR_TELL").is_some() {
+            for r in field.iter() {
+                let c = &candidates[r.candidate];
+                let e = r.refit.as_ref().map_or(0, |r| r.evaluations);
+                eprintln!("   round {number} {:10.1} gained {:9.1} {} {} at {} {:?}", r.evidence(), r.gained(), e, c.effect, c.at, c.form);
+            }
+        }
         let last = number + 1 == ROUNDS.len();
-        let (stay, left) = best(field, candidates, round, number + 2 >= ROUNDS.len());
+        let (stay, left) = best(field, candidates, round, number > 0);
         field = stay;
         if !last {
             dropped.splice(0..0, left);
@@ -208,9 +221,10 @@ fn best<'a>(
         let name = (own.effect.as_str(), own.at.as_str());
         let known = names.contains(&name);
         let behind = first - runner.evidence();
-        let is_best_there = !places.contains(&name.1);
-        let improves = runner.gained() > behind && names.len() < 2 * round.kept;
-        let wanted = known || names.len() < round.kept || improves || is_best_there && !late;
+        // What is behind by more than its last steps gained will not come first.
+        let improves = behind <= runner.gained().max(CLOSE);
+        let is_best_there = !late && !places.contains(&name.1);
+        let wanted = improves && (known || names.len() < round.kept) || is_best_there && names.len() < 2 * round.kept;
         let count = starts.entry(runner.candidate).or_default();
         if wanted && *count < round.starts {
             *count += 1;

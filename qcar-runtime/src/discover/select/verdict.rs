@@ -128,6 +128,19 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
                 }
             }
             eprintln!();
+            let mut groups: std::collections::BTreeMap<String, (f64, usize)> = Default::default();
+            for (series, residuals) in evidence.series.iter().zip(&set.explanation.gap.residuals) {
+                let role = evidence.runs[series.run].role;
+                if role != Role::Fit { continue; }
+                let key = format!("{}_{:?}_{:?}", series.sensor.location, series.sensor.axis, series.kind);
+                let own = groups.entry(key).or_default();
+                own.0 += residuals.iter().map(|r| r * r).sum::<f64>();
+                own.1 += residuals.len();
+            }
+            for (key, (sum, count)) in groups {
+                eprint!("   {key} {sum:.0}/{count}");
+            }
+            eprintln!("  chi2 {:.1} sum c2 {:.1}", set.explanation.refit.chi2, set.explanation.refit.coefficients.iter().zip(set.explanation.refit.nuisance.sigmas()).map(|(c, s)| (c / s).powi(2)).sum::<f64>());
         }
     }
     let best = &sets[answers[0].set];
