@@ -14,13 +14,14 @@ use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::search::{Discovery, Finding, News, Verdict, discover};
 use qcar_runtime::discover::{Evidence, Sweeps};
+use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{check_vehicle, own};
+use crate::parameters::{bound, check_vehicle, own};
 use crate::progress::Showing;
 use crate::verbs::Format;
 use crate::workshop::Bench;
@@ -106,6 +107,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
+    let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
@@ -122,12 +124,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
             }
         }
     };
-    let discovery = discover(
-        Box::new(bench.clone()),
-        &setting(campaign, bench.model().about()),
-        &evidence,
-        &told,
-    );
+    let discovery = discover(Box::new(bench.clone()), &setting, &evidence, &told);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
@@ -165,17 +162,22 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
-fn setting(campaign: &Campaign, about: &About) -> Setting {
-    let given = campaign.parameters.iter().cloned().chain(own(about, campaign));
-    let given = given.map(|p| Given {
+///
+/// # Errors
+/// As [`bound`].
+fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
+    let mut given = campaign.parameters.clone();
+    given.extend(own(about, campaign));
+    bound(&mut given, about, campaign)?;
+    let given = given.into_iter().map(|p| Given {
         range: p.range.filter(|_| p.fit),
         name: p.name,
         value: p.value,
     });
-    Setting {
+    Ok(Setting {
         given: given.collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
-    }
+    })
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

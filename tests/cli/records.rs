@@ -1,0 +1,130 @@
+//! Campaigns of time histories alone, as small as shows what is tested.
+
+use std::fs;
+use std::path::Path;
+
+use crate::common::qcar;
+
+/// Samples of every record, and their rate in Hz.
+const SAMPLES: usize = 2000;
+const RATE: f64 = 200.0;
+
+/// A mass of 2 kg on a spring of 800 N/m and a damper of 3 N s/m under a force, by steps far shorter than a sample.
+fn mass(begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
+    const FINER: usize = 50;
+    let [m, c, k] = [2.0, 3.0, 800.0];
+    let (h, [mut z, mut v]) = (1.0 / (RATE * FINER as f64), begin);
+    let mut samples = Vec::new();
+    for step in 0..SAMPLES * FINER {
+        if step % FINER == 0 {
+            samples.push(z);
+        }
+        // Leapfrog with the damper taken at the middle of the step.
+        let push = force((step as f64 + 0.5) * h);
+        let middle = z + 0.5 * h * v;
+        v += h * (push - k * middle - c * v) / (m + 0.5 * h * c);
+        z = middle + 0.5 * h * v;
+    }
+    samples
+}
+
+/// Columns of a run, by the names of their channels.
+type Columns<'a> = &'a [(&'a str, Vec<f64>)];
+
+/// Writes a campaign of the shipped model of one mass: parameters and further keys of the runs as in `campaign.toml`, and
+/// a run for each set of columns, the last of them held out where there are several.
+fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Columns]) {
+    let mut text = format!("format = 1\nname = \"c\"\nmodel = \"{model}\"\n\n{parameters}\n");
+    for (name, location, quantity, unit) in [("push", "f", "force", "N"), ("z", "body", "displacement", "m")] {
+        text += &format!(
+            "[[channel]]\nname = \"{name}\"\nlocation = \"{location}\"\nside = \"centre\"\naxis = \"z\"\n\
+             quantity = \"{quantity}\"\nunit = \"{unit}\"\n\n"
+        );
+    }
+    for (place, columns) in runs.iter().enumerate() {
+        let role = if place > 0 && place + 1 == runs.len() {
+            "held_out"
+        } else {
+            "fit"
+        };
+        text += &format!(
+            "[[run]]\nkind = \"time_history\"\nfile = \"run_{place}.csv\"\nrole = \"{role}\"\nsample_rate = {RATE}\n{keys}\n\n"
+        );
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        let mut table = format!("time,{}\n", names.join(","));
+        for sample in 0..columns[0].1.len() {
+            let row: Vec<String> = columns.iter().map(|(_, values)| values[sample].to_string()).collect();
+            table += &format!("{},{}\n", sample as f64 / RATE, row.join(","));
+        }
+        fs::write(folder.join(format!("run_{place}.csv")), table).unwrap();
+    }
+    fs::write(folder.join("campaign.toml"), text).unwrap();
+}
+
+fn parameter(name: &str, value: f64, unit: &str, range: &str) -> String {
+    format!("[parameters.{name}]\nvalue = {value:?}\nunit = \"{unit}\"\n{range}fit = true\n\n")
+}
+
+/// A force that is held between samples.
+fn push(t: f64) -> f64 {
+    let sample = (t * RATE).floor() / RATE;
+    (7.0 * sample).sin() + (23.0 * sample).sin() + (41.0 * sample).cos()
+}
+
+fn pushed() -> Vec<(&'static str, Vec<f64>)> {
+    let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
+    vec![("push", force), ("z", mass([0.0, 0.0], push))]
+}
+
+/// Every verb that estimates must say so rather than leave such a parameter at its start.
+#[test]
+fn what_is_to_be_fitted_without_any_range_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = fs::read_to_string("models/axles/one_mass.axle").unwrap();
+    fs::write(folder.path().join("open.axle"), shipped.replace(" in 1e-9..1e9", "")).unwrap();
+    let [mass, spring] = [("m_body", 2.0, "kg"), ("k_body", 700.0, "N/m")]
+        .map(|(name, value, unit)| parameter(name, value, unit, "range = [0.5, 2000.0]\n"));
+    let parameters = format!("{mass}{}{spring}", parameter("c_body", 2.0, "N s/m", ""));
+    let path = folder.path().to_str().unwrap();
+    campaign(
+        folder.path(),
+        "./open.axle",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let line = fs::read_to_string(folder.path().join("campaign.toml")).unwrap();
+    let line = 1 + line.lines().position(|line| line == "[parameters.c_body]").unwrap();
+    for verb in ["fit", "discover", "study"] {
+        let out = folder.path().join("out");
+        let more: &[&str] = if verb == "study" {
+            &["--out", out.to_str().unwrap()]
+        } else {
+            &[]
+        };
+        let ran = qcar(&[&[verb, path], more].concat());
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{verb}");
+        let said = format!("campaign.toml, line {line}, column 13, `parameters.c_body`");
+        for said in [&said, "`range = [lower, upper]`", "`fit = false`"] {
+            assert!(
+                ran.stderr.contains(said),
+                "{verb}: expected `{said}` in\n{}",
+                ran.stderr
+            );
+        }
+    }
+    assert_eq!(qcar(&["fit", path, "--fix", "c_body", "--starts", "1"]).status, 0);
+    // The shipped model has ranges of its own.
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let ran = qcar(&["discover", path, "--out", folder.path().join("found").to_str().unwrap()]);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let found = fs::read_to_string(folder.path().join("found/parameters.toml")).unwrap();
+    let found = found.lines().find_map(|line| line.strip_prefix("c_body = ")).unwrap();
+    assert!((found.parse::<f64>().unwrap() - 3.0).abs() < 0.03, "{found}");
+}
