@@ -6,7 +6,9 @@
 
 // Swept sines: the first harmonics at each frequency.
 pub(super) mod sweep;
-// Where a model that drifts is set right.
+// What a sensor of a record shows beside the motion.
+mod noise;
+// From where a model sets out, and where one that drifts is set right.
 mod restart;
 // Any other excitation: the responses themselves.
 mod history;

@@ -2,12 +2,12 @@
 
 use nalgebra::Complex;
 
+use super::noise::noise;
 use super::restart::restarts;
 use super::{Evidence, Kind, Recordings, Run, Series, Stimulus, excitation_of};
 use crate::campaign::Campaign;
 use crate::error::InputError;
 use crate::model::About;
-use crate::spectrum::transform;
 use crate::transmissibility::{Point, points, signal};
 
 /// Share of a record at its start in which a model that started from rest has yet to find its way.
@@ -48,11 +48,13 @@ impl Evidence {
             signals.push((point, samples));
         }
         let (place, rate) = (self.runs.len(), history.sample_rate);
+        let driven: Vec<&[f64]> = signals.iter().map(|(_, samples)| samples.as_slice()).collect();
         let mut recorded = Vec::new();
         for sensor in responses {
             let samples = signal(&history, &sensor)?;
+            let noise = noise(&samples, &driven, false);
             self.series
-                .push(series(place, sensor.clone(), &samples, (history.start, rate)));
+                .push(series(place, sensor.clone(), (&samples, noise), (history.start, rate)));
             recorded.push((sensor, samples));
         }
         self.runs.push(Run {
@@ -73,11 +75,11 @@ impl Evidence {
     }
 }
 
-fn series(run: usize, sensor: Point, samples: &[f64], (start, rate): (f64, f64)) -> Series {
+fn series(run: usize, sensor: Point, (samples, noise): (&[f64], f64), (start, rate): (f64, f64)) -> Series {
     let first = (RUN_IN * samples.len() as f64) as usize;
     let last = samples.len() - (RUN_OUT * samples.len() as f64) as usize;
     let places: Vec<usize> = (first..last).step_by((last - first).div_ceil(MOST)).collect();
-    let sigma = noise(samples).hypot(FLOOR * rms(samples));
+    let sigma = noise.hypot(FLOOR * rms(samples));
     Series {
         run,
         sensor,
@@ -86,20 +88,6 @@ fn series(run: usize, sensor: Point, samples: &[f64], (start, rate): (f64, f64))
         value: places.iter().map(|&k| Complex::from(samples[k])).collect(),
         sigma: vec![sigma; places.len()],
     }
-}
-
-/// The standard deviation of white noise with the power of the highest tenth of the spectrum.
-fn noise(samples: &[f64]) -> f64 {
-    const HIGHEST: f64 = 0.9;
-    let lines = transform(samples);
-    let mut power: Vec<f64> = lines[(HIGHEST * lines.len() as f64) as usize..]
-        .iter()
-        .map(|line| line.norm_sqr())
-        .collect();
-    let middle = power.len() / 2;
-    // Powers of lines of noise are distributed exponentially: their median is ln 2 of their mean.
-    let mean = *power.select_nth_unstable_by(middle, f64::total_cmp).1 / std::f64::consts::LN_2;
-    (mean / samples.len() as f64).sqrt()
 }
 
 fn rms(samples: &[f64]) -> f64 {
