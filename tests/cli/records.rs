@@ -3,7 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::qcar;
+use serde_json::Value;
+
+use crate::common::{qcar, succeeds};
 
 /// Samples of every record, and their rate in Hz.
 const SAMPLES: usize = 2000;
@@ -76,6 +78,10 @@ fn pushed() -> Vec<(&'static str, Vec<f64>)> {
     vec![("push", force), ("z", mass([0.0, 0.0], push))]
 }
 
+fn discovered(campaign: &str) -> Value {
+    serde_json::from_str(&succeeds(&["discover", campaign, "--format", "json"])).unwrap()
+}
+
 /// Every verb that estimates must say so rather than leave such a parameter at its start.
 #[test]
 fn what_is_to_be_fitted_without_any_range_is_refused() {
@@ -127,4 +133,32 @@ fn what_is_to_be_fitted_without_any_range_is_refused() {
     let found = fs::read_to_string(folder.path().join("found/parameters.toml")).unwrap();
     let found = found.lines().find_map(|line| line.strip_prefix("c_body = ")).unwrap();
     assert!((found.parse::<f64>().unwrap() - 3.0).abs() < 0.03, "{found}");
+}
+
+/// A mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
+#[test]
+fn a_record_that_starts_in_motion_needs_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let parameters = parameter("c_body", 2.0, "N s/m", "range = [0.5, 20.0]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n")
+        + &parameter("m_body", 2.0, "kg", "").replace("true", "false");
+    let decay = |begin| vec![("z", mass(begin, |_| 0.0))];
+    let runs = [decay([0.02, 0.3]), decay([-0.03, 0.1]), decay([0.0, -0.5])];
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &runs);
+    let answer = discovered(path);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    for role in ["fit", "held_out"] {
+        let gap = answer["gap"][role]["before"].as_f64().unwrap();
+        assert!(gap < 0.1, "{role}: {gap}");
+    }
+    assert!(answer["notices"].to_string().contains("no input"), "{answer}");
+    let found = succeeds(&["discover", path, "--out", folder.path().join("out").to_str().unwrap()]);
+    let values = fs::read_to_string(folder.path().join("out/parameters.toml")).unwrap();
+    for (name, truth) in [("c_body", 3.0), ("k_body", 800.0)] {
+        let own = values.lines().find_map(|line| line.strip_prefix(&format!("{name} = ")));
+        let value: f64 = own.unwrap().split('#').next().unwrap().trim().parse().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.002, "{name} = {value}\n{found}");
+    }
 }

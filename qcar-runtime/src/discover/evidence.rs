@@ -22,7 +22,7 @@ mod cycle;
 
 use means::Means;
 use nalgebra::Complex;
-pub use restart::Restart;
+pub use restart::{Restart, Spread, is_seen};
 
 use crate::campaign::{Axis, Campaign, Quantity, Role, Side, Test};
 use crate::error::{InputError, Place, Problem};
@@ -87,6 +87,8 @@ pub enum Stimulus {
         band_limited: bool,
         /// From where the model sets out, and where it is set right; the first is at the first sample.
         restarts: Vec<Restart>,
+        /// How far from there it may have been when the record began.
+        spread: Spread,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
@@ -125,11 +127,13 @@ pub struct Passage {
     pub most_steps: f64,
 }
 
-/// Signals of one record; at least one.
+/// Signals of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recordings {
     /// Time of the first sample, s.
     pub start: f64,
+    /// Number of samples.
+    pub samples: usize,
     /// The sensors with their samples.
     pub signals: Vec<(Point, Vec<f64>)>,
 }
@@ -141,8 +145,8 @@ impl Stimulus {
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
             Stimulus::History { inputs, rate, .. } => {
-                let length = inputs.signals[0].1.len() / times;
-                let signals = inputs.signals.iter_mut();
+                inputs.samples /= times;
+                let (length, signals) = (inputs.samples, inputs.signals.iter_mut());
                 signals.for_each(|(_, samples)| samples.truncate(length));
                 (inputs.start + (length as f64 - 0.5) / *rate, 1)
             }
@@ -157,11 +161,11 @@ impl Stimulus {
         }
     }
 
-    /// The sensor of what drove the run; none measures a road.
+    /// The sensor of what drove the run; none measures a road, and a mass that swings out is driven by nothing.
     pub fn reference(&self) -> Option<&Point> {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),
-            Stimulus::History { inputs, .. } => Some(&inputs.signals[0].0),
+            Stimulus::History { inputs, .. } => inputs.signals.first().map(|(sensor, _)| sensor),
             Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => None,
         }
     }

@@ -13,7 +13,8 @@ use nalgebra::Complex;
 
 use super::evidence::{Evidence, Kind, Run, Series, Stimulus};
 use super::predict::{Misread, Prediction};
-use crate::campaign::Axis;
+use crate::campaign::{Axis, Role};
+use crate::model::{About, State};
 use crate::transmissibility::Point;
 
 /// A way in which a sensor may be wrong.
@@ -100,8 +101,21 @@ pub struct Nuisance {
     pub band: (f64, f64),
     /// What is suspected beside their calibration.
     pub suspects: Vec<Suspect>,
+    /// The states of a model with which records begin.
+    pub beginnings: Vec<Beginning>,
     /// Coefficients from which a search begins; zero beyond those that are known.
     pub start: Vec<f64>,
+}
+
+/// A state of a model when a record begins: how far it is from where a sensor saw it, or from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beginning {
+    /// The run's file.
+    pub run: String,
+    /// The state's name in the model.
+    pub state: String,
+    /// Standard deviation before any measurement, in the unit of the state.
+    pub sigma: f64,
 }
 
 /// An error that some sensors have in common: they are one device, or are read through one.
@@ -138,6 +152,7 @@ impl Nuisance {
                 frequencies().fold(0.0, f64::max),
             ),
             suspects: Vec::new(),
+            beginnings: Vec::new(),
             start: Vec::new(),
         }
     }
@@ -155,8 +170,34 @@ impl Nuisance {
         Some(self)
     }
 
-    /// Number of coefficients: [`SENSOR`] for each sensor in turn, and one for each suspect.
+    /// The same with the states with which this model begins the records that are fitted, in place of those of another.
+    pub fn beginning(mut self, about: &About, evidence: &Evidence) -> Self {
+        let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
+        let of_run = |run: &Run| {
+            let Stimulus::History { spread, .. } = &run.stimulus else {
+                return Vec::new();
+            };
+            let states = about.states.iter();
+            let beginning = |state: &State| {
+                Some(Beginning {
+                    run: run.name.clone(),
+                    state: state.name.to_string(),
+                    sigma: spread.sigma(state)?,
+                })
+            };
+            states.filter_map(beginning).collect()
+        };
+        self.beginnings = fitted.flat_map(of_run).collect();
+        self
+    }
+
+    /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each beginning.
     pub fn len(&self) -> usize {
+        self.of_sensors() + self.beginnings.len()
+    }
+
+    /// Number of coefficients before those of the beginnings.
+    pub fn of_sensors(&self) -> usize {
         self.of_calibration() + self.suspects.len()
     }
 
@@ -175,6 +216,7 @@ impl Nuisance {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
         priors
             .chain(self.suspects.iter().map(|suspect| suspect.sigma))
+            .chain(self.beginnings.iter().map(|beginning| beginning.sigma))
             .collect()
     }
 
@@ -189,21 +231,38 @@ impl Nuisance {
             let gains = self.reference_gains(run);
             (-gains.map(|k| coefficients[k]).sum::<f64>()).exp()
         };
+        let begun = |run: &Run| {
+            let own = self.beginnings_of(run);
+            own.map(|(k, own)| (own.state.clone(), coefficients[k])).collect()
+        };
         Misread {
             late: evidence.series.iter().map(late).collect(),
             louder: evidence.runs.iter().map(louder).collect(),
+            begun: evidence.runs.iter().map(begun).collect(),
         }
     }
 
     /// The derivatives of a prediction along the coefficients by which it is misread, by place.
     pub fn misread_slopes(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
         let mut slopes = self.delays(evidence, prediction);
+        let run = &evidence.runs[evidence.series[prediction.series].run];
+        for (k, own) in self.beginnings_of(run) {
+            let slope = prediction.begun.iter().find(|(state, _)| *state == own.state);
+            slopes.extend(slope.map(|(_, slope)| (k, slope.clone())));
+        }
         if let Some(louder) = &prediction.louder {
-            let run = &evidence.runs[evidence.series[prediction.series].run];
             let along = |k| (k, louder.iter().map(|slope| -slope).collect());
             slopes.extend(self.reference_gains(run).map(along));
         }
         slopes
+    }
+
+    /// The coefficients of the states with which a run begins.
+    fn beginnings_of(&self, run: &Run) -> impl Iterator<Item = (usize, &Beginning)> {
+        let first = self.of_sensors();
+        let all = self.beginnings.iter().enumerate();
+        all.filter(|(_, own)| own.run == run.name)
+            .map(move |(k, own)| (first + k, own))
     }
 
     /// The coefficients of the mean gain of a run's reference.

@@ -166,7 +166,9 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let errors = nuisance.start.clone();
+    let mut errors = nuisance.start.clone();
+    // Where the records of an earlier search began is another search's to find.
+    errors.truncate(nuisance.of_sensors());
     refit_from(model, (values, &errors), free, evidence, nuisance, evaluations)
 }
 
@@ -183,9 +185,13 @@ pub fn refit_from(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
+    let (errors, factors) = errors.split_at(errors.len().min(nuisance.of_sensors()));
+    let nuisance = nuisance.beginning(model.about(), evidence);
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.extend(errors);
+    start.resize(free.len() + nuisance.len(), 0.0);
+    start.extend(factors);
+    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, evaluations)?;
     Ok(posterior.refit(outcome))

@@ -36,7 +36,9 @@ pub fn noise(samples: &[f64], inputs: &[&[f64]], periodic: bool) -> f64 {
 fn between_periods(samples: &[f64], count: usize) -> f64 {
     let lines = transform(samples);
     let others = lines.iter().enumerate().filter(|(k, _)| !k.is_multiple_of(count));
-    let (power, number) = others.fold((0.0, 0), |(power, number), (_, line)| (power + line.norm_sqr(), number + 1));
+    let (power, number) = others.fold((0.0, 0), |(power, number), (_, line)| {
+        (power + line.norm_sqr(), number + 1)
+    });
     (power / f64::from(number) / samples.len() as f64).sqrt()
 }
 
@@ -112,7 +114,9 @@ mod tests {
     fn random(sigma: f64) -> impl FnMut() -> f64 {
         let mut state = 7_u64;
         move || {
-            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            state = state
+                .wrapping_mul(6364136223846793005)
+                .wrapping_add(1442695040888963407);
             ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5) * 12f64.sqrt() * sigma
         }
     }
@@ -133,7 +137,11 @@ mod tests {
     #[test]
     fn a_drift_and_a_step_from_end_to_end_are_no_noise() {
         let busy = record(|t| (40.3 * TAU * t).sin());
-        for signal in [|_| 0.0, |t: f64| 30.0 * t, |t: f64| (7.25 * TAU * t).sin() + 40.0 * t * t] {
+        for signal in [
+            |_| 0.0,
+            |t: f64| 30.0 * t,
+            |t: f64| (7.25 * TAU * t).sin() + 40.0 * t * t,
+        ] {
             is_found(noise(&noisy(signal), &[&busy], false));
         }
     }

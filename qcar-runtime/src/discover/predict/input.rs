@@ -27,13 +27,15 @@ pub struct Between {
     pub band_limited: bool,
     /// Hz: what lies outside is not motion but noise.
     pub band: (f64, f64),
+    /// Number of samples.
+    pub samples: usize,
     /// Nodes for each sample.
     pub nodes: usize,
 }
 
 /// A row of node values for each input of the model; zero for one that was not recorded.
 pub fn rows(about: &About, recorded: &[Recorded], how: &Between) -> Vec<Vec<f64>> {
-    let length = recorded.first().map_or(0, |r| r.samples.len() * how.nodes);
+    let length = how.samples * how.nodes;
     let row = |kind| {
         let (place, power) = match kind {
             InputKind::Force(place) => (place, 0),

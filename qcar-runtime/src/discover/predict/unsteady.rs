@@ -129,11 +129,14 @@ impl Driven<'_> {
             rate: self.rate,
             band_limited: true,
             band: self.band,
+            samples: self.samples.len(),
             nodes: 0,
         };
         let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
         let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
-        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice()))
+        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings)
+            .run(values.as_slice(), &[])
+            .signals)
     }
 
     /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would
