@@ -110,7 +110,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
     let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
-    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
@@ -129,6 +129,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    evidence.notices.extend(offsets_of_the_model(&discovery));
     // A model that cannot be held against the sweeps has no places.
     let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
@@ -140,6 +141,14 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
         evidence,
         discovery,
         seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// A sentence for each sensor of a record that is given no offset, since the model has it.
+fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
+    let without = &discovery.after.refit.nuisance.without_offset;
+    without.iter().map(|(sensor, own)| {
+        format!("{sensor}: `{own}` of the model stands for the offset of this sensor, which is given none")
     })
 }
 

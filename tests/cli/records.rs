@@ -162,3 +162,31 @@ fn a_record_that_starts_in_motion_needs_no_input() {
         assert!((value / truth - 1.0).abs() < 0.002, "{name} = {value}\n{found}");
     }
 }
+
+/// Of the sensor where the model has none; a force that shifts the mass for good is the same to every sensor.
+#[test]
+fn an_offset_is_told_and_counted_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = parameter("m_body", 2.0, "kg", "").replace("true", "false");
+    let parameters = known
+        + &parameter("c_body", 2.0, "N s/m", "range = [0.5, 20.0]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n");
+    let mut columns = pushed();
+    columns[1].1.iter_mut().for_each(|z| *z += 2e-4);
+    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &[&columns]);
+    let answer = discovered(path);
+    let own = &answer["offsets"][0];
+    assert_eq!((&own["channel"], &own["unit"]), (&"body_z".into(), &"m".into()));
+    let (offset, error) = (own["offset"].as_f64().unwrap(), own["stderr"].as_f64().unwrap());
+    assert!((offset - 2e-4).abs() < 3.0 * error && error < 4e-5, "{own}");
+    let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    assert!(said.contains("what the sensors of records read at zero"), "{said}");
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    assert!(file.contains("# offset of body_z displacement: "), "{file}");
+    let parameters = parameters + &parameter("f_offset", 0.0, "N", "range = [-10.0, 10.0]\n");
+    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &[&columns]);
+    let answer = discovered(path);
+    assert_eq!(answer["offsets"], serde_json::json!([]), "{answer}");
+    assert!(answer["notices"].to_string().contains("`f_offset` of the model stands for the offset"), "{answer}");
+}

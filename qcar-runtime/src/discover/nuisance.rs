@@ -101,6 +101,10 @@ pub struct Nuisance {
     pub band: (f64, f64),
     /// What is suspected beside their calibration.
     pub suspects: Vec<Suspect>,
+    /// The RMS value of what each sensor reads in all records; zero without any.
+    pub reads: Vec<f64>,
+    /// Sensors of records that are given no offset, and what of the model stands for it: a parameter or a state.
+    pub without_offset: Vec<(Point, String)>,
     /// The states of a model with which records begin.
     pub beginnings: Vec<Beginning>,
     /// Coefficients from which a search begins; zero beyond those that are known.
@@ -146,6 +150,8 @@ impl Nuisance {
                 .flat_map(|s| s.at.iter().filter_map(|&at| s.kind.frequency(at)))
         };
         Self {
+            reads: sensors.iter().map(|sensor| reads(evidence, sensor)).collect(),
+            without_offset: Vec::new(),
             sensors,
             band: (
                 frequencies().fold(f64::INFINITY, f64::min),
@@ -352,12 +358,31 @@ impl Nuisance {
         }
     }
 
-    /// The coefficient of a history's offset, and what one of it adds.
+    /// The coefficient of an offset, and what one of it adds: a record has it of its sensor, a K&C curve one of its own size.
     fn offset(&self, series: &Series) -> Option<(usize, f64)> {
         let place = self.coefficient(&series.sensor, Form::Offset)?;
-        let power: f64 = series.value.iter().map(|value| value.norm_sqr()).sum();
-        let rms = (power / series.value.len() as f64).sqrt();
-        matches!(series.kind, Kind::Time | Kind::Travel).then_some((place, rms))
+        let unit = match series.kind {
+            Kind::Time if self.without_offset.iter().any(|(sensor, _)| *sensor == series.sensor) => return None,
+            Kind::Time => self.reads[place / SENSOR.len()],
+            Kind::Travel => rms(series.value.iter()),
+            _ => return None,
+        };
+        Some((place, unit))
+    }
+
+    /// What the sensors of records read at zero, with standard errors (NaN where nothing tells it), by coefficients and
+    /// theirs; SI.
+    pub fn offsets(&self, coefficients: &[f64], stderr: &[f64]) -> Vec<(Point, f64, f64)> {
+        let records = self.sensors.iter().zip(&self.reads);
+        let records = records.filter(|(sensor, reads)| {
+            let is_it = |(own, _): &(Point, String)| own == *sensor;
+            **reads > 0.0 && !self.without_offset.iter().any(is_it)
+        });
+        let offset = |(sensor, reads): (&Point, &f64)| {
+            let k = self.coefficient(sensor, Form::Offset)?;
+            Some((sensor.clone(), reads * coefficients[k], reads * stderr[k]))
+        };
+        records.filter_map(offset).collect()
     }
 
     /// For each value of a series, what each of the coefficients adds to its logarithm.
@@ -417,4 +442,17 @@ impl Nuisance {
         let u = (2.0 * (f / first).ln() / (last / first).ln().max(f64::MIN_POSITIVE) - 1.0).clamp(-1.0, 1.0);
         (degree as f64 * u.acos()).cos()
     }
+}
+
+/// The RMS value of what a sensor reads in all records.
+fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
+    let records = evidence.series.iter();
+    let records = records.filter(|series| series.kind == Kind::Time && series.sensor == *sensor);
+    rms(records.flat_map(|series| &series.value))
+}
+
+/// Root of the mean square; zero of nothing.
+fn rms<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> f64 {
+    let (power, count) = values.fold((0.0, 0), |(power, count), value| (power + value.norm_sqr(), count + 1));
+    (power / f64::from(count.max(1))).sqrt()
 }

@@ -8,6 +8,8 @@
 //! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
 //! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
 
+// No offset twice.
+mod offset;
 // With what sweeps show beyond their steady harmonics.
 mod settle;
 
@@ -23,6 +25,7 @@ use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
+use crate::transmissibility::Point;
 pub use settle::settle;
 
 /// The explanation that was found.
@@ -133,6 +136,13 @@ impl Refit {
             .then(|| DVector::from_vec(residual))
     }
 
+    /// What the sensors of records read at zero, with standard errors; SI.
+    pub fn offsets(&self) -> Vec<(Point, f64, f64)> {
+        let scatter = self.scatter().sqrt();
+        let errors: Vec<f64> = self.coefficient_stderr.iter().map(|error| scatter * error).collect();
+        self.nuisance.offsets(&self.coefficients, &errors)
+    }
+
     /// What the sensors would have shown of a prediction.
     pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
         let series = &evidence.series[prediction.series];
@@ -187,6 +197,7 @@ pub fn refit_from(
 ) -> Result<Refit, PredictError> {
     let (errors, factors) = errors.split_at(errors.len().min(nuisance.of_sensors()));
     let nuisance = nuisance.beginning(model.about(), evidence);
+    let nuisance = offset::once(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.extend(errors);
     start.resize(free.len() + nuisance.len(), 0.0);

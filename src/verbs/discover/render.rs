@@ -26,6 +26,7 @@ pub(crate) struct Result<'a> {
     visible: Vec<Seen<'a>>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
+    offsets: Vec<Offset>,
     model_file: Option<String>,
     notices: &'a [String],
     seconds: f64,
@@ -43,6 +44,16 @@ struct Effect<'a> {
     units: &'a BTreeMap<String, String>,
     evidence: Evidence,
     rivals: &'a [Rival],
+}
+
+/// What a sensor of a record reads at zero.
+#[derive(Serialize)]
+struct Offset {
+    channel: String,
+    quantity: &'static str,
+    offset: f64,
+    stderr: Option<f64>,
+    unit: &'static str,
 }
 
 /// An effect that is not there, and how clearly it would have been seen.
@@ -127,6 +138,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             held_out: BeforeAfter::new(before.held_out, after.held_out),
         },
         by_channel: by_channel(of),
+        offsets: offsets(&of.discovery.after),
         model_file: of
             .model
             .as_ref()
@@ -223,13 +235,49 @@ fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
     named.collect()
 }
 
-/// A parameter file as `--params` takes it.
+/// What the sensors of records read at zero beside the model.
+fn offsets(of: &Explanation) -> Vec<Offset> {
+    let offsets = of.refit.offsets().into_iter();
+    let offset = |(sensor, offset, stderr): (Point, f64, f64)| Offset {
+        channel: channel(&sensor),
+        quantity: sensor.quantity.name(),
+        offset,
+        stderr: stderr.is_finite().then_some(stderr),
+        unit: sensor.quantity.unit(),
+    };
+    offsets.map(offset).collect()
+}
+
+/// A parameter file as `--params` takes it. What the sensors read at zero stands in it as a remark.
 pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
     let mut out = format!("# {heading}\n\n[parameters]\n");
     for (name, value) in &of.named {
         let _ = writeln!(out, "{name} = {value:?}");
     }
+    for own in offsets(of) {
+        let error = own
+            .stderr
+            .map_or(String::new(), |error| format!(", standard error {error:.2e}"));
+        let Offset {
+            channel,
+            quantity,
+            offset,
+            unit,
+            ..
+        } = own;
+        let _ = writeln!(out, "# offset of {channel} {quantity}: {offset:.4e} {unit}{error}");
+    }
     out
+}
+
+fn offsets_table(of: &Explanation) -> String {
+    let mut table = Table::new(["channel", "quantity", "unit", "offset", "stderr"]);
+    for own in offsets(of) {
+        let numbers = [number(own.offset, 4), or_dash(own.stderr, 2)];
+        let names = [own.channel, own.quantity.into(), own.unit.into()];
+        table.row(names.into_iter().chain(numbers).collect());
+    }
+    table.text()
 }
 
 pub(super) fn text(of: &Answer) -> String {
@@ -245,6 +293,12 @@ pub(super) fn text(of: &Answer) -> String {
     out += &gaps.text();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         out += &format!("\n{}{}", choice(of, place), described(finding, units));
+    }
+    if !of.discovery.after.refit.offsets().is_empty() {
+        out += &format!(
+            "\nwhat the sensors of records read at zero\n{}",
+            offsets_table(&of.discovery.after)
+        );
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
