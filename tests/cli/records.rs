@@ -174,7 +174,13 @@ fn an_offset_is_told_and_counted_once() {
         + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n");
     let mut columns = pushed();
     columns[1].1.iter_mut().for_each(|z| *z += 2e-4);
-    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &[&columns]);
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&columns],
+    );
     let answer = discovered(path);
     let own = &answer["offsets"][0];
     assert_eq!((&own["channel"], &own["unit"]), (&"body_z".into(), &"m".into()));
@@ -185,8 +191,77 @@ fn an_offset_is_told_and_counted_once() {
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     assert!(file.contains("# offset of body_z displacement: "), "{file}");
     let parameters = parameters + &parameter("f_offset", 0.0, "N", "range = [-10.0, 10.0]\n");
-    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &[&columns]);
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&columns],
+    );
     let answer = discovered(path);
     assert_eq!(answer["offsets"], serde_json::json!([]), "{answer}");
-    assert!(answer["notices"].to_string().contains("`f_offset` of the model stands for the offset"), "{answer}");
+    assert!(
+        answer["notices"]
+            .to_string()
+            .contains("`f_offset` of the model stands for the offset"),
+        "{answer}"
+    );
+}
+
+/// Two runs of the true mass, the second from a start in motion: nothing is left of either, and 5 % of a spring shows.
+#[test]
+fn records_are_replayed_and_what_is_left_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = [
+        ("m_body", 2.0, "kg"),
+        ("c_body", 3.0, "N s/m"),
+        ("k_body", 800.0, "N/m"),
+    ];
+    let known = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
+    let parameters = known.concat().replace("true", "false");
+    let moving: Vec<(&str, Vec<f64>)> = vec![pushed().remove(0), ("z", mass([0.02, 0.2], push))];
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed(), &moving],
+    );
+    let simulated = |more: &[&str]| -> Value {
+        let arguments = [&["simulate", path, "--format", "json"], more].concat();
+        serde_json::from_str(&succeeds(&arguments)).unwrap()
+    };
+    let truth = simulated(&["--out", out.to_str().unwrap()]);
+    for (place, role) in ["fit", "held_out"].into_iter().enumerate() {
+        let own = &truth["records"][place];
+        assert_eq!((&own["role"], &own["channel"]), (&role.into(), &"body_z".into()));
+        assert!(own["nrms"].as_f64().unwrap() < 1e-3, "{own}");
+        let columns = fs::read_to_string(out.join(format!("run_{place}.csv"))).unwrap();
+        assert!(columns.starts_with("time,body_z_displacement_measured,body_z_displacement_simulated\n"));
+        assert_eq!(columns.lines().count(), SAMPLES + 1);
+        assert!(
+            fs::read_to_string(out.join(format!("run_{place}.svg")))
+                .unwrap()
+                .contains("time, s")
+        );
+    }
+    let off = simulated(&["--set", "k_body=840"]);
+    let error = &off["records"][0];
+    let (rms, left) = (
+        error["measured_rms"].as_f64().unwrap(),
+        error["rms_error"].as_f64().unwrap(),
+    );
+    let measured = mass([0.0, 0.0], push);
+    let mean = measured.iter().sum::<f64>() / SAMPLES as f64;
+    let scatter = (measured.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / SAMPLES as f64).sqrt();
+    assert!((rms / scatter - 1.0).abs() < 1e-6, "{error}");
+    assert!(
+        (error["nrms"].as_f64().unwrap() - left / rms).abs() < 1e-9 && left > 0.02 * rms,
+        "{error}"
+    );
+    assert!(succeeds(&["simulate", path]).contains("nrms_%"));
+    assert!(
+        succeeds(&["simulate", path, "--format", "csv"]).starts_with("run,role,channel,quantity,unit,measured_rms")
+    );
 }

@@ -274,6 +274,17 @@ impl Evidence {
         series.filter(move |(_, series)| self.runs[series.run].role == role)
     }
 
+    /// The sensors of a run, each once.
+    pub fn sensors(&self, run: usize) -> Vec<&Point> {
+        let mut sensors: Vec<&Point> = Vec::new();
+        for series in self.series.iter().filter(|series| series.run == run) {
+            if !sensors.contains(&&series.sensor) {
+                sensors.push(&series.sensor);
+            }
+        }
+        sensors
+    }
+
     /// The same with this share of every value added to its uncertainty: for a model that is known to lack something.
     pub fn tolerant(&self, share: f64) -> Self {
         let mut tolerant = self.clone();

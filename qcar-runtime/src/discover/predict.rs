@@ -195,6 +195,24 @@ pub fn predict_begun(
     history::history(model, values, misread, (&[], true), evidence, run)
 }
 
+/// What the sensors of a sweep or a time history would have recorded, sample by sample; nothing of any other run.
+///
+/// # Errors
+/// As [`predict`].
+pub fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    match &evidence.runs[run].stimulus {
+        Stimulus::Sweep { .. } => unsteady::replayed(model, values, evidence, run),
+        Stimulus::History { .. } => history::replayed(model, values, misread, evidence, run),
+        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => Ok(Vec::new()),
+    }
+}
+
 /// The excitation of the model that a sensor measured in a run.
 fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Point) -> Result<usize, PredictError> {
     excitation_of(model.about(), reference).ok_or_else(|| PredictError::NoInput {

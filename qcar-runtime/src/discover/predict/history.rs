@@ -113,6 +113,21 @@ pub(super) fn history(
     Ok(series.iter().enumerate().map(predict).collect())
 }
 
+/// What the sensors of a run would have recorded, sample by sample.
+pub(super) fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    let sensors = evidence.sensors(run);
+    let replay = prepare(model, evidence, run, &sensors)?;
+    let begin = begin(model.about(), misread.begun(run));
+    let signals = replay.run(values.as_slice(), &begin).signals;
+    Ok(sensors.into_iter().cloned().zip(signals).collect())
+}
+
 /// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
 /// side (Catmull and Rom); beyond its ends it stays as it is there.
 fn between(signal: &[f64], place: f64) -> (f64, f64) {
