@@ -13,11 +13,15 @@ const RATE: f64 = 200.0;
 
 /// A mass of 2 kg on a spring of 800 N/m and a damper of 3 N s/m under a force, by steps far shorter than a sample.
 fn mass(begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
+    mass_for(SAMPLES, begin, force)
+}
+
+fn mass_for(count: usize, begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
     const FINER: usize = 50;
     let [m, c, k] = [2.0, 3.0, 800.0];
     let (h, [mut z, mut v]) = (1.0 / (RATE * FINER as f64), begin);
     let mut samples = Vec::new();
-    for step in 0..SAMPLES * FINER {
+    for step in 0..count * FINER {
         if step % FINER == 0 {
             samples.push(z);
         }
@@ -264,4 +268,45 @@ fn records_are_replayed_and_what_is_left_is_told() {
     assert!(
         succeeds(&["simulate", path, "--format", "csv"]).starts_with("run,role,channel,quantity,unit,measured_rms")
     );
+}
+
+/// Ten periods that repeat, recorded with a slow drift of the sensor that is none of the mass's: a band leaves it out.
+#[test]
+fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let known = [
+        ("m_body", 2.0, "kg"),
+        ("c_body", 3.0, "N s/m"),
+        ("k_body", 800.0, "N/m"),
+    ];
+    let parameters = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
+    let parameters = parameters.concat().replace("true", "false");
+    let tone = |t: f64| (std::f64::consts::TAU * 2.0 * t).sin() + (std::f64::consts::TAU * 4.0 * t).cos();
+    let held = |t: f64| tone((t * RATE).floor() / RATE);
+    let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
+    // Begun ten seconds earlier, as long as twenty of its time constants.
+    let z = |count: usize| -> Vec<f64> { mass_for(3 * SAMPLES, [0.0, 0.0], held)[2 * SAMPLES..][..count].to_vec() };
+    let nrms = |keys: &str, z: Vec<f64>| {
+        let keys = format!("band_limited = false\n{keys}");
+        let columns = vec![("push", force.clone()), ("z", z)];
+        campaign(folder.path(), "one_mass", &parameters, &keys, &[&columns]);
+        let result: Value = serde_json::from_str(&succeeds(&["simulate", path, "--format", "json"])).unwrap();
+        result["records"][0]["nrms"].as_f64().unwrap()
+    };
+    assert!(nrms("periodic = true", z(SAMPLES)) < 1e-3);
+    let drifting = |k: usize| 0.01 * k as f64 / SAMPLES as f64;
+    let drifted: Vec<f64> = z(SAMPLES).iter().enumerate().map(|(k, z)| z + drifting(k)).collect();
+    assert!(nrms("", drifted.clone()) > 0.5);
+    assert!(nrms("band = [1.0, 20.0]", drifted.clone()) < 0.02);
+    let refused = |keys: &str, said: &str| {
+        let keys = format!("band_limited = false\n{keys}");
+        let columns = vec![("push", force.clone()), ("z", drifted.clone())];
+        campaign(folder.path(), "one_mass", &parameters, &keys, &[&columns]);
+        let ran = qcar(&["simulate", path]);
+        assert!(ran.status == 2 && ran.stderr.contains(said), "{}", ran.stderr);
+    };
+    refused("band = [1.0, 100.0]", "below half the sample rate, 100 Hz");
+    refused("band = [20.0, 1.0]", "the lower bound below the upper");
+    refused("band = [0.01, 20.0]", "longer than the");
 }

@@ -6,6 +6,8 @@
 
 // Swept sines: the first harmonics at each frequency.
 pub(super) mod sweep;
+// Which frequencies of a record are compared.
+mod band;
 // What a sensor of a record shows beside the motion.
 mod noise;
 // From where a model sets out, and where one that drifts is set right.
@@ -20,6 +22,7 @@ pub(super) mod travel;
 // K&C sines.
 mod cycle;
 
+pub use band::Band;
 use means::Means;
 use nalgebra::Complex;
 pub use restart::{Restart, Spread, is_seen};
@@ -89,6 +92,10 @@ pub enum Stimulus {
         restarts: Vec<Restart>,
         /// How far from there it may have been when the record began.
         spread: Spread,
+        /// Which frequencies are compared; all without one.
+        band: Option<Band>,
+        /// True where the record is made of whole periods of a motion that repeats.
+        periodic: bool,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
@@ -144,11 +151,14 @@ impl Stimulus {
     /// looked at. Anything else stays.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
-            Stimulus::History { inputs, rate, .. } => {
-                inputs.samples /= times;
+            // Part of a period is no period.
+            Stimulus::History { periodic: true, .. } => (f64::INFINITY, times),
+            Stimulus::History { inputs, rate, band, .. } => {
+                let reach = band.as_ref().map_or(0, Band::half);
+                inputs.samples = (inputs.samples / times + reach).min(inputs.samples);
                 let (length, signals) = (inputs.samples, inputs.signals.iter_mut());
                 signals.for_each(|(_, samples)| samples.truncate(length));
-                (inputs.start + (length as f64 - 0.5) / *rate, 1)
+                (inputs.start + ((length - reach) as f64 - 0.5) / *rate, 1)
             }
             // The impact and the first of the after-shake have all modes of an axle.
             Stimulus::Cleat(passage) if at.len() > 1 && times > 1 => {
@@ -158,6 +168,38 @@ impl Stimulus {
                 (end.next_up(), times.div_ceil(2))
             }
             _ => (f64::INFINITY, times),
+        }
+    }
+
+    /// What is compared of a signal that was recorded in the run, sample by sample.
+    pub fn of_band(&self, signal: &[f64]) -> Vec<f64> {
+        match self {
+            Stimulus::History {
+                band: Some(band),
+                periodic,
+                ..
+            } => band.of(signal, *periodic),
+            _ => signal.to_vec(),
+        }
+    }
+
+    /// Samples at either end of a record that are not compared, since a band reaches beyond them.
+    pub fn cut(&self) -> usize {
+        match self {
+            Stimulus::History {
+                band: Some(band),
+                periodic: false,
+                ..
+            } => band.half(),
+            _ => 0,
+        }
+    }
+
+    /// True where what never changes is compared too.
+    pub fn holds_rest(&self) -> bool {
+        match self {
+            Stimulus::History { band: Some(band), .. } => band.holds_rest(),
+            _ => true,
         }
     }
 
@@ -358,7 +400,7 @@ impl Evidence {
     fn add(&mut self, campaign: &Campaign, about: &About, run: &crate::campaign::Run) -> Result<(), InputError> {
         match &run.test {
             Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
-            Test::TimeHistory { band_limited, .. } => self.add_history(campaign, about, run, *band_limited),
+            Test::TimeHistory(recording) => self.add_history(campaign, about, run, recording),
             Test::Cleat { .. } => self.add_cleat(campaign, about, run),
             Test::Bounce => self.add_travel(campaign, about, run, Axis::Z),
             Test::Longitudinal => self.add_travel(campaign, about, run, Axis::X),

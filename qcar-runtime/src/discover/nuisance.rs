@@ -348,7 +348,7 @@ impl Nuisance {
             .collect();
         let along = |slope: Vec<Complex<f64>>| slope.iter().zip(&scaled).map(|(slope, value)| slope * value).collect();
         let mut slopes: Vec<_> = logarithmic.into_iter().map(|(k, slope)| (k, along(slope))).collect();
-        let offset = self.offset(series);
+        let offset = self.offset(evidence, series);
         let added = offset.map_or(0.0, |(k, unit)| unit * coefficients[k]);
         slopes.extend(offset.map(|(k, unit)| (k, vec![Complex::from(unit); value.len()])));
         Shown {
@@ -359,7 +359,10 @@ impl Nuisance {
     }
 
     /// The coefficient of an offset, and what one of it adds: a record has it of its sensor, a K&C curve one of its own size.
-    fn offset(&self, series: &Series) -> Option<(usize, f64)> {
+    fn offset(&self, evidence: &Evidence, series: &Series) -> Option<(usize, f64)> {
+        if !evidence.runs[series.run].stimulus.holds_rest() {
+            return None;
+        }
         let place = self.coefficient(&series.sensor, Form::Offset)?;
         let unit = match series.kind {
             Kind::Time if self.without_offset.iter().any(|(sensor, _)| *sensor == series.sensor) => return None,
@@ -446,8 +449,11 @@ impl Nuisance {
 
 /// The RMS value of what a sensor reads in all records.
 fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
-    let records = evidence.series.iter();
-    let records = records.filter(|series| series.kind == Kind::Time && series.sensor == *sensor);
+    let is_it = |series: &&Series| {
+        let holds_rest = evidence.runs[series.run].stimulus.holds_rest();
+        series.kind == Kind::Time && series.sensor == *sensor && holds_rest
+    };
+    let records = evidence.series.iter().filter(is_it);
     rms(records.flat_map(|series| &series.value))
 }
 

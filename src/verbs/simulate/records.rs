@@ -3,6 +3,7 @@
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::beginning::beginnings;
+use qcar_runtime::discover::evidence::Stimulus;
 use qcar_runtime::discover::nuisance::Nuisance;
 use qcar_runtime::discover::predict::{Misread, PredictError, replayed};
 use qcar_runtime::error::InputError;
@@ -50,7 +51,7 @@ pub(super) struct RecordError {
 
 /// True for a run that is replayed.
 fn is_record(run: &Run) -> bool {
-    matches!(run.test, Test::Sweep(_) | Test::TimeHistory { .. })
+    matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_))
 }
 
 /// Replays every sweep and time history of a campaign; none where it has none.
@@ -95,18 +96,26 @@ fn simulated(
         .collect()
 }
 
-fn record(campaign: &Campaign, run: &Run, simulated: Vec<(Point, Vec<f64>)>) -> Result<Record, InputError> {
+/// A run, of which the band and the samples are held against each other that a search would compare.
+fn record(
+    campaign: &Campaign,
+    (run, stimulus): (&Run, &Stimulus),
+    simulated: Vec<(Point, Vec<f64>)>,
+) -> Result<Record, InputError> {
     let history = campaign.history(run)?;
+    let cut = stimulus.cut();
     let (mut signals, mut errors) = (Vec::new(), Vec::new());
     for (sensor, simulated) in simulated {
-        let measured = signal(&history, &sensor)?;
+        let measured = stimulus.of_band(&signal(&history, &sensor)?);
+        let inside = |signal: Vec<f64>| signal[cut..signal.len() - cut].to_vec();
+        let (measured, simulated) = (inside(measured), inside(simulated));
         errors.push(error(run, &sensor, &measured, &simulated));
         signals.push((sensor, [measured, simulated]));
     }
     Ok(Record {
         run: run.file.clone(),
         rate: history.sample_rate,
-        start: history.start,
+        start: history.start + cut as f64 / history.sample_rate,
         signals,
         errors,
     })

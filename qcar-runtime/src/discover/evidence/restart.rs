@@ -125,7 +125,7 @@ pub(super) fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)
         sample: 0,
         seen: seen.collect(),
     };
-    let drifting = |(point, _): &&(Point, Vec<f64>)| role == Role::HeldOut && drifts(about, point);
+    let drifting = |(point, _): &&(Point, Vec<f64>)| role == Role::HeldOut && shows_drift(about, point);
     let drifting: Vec<_> = responses.iter().filter(drifting).collect();
     let length = drifting.first().map_or(0, |(_, y)| y.len());
     let window = length.div_ceil(WINDOWS);
@@ -140,16 +140,16 @@ pub(super) fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)
     std::iter::once(start).chain(again).collect()
 }
 
+/// True of the sensor that shows where a mass is that no link holds.
+fn shows_drift(about: &About, point: &Point) -> bool {
+    let state = about.states.iter().position(|state| is_seen(state, point));
+    state.is_some_and(|state| drifts(about, state))
+}
+
 /// True of the position of a mass on which nothing depends: no link holds it.
-fn drifts(about: &About, point: &Point) -> bool {
-    let here = |state: &crate::model::State| {
-        state.kind == StateKind::Position && state.location == point.location && state.axis == point.axis.name()
-    };
-    let Some(state) = about.states.iter().position(here) else {
-        return false;
-    };
+pub(super) fn drifts(about: &About, state: usize) -> bool {
     let matters = |entry: &crate::model::Entry| entry.matrix == Matrix::A && usize::from(entry.column) == state;
-    point.quantity == Quantity::Displacement && !about.matrices.iter().any(matters)
+    about.states[state].kind == StateKind::Position && !about.matrices.iter().any(matters)
 }
 
 /// Position and velocity there; this is the slope of the straight line through the samples around.

@@ -28,9 +28,10 @@ pub(super) fn history(
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
+    let stimulus = &evidence.runs[run].stimulus;
     let Stimulus::History {
         inputs, rate, spread, ..
-    } = &evidence.runs[run].stimulus
+    } = stimulus
     else {
         return Ok(Vec::new());
     };
@@ -76,6 +77,7 @@ pub(super) fn history(
             (state, step, replay.beside(base, values.as_slice(), &begin))
         })
         .collect();
+    let shown = |replayed: &Replayed, column: usize| stimulus.of_band(&replayed.signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &crate::discover::evidence::Series))| {
         let late = misread.late.get(*place).copied().unwrap_or(0.0);
         let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
@@ -85,9 +87,9 @@ pub(super) fn history(
                 .map(|t| between(signal, (t - start - late) * rate))
                 .unzip()
         };
-        let (value, by_sample) = read(&base.signals[column]);
+        let (value, by_sample) = read(&shown(base, column));
         let slope = |step: f64, replayed: &Replayed| -> Vec<Complex<f64>> {
-            let (moved, _) = read(&replayed.signals[column]);
+            let (moved, _) = read(&shown(replayed, column));
             moved
                 .iter()
                 .zip(&value)
@@ -113,7 +115,7 @@ pub(super) fn history(
     Ok(series.iter().enumerate().map(predict).collect())
 }
 
-/// What the sensors of a run would have recorded, sample by sample.
+/// What the sensors of a run would have recorded, sample by sample, of the band that is compared.
 pub(super) fn replayed(
     model: &dyn Model,
     values: &Values,
@@ -125,7 +127,9 @@ pub(super) fn replayed(
     let replay = prepare(model, evidence, run, &sensors)?;
     let begin = begin(model.about(), misread.begun(run));
     let signals = replay.run(values.as_slice(), &begin).signals;
-    Ok(sensors.into_iter().cloned().zip(signals).collect())
+    let stimulus = &evidence.runs[run].stimulus;
+    let shown = signals.iter().map(|signal| stimulus.of_band(signal));
+    Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
 /// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
@@ -159,6 +163,7 @@ fn prepare<'a>(
         rate,
         band_limited,
         restarts,
+        periodic,
         ..
     } = &evidence.runs[run].stimulus
     else {
@@ -181,6 +186,7 @@ fn prepare<'a>(
         rate: *rate,
         band_limited: *band_limited,
         band: (0.0, *rate),
+        periodic: *periodic,
         samples: inputs.samples,
         nodes: 0,
     };

@@ -36,9 +36,16 @@ pub struct Replayed {
     pub signals: Vec<Vec<f64>>,
     /// All states at each sample.
     states: Vec<Vec<f64>>,
+    /// They one sample later than the last.
+    end: Vec<f64>,
     /// Place of the fineness that was needed.
     finer: usize,
 }
+
+/// Periods until a motion is taken for one that repeats, whether it does or not,
+const PERIODS: usize = 60;
+/// and by what share of their largest value states may still differ from a period to the next.
+const REPEATED: f64 = 1e-9;
 
 /// How many times finer the steps are taken when a replay runs away: laws may be stiffer than any sampling foresees.
 const FINER: [usize; 2] = [1, 4];
@@ -65,15 +72,30 @@ impl<'a> Replay<'a> {
     /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
     pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
         let last = FINER.len() - 1;
-        let replays = (0..last).map(|finer| self.advance(p, begin, finer, None));
+        let replays = (0..last).map(|finer| self.replay(p, begin, finer));
         let is_finite = |signal: &Vec<f64>| signal.last().is_some_and(|last| last.is_finite());
         let mut replays = replays.filter(|replayed| replayed.signals.iter().all(is_finite));
-        replays.next().unwrap_or_else(|| self.advance(p, begin, last, None))
+        replays.next().unwrap_or_else(|| self.replay(p, begin, last))
     }
 
     /// The same beside another replay, and no longer than the two differ: from there on it is that one.
     pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        self.advance(p, begin, other.finer, Some(other))
+        let rest = vec![0.0; self.model.about().states.len()];
+        self.advance(p, (rest, begin), other.finer, Some(other))
+    }
+
+    /// From rest, or of a motion that repeats a period of it.
+    fn replay(&self, p: &[f64], begin: &[(usize, f64)], finer: usize) -> Replayed {
+        let rest = vec![0.0; self.model.about().states.len()];
+        let mut replayed = self.advance(p, (rest, begin), finer, None);
+        let periods = if self.how.periodic { PERIODS } else { 0 };
+        for _ in 0..periods {
+            if replayed.repeats() {
+                break;
+            }
+            replayed = self.advance(p, (replayed.end, &[]), finer, None);
+        }
+        replayed
     }
 
     /// For each node the inputs of the model.
@@ -87,13 +109,19 @@ impl<'a> Replay<'a> {
         (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
     }
 
-    fn advance(&self, p: &[f64], begin: &[(usize, f64)], finer: usize, other: Option<&Replayed>) -> Replayed {
+    /// From a state with some of it elsewhere, as long as it is not that of another replay.
+    fn advance(
+        &self,
+        p: &[f64],
+        (mut x, begin): (Vec<f64>, &[(usize, f64)]),
+        finer: usize,
+        other: Option<&Replayed>,
+    ) -> Replayed {
         let steps = steps(self.how.rate) * FINER[finer];
         let inputs = self.nodes[finer].get_or_init(|| self.inputs(steps));
         let about = self.model.about();
         let mut constants = vec![0.0; about.constants];
         self.model.prepare(p, &mut constants);
-        let mut x = vec![0.0; about.states.len()];
         let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; about.outputs.len()];
         let mut stages = Stages::new(x.len());
@@ -127,16 +155,33 @@ impl<'a> Replay<'a> {
                 stages.advance(self.model, &constants, inputs, h, &mut x);
             }
         }
-        Replayed { signals, states, finer }
+        Replayed {
+            signals,
+            states,
+            end: x,
+            finer,
+        }
     }
 
     /// The node at which a step ends; what is held stays until the next sample replaces it.
     fn end(&self, node: usize, count: usize) -> usize {
-        if self.how.band_limited {
+        if self.how.band_limited && self.how.periodic {
+            (node + 2) % count
+        } else if self.how.band_limited {
             (node + 2).min(count - 1)
         } else {
             node + 1
         }
+    }
+}
+
+impl Replayed {
+    /// True where it ends as it began, or has no number.
+    fn repeats(&self) -> bool {
+        let most = |state: usize| self.states.iter().map(|x| x[state].abs()).fold(0.0, f64::max);
+        let first = self.states.first().unwrap_or(&self.end);
+        let mut ends = self.end.iter().zip(first).enumerate();
+        ends.all(|(state, (end, first))| !((end - first).abs() > REPEATED * most(state)))
     }
 }
 

@@ -159,6 +159,7 @@ impl Driven<'_> {
             rate: self.rate,
             band_limited: true,
             band: self.band,
+            periodic: false,
             samples: self.samples.len(),
             nodes: 0,
         };

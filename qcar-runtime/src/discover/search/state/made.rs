@@ -220,6 +220,8 @@ pub fn history() -> Stimulus {
         band_limited: true,
         restarts: Vec::new(),
         spread: Spread::default(),
+        band: None,
+        periodic: false,
     }
 }
 
