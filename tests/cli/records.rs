@@ -310,3 +310,105 @@ fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
     refused("band = [20.0, 1.0]", "the lower bound below the upper");
     refused("band = [0.01, 20.0]", "longer than the");
 }
+
+/// A damper that may not be as hard as it is: seconds are told as seconds, and the end of its range as one.
+#[test]
+fn bounds_and_spans_of_time_are_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = ["m_body", "k_body"].into_iter().zip([(2.0, "kg"), (800.0, "N/m")]);
+    let known: String = known
+        .map(|(name, (value, unit))| parameter(name, value, unit, ""))
+        .collect();
+    let parameters = known.replace("true", "false") + &parameter("c_body", 1.0, "N s/m", "range = [0.5, 1.5]\n");
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let answer = discovered(path);
+    let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    if answer["verdict"] == "unknown" {
+        assert_eq!(answer["at_bound"], serde_json::json!({"c_body": "upper"}), "{answer}");
+        assert!(said.contains("c_body stands at the upper end of its range"), "{said}");
+    }
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    assert_eq!(
+        file.contains("c_body = 1.5 # at the upper end"),
+        answer["at_bound"]["c_body"] == "upper",
+        "{file}"
+    );
+    assert!(!said.contains("_Hz"), "{said}");
+}
+
+/// The force of an actuator between two masses, with a gain of its own, and a second input that only one run has.
+#[test]
+fn an_input_between_two_masses_has_a_gain_and_what_is_not_recorded_rests() {
+    const GAIN: f64 = 1.3;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("pair.axle"), PAIR).unwrap();
+    let wind = |t: f64| (11.0 * (t * RATE).floor() / RATE).sin();
+    // Each swings on its own, one with the actuator, the other against it.
+    let run = |blown: f64| {
+        let of =
+            |force: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..SAMPLES).map(|k| force((k as f64 + 0.5) / RATE)).collect() };
+        let mut columns = vec![
+            ("push", of(&push)),
+            ("z", mass([0.0; 2], |t| GAIN * push(t) + blown * wind(t))),
+        ];
+        columns.push(("z_other", mass([0.0; 2], |t| -GAIN * push(t))));
+        if blown > 0.0 {
+            columns.push(("wind", of(&wind)));
+        }
+        columns
+    };
+    let runs = [run(1.0), run(0.0), run(2.0)];
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(folder.path(), "./pair.axle", "", "band_limited = false", &runs);
+    let manifest = folder.path().join("campaign.toml");
+    let more = "[[channel]]\nname = \"z_other\"\nlocation = \"other\"\nside = \"centre\"\naxis = \"z\"\n\
+                quantity = \"displacement\"\nunit = \"m\"\n\n[[channel]]\nname = \"wind\"\nlocation = \"g\"\n\
+                side = \"centre\"\naxis = \"z\"\nquantity = \"force\"\nunit = \"N\"\n\n[[run]]";
+    let text = fs::read_to_string(&manifest).unwrap().replacen("[[run]]", more, 1);
+    fs::write(&manifest, text).unwrap();
+    let simulated = succeeds(&[
+        "simulate", path, "--set", "gain=1.3", "--set", "k=800", "--set", "c=3", "--format", "json",
+    ]);
+    let simulated: Value = serde_json::from_str(&simulated).unwrap();
+    let errors = simulated["records"].as_array().unwrap();
+    assert_eq!(errors.len(), 6);
+    assert!(
+        errors.iter().all(|own| own["nrms"].as_f64().unwrap() < 2e-3),
+        "{simulated}"
+    );
+    let out = folder.path().join("out");
+    succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    let gain = file.lines().find_map(|line| line.strip_prefix("gain = ")).unwrap();
+    assert!((gain.parse::<f64>().unwrap() / GAIN - 1.0).abs() < 0.005, "{file}");
+}
+
+/// A massless point on which a force acts passes it on, by the lever of the link that holds it.
+const PAIR: &str = "axle pair {
+    \"Two masses, an actuator between them and a force on one\"
+    known param m: kg = 2 in 0.1..10 \"Each mass\";
+    param k: N/m = 700 in 100..4000 \"Each spring\";
+    param c: N s/m = 4 in 0.1..50 \"Each damper\";
+    param gain: 1 = 0.9 in 0.2..5 \"Force of the actuator over its signal\";
+    direction z {
+        mass body = m;
+        mass other = m;
+        node rod;
+        force f on rod;
+        force g on body;
+        link left: body { spring k; damper c; }
+        link right: other { spring k; damper c; }
+        link actuator: rod - gain*(body - other) { spring 1 kN/mm; }
+        output body.position;
+        output other.position;
+    }
+}
+";
