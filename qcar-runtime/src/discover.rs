@@ -16,6 +16,8 @@ pub mod discrepancy;
 pub mod nuisance;
 // Parameters and sensor errors that explain the evidence best.
 pub mod refit;
+// Where records begin that only judge.
+pub mod beginning;
 // What is left, in units of uncertainty: how much, and where.
 pub mod gap;
 // What would have to be added, and at which place.

@@ -15,13 +15,14 @@ use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::predict::PredictError;
 use qcar_runtime::discover::search::{Discovery, Finding, News, Progress, Verdict, discover};
 use qcar_runtime::discover::{Evidence, Sweeps, select};
+use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{check_vehicle, own};
+use crate::parameters::{bound, check_vehicle, own};
 use crate::progress::Showing;
 use crate::verbs::Format;
 use crate::workshop::Bench;
@@ -120,9 +121,10 @@ pub(crate) fn answer(
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
+    let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
-    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),
@@ -136,16 +138,12 @@ pub(crate) fn answer(
             }
         }
     };
-    let discovery = search(
-        Box::new(bench.clone()),
-        &setting(campaign, bench.model().about()),
-        &evidence,
-        &told,
-    );
+    let discovery = search(Box::new(bench.clone()), &setting, &evidence, &told);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    evidence.notices.extend(offsets_of_the_model(&discovery));
     // A model that cannot be held against the sweeps has no places.
     let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
@@ -157,6 +155,14 @@ pub(crate) fn answer(
         evidence,
         discovery,
         seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// A sentence for each sensor of a record that is given no offset, since the model has it.
+fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
+    let without = &discovery.after.refit.nuisance.without_offset;
+    without.iter().map(|(sensor, own)| {
+        format!("{sensor}: `{own}` of the model stands for the offset of this sensor, which is given none")
     })
 }
 
@@ -179,17 +185,22 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
-fn setting(campaign: &Campaign, about: &About) -> Setting {
-    let given = campaign.parameters.iter().cloned().chain(own(about, campaign));
-    let given = given.map(|p| Given {
+///
+/// # Errors
+/// As [`bound`].
+fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
+    let mut given = campaign.parameters.clone();
+    given.extend(own(about, campaign));
+    bound(&mut given, about, campaign)?;
+    let given = given.into_iter().map(|p| Given {
         range: p.range.filter(|_| p.fit),
         name: p.name,
         value: p.value,
     });
-    Setting {
+    Ok(Setting {
         given: given.collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
-    }
+    })
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

@@ -8,6 +8,8 @@
 //! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
 //! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
 
+// No offset twice.
+mod offset;
 // With what sweeps show beyond their steady harmonics.
 mod settle;
 
@@ -24,6 +26,7 @@ use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
+use crate::transmissibility::Point;
 pub use settle::settle;
 
 /// The explanation that was found.
@@ -155,6 +158,13 @@ impl Refit {
             .map(|known| known.carried_to(evidence, Role::Fit))
     }
 
+    /// What the sensors of records read at zero, with standard errors; SI.
+    pub fn offsets(&self) -> Vec<(Point, f64, f64)> {
+        let scatter = self.scatter().sqrt();
+        let errors: Vec<f64> = self.coefficient_stderr.iter().map(|error| scatter * error).collect();
+        self.nuisance.offsets(&self.coefficients, &errors)
+    }
+
     /// What the sensors would have shown of a prediction.
     pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
         let series = &evidence.series[prediction.series];
@@ -188,7 +198,9 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let errors = nuisance.start.clone();
+    let mut errors = nuisance.start.clone();
+    // Where the records of an earlier search began is another search's to find.
+    errors.truncate(nuisance.of_sensors());
     refit_from(model, (values, &errors), free, evidence, nuisance, evaluations)
 }
 
@@ -205,9 +217,14 @@ pub fn refit_from(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
+    let (errors, factors) = errors.split_at(errors.len().min(nuisance.of_sensors()));
+    let nuisance = nuisance.beginning(model.about(), evidence);
+    let nuisance = offset::once(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.extend(errors);
+    start.resize(free.len() + nuisance.len(), 0.0);
+    start.extend(factors);
+    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, evaluations)?;
     Ok(posterior.refit(outcome))

@@ -8,7 +8,7 @@ use super::{Contender, State};
 use crate::campaign::{Axis, Quantity, Role};
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use crate::discover::evidence::means::Means;
-use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Stimulus};
+use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Spread, Stimulus};
 use crate::discover::explain::{Explanation, Setting};
 use crate::discover::gap::Gap;
 use crate::discover::nuisance::{Form, Nuisance};
@@ -214,11 +214,15 @@ pub fn history() -> Stimulus {
     Stimulus::History {
         inputs: Recordings {
             start: 0.0,
+            samples: 0,
             signals: vec![(point("pad"), Vec::new())],
         },
         rate: 100.0,
         band_limited: true,
         restarts: Vec::new(),
+        spread: Spread::default(),
+        band: None,
+        periodic: false,
     }
 }
 
