@@ -40,6 +40,8 @@ struct Group {
     parts: usize,
     /// The correlation, in units of the noise, for a `τ` of one.
     correlation: Banded,
+    /// The least that any model misses.
+    least: f64,
     tau: f64,
     /// Cholesky factor of the covariance in units of the noise; `None` without discrepancy.
     factor: Option<Banded>,
@@ -64,19 +66,16 @@ pub struct Missed {
     pub tau: f64,
 }
 
-/// Values of a record that are correlated with one value: its factor costs the square of their number.
-const MOST_CORRELATED: usize = 30;
-
 /// Steps of the search for `τ`, and the least that differs from zero.
 const STEPS: usize = 12;
 const LEAST: f64 = 1e-4;
 const MOST: f64 = 2.0;
 
 impl Discrepancy {
-    /// The groups of the runs of one role, all without discrepancy yet.
+    /// The groups of the runs of one role, all with the least discrepancy.
     pub fn of(evidence: &Evidence, role: Role) -> Self {
         let mut rows = 0;
-        let mut groups: Vec<(Key, Vec<Value>)> = Vec::new();
+        let mut groups: Vec<(Key, f64, Vec<Value>)> = Vec::new();
         for (_, series) in evidence.of_role(role) {
             let key = Key {
                 sensor: series.sensor.clone(),
@@ -85,12 +84,17 @@ impl Discrepancy {
             };
             let values = values(evidence, series, rows);
             rows += series.residuals();
-            match groups.iter_mut().find(|(known, _)| *known == key) {
-                Some((_, members)) => members.extend(values),
-                None => groups.push((key, values)),
+            match groups.iter_mut().find(|(known, ..)| *known == key) {
+                Some((_, least, members)) => {
+                    *least = least.max(series.least_discrepancy);
+                    members.extend(values);
+                }
+                None => groups.push((key, series.least_discrepancy, values)),
             }
         }
-        let groups = groups.into_iter().map(|(key, values)| Group::new(key, values));
+        let groups = groups
+            .into_iter()
+            .map(|(key, least, values)| Group::new(key, least, values));
         Self {
             groups: groups.collect(),
         }
@@ -120,6 +124,14 @@ impl Discrepancy {
             .iter()
             .map(|group| group.log_determinant() + prior(group.tau))
             .sum()
+    }
+
+    /// Logarithm of the likelihood of residuals of the data (in units of their noise), but for a constant.
+    pub fn log_likelihood(&self, mut residual: Vec<f64>) -> f64 {
+        self.whiten(&mut residual);
+        let square: f64 = residual.iter().map(|value| value * value).sum();
+        let determinant: f64 = self.groups.iter().map(Group::log_determinant).sum();
+        -square / 2.0 - determinant
     }
 
     /// Sets every `τ` to what explains these residuals of the data (in units of their noise) best.
@@ -164,7 +176,7 @@ fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
         place: places[k],
         rows: [first + k * parts, first + k * parts + parts - 1],
         parts,
-        scale: signal[k] / series.sigma[k],
+        scale: signal[k] / series.noise[k],
     };
     (0..series.at.len()).map(of).collect()
 }
@@ -177,7 +189,7 @@ fn places(series: &Series) -> Vec<f64> {
             return series.at.iter().map(|at| at.log2() / CORRELATION_OCTAVES).collect();
         }
         Kind::Travel | Kind::Width => (series.at[series.at.len() - 1] - series.at[0]) / 4.0,
-        Kind::Time | Kind::Passage => half_a_period(series),
+        Kind::Time | Kind::Passage => series.half_a_period(),
     };
     let distance = distance.max(f64::MIN_POSITIVE);
     let apart = match series.kind {
@@ -193,22 +205,6 @@ fn places(series: &Series) -> Vec<f64> {
 
 /// Two records have no time in common: they stand so far apart.
 const RECORDS_APART: f64 = 1e6;
-
-/// Half a period of the mean frequency of a record (root of the ratio of the mean squares of its slope and itself), and at
-/// most so long as it takes [`MOST_CORRELATED`] values.
-fn half_a_period(series: &Series) -> f64 {
-    let count = series.at.len();
-    if count < 2 {
-        return 1.0;
-    }
-    let step = (series.at[count - 1] - series.at[0]) / (count - 1) as f64;
-    let mean = series.value.iter().map(|value| value.re).sum::<f64>() / count as f64;
-    let power: f64 = series.value.iter().map(|value| (value.re - mean).powi(2)).sum();
-    let steps = series.value.windows(2).map(|pair| (pair[1].re - pair[0].re).powi(2));
-    let slope: f64 = steps.sum::<f64>() / (step * step);
-    let half = std::f64::consts::PI * (power / slope.max(f64::MIN_POSITIVE)).sqrt();
-    half.clamp(2.0 * step, MOST_CORRELATED as f64 * step)
-}
 
 /// What a discrepancy is a part of: of harmonics the first one of the same sensor at the same frequency, of anything else
 /// the RMS value of the series around.
@@ -256,7 +252,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 impl Group {
-    fn new(key: Key, mut values: Vec<Value>) -> Self {
+    fn new(key: Key, least: f64, mut values: Vec<Value>) -> Self {
         values.sort_by(|a, b| a.place.total_cmp(&b.place));
         let correlated = |row: usize| -> Range<usize> {
             values[..row].partition_point(|other| values[row].place - other.place >= 1.0)..row + 1
@@ -266,14 +262,17 @@ impl Group {
             let levels = if a.run == b.run { 1.0 } else { COMMON_TO_LEVELS };
             a.scale * b.scale * levels * wendland((a.place - b.place).abs())
         };
-        Self {
+        let mut group = Self {
             key,
             rows: values.iter().map(|value| value.rows).collect(),
             parts: values.first().map_or(1, |value| value.parts),
             correlation: Banded::new(values.len(), correlated, entry),
+            least,
             tau: 0.0,
             factor: None,
-        }
+        };
+        group.set(least);
+        group
     }
 
     fn set(&mut self, tau: f64) {
@@ -328,7 +327,7 @@ impl Group {
         let residual: Vec<Vec<f64>> = (0..self.parts).map(part).collect();
         let cost = |log: f64| self.cost(log.exp(), &residual);
         let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
-        let (mut low, mut high) = (LEAST.ln(), MOST.ln());
+        let (mut low, mut high) = (LEAST.max(self.least).ln(), MOST.ln());
         let mut inner = [high - golden * (high - low), low + golden * (high - low)];
         let mut costs = inner.map(cost);
         for _ in 0..STEPS {
@@ -347,10 +346,10 @@ impl Group {
         } else {
             (inner[1], costs[1])
         };
-        let tau = if least < self.cost(0.0, &residual) {
+        let tau = if least < self.cost(self.least, &residual) {
             log.exp()
         } else {
-            0.0
+            self.least
         };
         self.set(tau);
     }

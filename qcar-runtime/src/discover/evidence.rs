@@ -145,6 +145,9 @@ pub struct Recordings {
     pub signals: Vec<(Point, Vec<f64>)>,
 }
 
+/// The least noise of a value, in parts of the signal: that of a converter of twelve bits.
+pub(super) const LEAST_NOISE: f64 = 2.4e-4;
+
 /// A record keeps at least this part of its length: what it begins with need not tell what comes later.
 const MOST_SHORTENED: usize = 2;
 
@@ -231,6 +234,10 @@ pub struct Series {
     pub value: Vec<Complex<f64>>,
     /// Standard deviation of the noise of each value: `E|error|²` is its square.
     pub sigma: Vec<f64>,
+    /// The part of it that is independent from value to value.
+    pub noise: Vec<f64>,
+    /// What no calibration and no model gets right, in parts of the signal: the other part, which neighbours have in common.
+    pub least_discrepancy: f64,
 }
 
 /// What the values of a series are.
@@ -277,6 +284,31 @@ impl Kind {
 }
 
 impl Series {
+    /// Half a period of the mean frequency of a record, s: of the root of the ratio of the mean squares of its slope and
+    /// itself (Rice's formula for a Gaussian process).
+    pub fn half_a_period(&self) -> f64 {
+        let count = self.at.len() as f64;
+        let mean = self.value.iter().map(|value| value.re).sum::<f64>() / count;
+        let power: f64 = self.value.iter().map(|value| (value.re - mean).powi(2)).sum();
+        let pairs = self.value.windows(2).zip(self.at.windows(2));
+        let slope = pairs
+            .map(|(y, t)| ((y[1].re - y[0].re) / (t[1] - t[0])).powi(2))
+            .sum::<f64>();
+        std::f64::consts::PI * (power / slope.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Keeps every so many-th value.
+    pub fn thin(&mut self, step: usize) {
+        self.keep((0..self.at.len()).step_by(step));
+    }
+
+    fn keep(&mut self, places: impl Iterator<Item = usize> + Clone) {
+        self.at = places.clone().map(|k| self.at[k]).collect();
+        self.value = places.clone().map(|k| self.value[k]).collect();
+        self.sigma = places.clone().map(|k| self.sigma[k]).collect();
+        self.noise = places.map(|k| self.noise[k]).collect();
+    }
+
     /// Number of real residuals.
     pub fn residuals(&self) -> usize {
         self.value.len() * if self.kind.complex() { 2 } else { 1 }
@@ -362,11 +394,8 @@ impl Evidence {
         let ends: Vec<(f64, usize)> = thinned.runs.iter_mut().enumerate().map(shorten).collect();
         for series in &mut thinned.series {
             let (end, step) = ends[series.run];
-            let inside = (0..series.at.len()).filter(|&k| series.at[k] < end);
-            let keep: Vec<usize> = inside.step_by(step).collect();
-            series.at = keep.iter().map(|&k| series.at[k]).collect();
-            series.value = keep.iter().map(|&k| series.value[k]).collect();
-            series.sigma = keep.iter().map(|&k| series.sigma[k]).collect();
+            let inside = series.at.partition_point(|at| *at < end);
+            series.keep((0..inside).step_by(step));
         }
         thinned
     }

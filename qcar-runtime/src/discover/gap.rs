@@ -62,7 +62,7 @@ impl Gap {
                 prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);
                 let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
-                scaled(series, differences, &mut residuals[prediction.series]);
+                scaled(series, &series.sigma, differences, &mut residuals[prediction.series]);
             }
         }
         let of_role = |role| {

@@ -142,6 +142,7 @@ impl Refit {
         }
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
         posterior.side = side;
+        posterior.by_evidence = self.discrepancy.is_some();
         let mut residual = vec![0.0; posterior.residuals()];
         posterior.look(coefficients, &mut residual, false);
         residual.truncate(posterior.residuals);
@@ -257,6 +258,7 @@ pub fn fit(
 ) -> Result<Refit, PredictError> {
     let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
     posterior.discrepancy = Some(start.discrepancy);
+    posterior.by_evidence = true;
     posterior.centre = start.centre.clone();
     let mut place: Vec<f64> = free
         .iter()
@@ -312,9 +314,9 @@ fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
 }
 
 /// The real residuals of a series: each complex one as its parts, in units of the standard deviation of a part.
-pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
+pub(super) fn scaled(series: &Series, sigma: &[f64], values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
     let complex = series.kind.complex();
-    for (value, sigma) in values.zip(&series.sigma) {
+    for (value, sigma) in values.zip(sigma) {
         if complex {
             let scale = std::f64::consts::SQRT_2 / sigma;
             into.extend([value.re * scale, value.im * scale]);
@@ -353,8 +355,10 @@ struct Posterior<'a> {
     centre: Values,
     /// and what that is.
     discrepancy: Option<Discrepancy>,
-    /// Whether residuals are independent by it.
+    /// Whether residuals are independent by it,
     whitens: bool,
+    /// and whether there is one at all, whatever it is at the moment.
+    by_evidence: bool,
     residuals: usize,
     /// Why the model cannot say anything of the evidence at all,
     refused: Option<PredictError>,
@@ -380,6 +384,7 @@ impl<'a> Posterior<'a> {
             centre: values.clone(),
             discrepancy: None,
             whitens: true,
+            by_evidence: false,
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
@@ -400,6 +405,7 @@ impl<'a> Posterior<'a> {
             refit.nuisance.clone(),
         );
         posterior.discrepancy = refit.discrepancy_of(evidence);
+        posterior.by_evidence = posterior.discrepancy.is_some();
         posterior.centre = refit.centre.clone();
         posterior
     }
@@ -613,13 +619,15 @@ impl<'a> Posterior<'a> {
     /// alone.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
+        // Beside a discrepancy, what neighbours have in common is not noise.
+        let sigma = if self.by_evidence { &series.noise } else { &series.sigma };
         let of_sensors = self.free.len();
         let shown = self
             .nuisance
             .show(self.evidence, series, &prediction.value, &x[of_sensors..]);
         let first = residual.len();
         let left = series.value.iter().zip(&shown.value);
-        scaled(series, left.map(|(measured, shown)| measured - shown), residual);
+        scaled(series, sigma, left.map(|(measured, shown)| measured - shown), residual);
         if columns.is_empty() {
             return;
         }
@@ -629,7 +637,7 @@ impl<'a> Posterior<'a> {
         let mut rows = Vec::with_capacity(residual.len() - first);
         let mut add = |slope: &mut dyn Iterator<Item = Complex<f64>>, place: usize| {
             rows.clear();
-            scaled(series, slope.map(|slope| -slope), &mut rows);
+            scaled(series, sigma, slope.map(|slope| -slope), &mut rows);
             let sums = columns[place][first..].iter_mut();
             sums.zip(&rows).for_each(|(sum, row)| *sum += row);
         };

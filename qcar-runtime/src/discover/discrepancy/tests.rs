@@ -23,7 +23,7 @@ fn group(places: &[f64], scale: f64) -> Group {
             ends: [0.0, 1.0],
         }),
     };
-    Group::new(key, places.iter().enumerate().map(value).collect())
+    Group::new(key, 0.0, places.iter().enumerate().map(value).collect())
 }
 
 /// The covariance written out, by a dense factorisation.

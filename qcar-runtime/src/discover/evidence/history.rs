@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use super::band::Band;
 use super::noise::noise;
 use super::restart::{Spread, drifts, restarts};
-use super::{Evidence, Kind, Recordings, Run, Series, Stimulus, excitation_of};
+use super::{Evidence, Kind, LEAST_NOISE, Recordings, Run, Series, Stimulus, excitation_of};
 use crate::campaign::{Campaign, History, Recording};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
@@ -159,15 +159,23 @@ fn series(
     time: impl Fn(usize) -> f64,
 ) -> Series {
     let at: Vec<f64> = inside.clone().map(time).collect();
-    Series {
+    let mut series = Series {
         run,
         sensor,
         kind: Kind::Time,
         sigma: vec![noise.hypot(FLOOR * rms(samples)); at.len()],
+        noise: vec![noise.hypot(LEAST_NOISE * rms(samples)); at.len()],
+        least_discrepancy: FLOOR,
         at,
         value: inside.map(|k| Complex::from(samples[k])).collect(),
-    }
+    };
+    let step = (series.at[series.at.len() - 1] - series.at[0]) / series.at.len() as f64;
+    series.thin(((series.half_a_period() / (IN_HALF_A_PERIOD * step)) as usize).max(1));
+    series
 }
+
+/// Values in half a period of a record's mean frequency: more say the same.
+const IN_HALF_A_PERIOD: f64 = 30.0;
 
 fn rms(samples: &[f64]) -> f64 {
     let mean = samples.iter().sum::<f64>() / samples.len() as f64;

@@ -128,7 +128,11 @@ pub fn race(
     let mut field: Vec<Runner<'_>> = Vec::new();
     for (prospect, hypothesis) in entering.iter().zip(&hypotheses) {
         let Some(hypothesis) = hypothesis else { continue };
-        let starts = if field.len() < STARTED { prospect.starts.len() } else { 1 };
+        let starts = if field.len() < STARTED {
+            prospect.starts.len()
+        } else {
+            1
+        };
         field.extend(prospect.starts[..starts].iter().map(|(place, _)| Runner {
             candidate: prospect.candidate,
             hypothesis,
@@ -148,7 +152,15 @@ pub fn race(
             for r in field.iter() {
                 let c = &candidates[r.candidate];
                 let e = r.refit.as_ref().map_or(0, |r| r.evaluations);
-                eprintln!("   round {number} {:10.1} gained {:9.1} {} {} at {} {:?}", r.evidence(), r.gained(), e, c.effect, c.at, c.form);
+                eprintln!(
+                    "   round {number} {:10.1} gained {:9.1} {} {} at {} {:?}",
+                    r.evidence(),
+                    r.gained(),
+                    e,
+                    c.effect,
+                    c.at,
+                    c.form
+                );
             }
         }
         let last = number + 1 == ROUNDS.len();

@@ -55,6 +55,7 @@ pub fn screen(
 ) -> Result<Vec<Prospect>, PredictError> {
     let here = assembly.hypothesis().place(refit);
     let tangent = Tangent::new(refit, assembly, evidence);
+    let alone = tangent.gain_alone();
     let all = candidates.par_iter().enumerate().filter_map(|(place, candidate)| {
         let hypothesis = assembly.hypothesis_with(candidate)?;
         let tried = grid(candidate).into_par_iter().filter_map(|point| {
@@ -66,7 +67,7 @@ pub fn screen(
                 scale: step.scale,
                 ..point
             };
-            let gain = step.gain.max(tangent.gain_with_discrepancy(&there, &step));
+            let gain = step.gain.max(tangent.gain_with_discrepancy(&there, &step) - alone);
             Some((scaled.at(&here, &hypothesis, candidate), gain))
         });
         let mut starts: Vec<(Place, f64)> = tried.collect();
@@ -113,10 +114,14 @@ struct Step {
 impl Tangent {
     fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
         let (residual, jacobian) = refit.linearised(assembly.model(), evidence);
-        let known = refit.discrepancy_of(evidence).unwrap_or_else(|| Discrepancy::of(evidence, Role::Fit));
+        let known = refit
+            .discrepancy_of(evidence)
+            .unwrap_or_else(|| Discrepancy::of(evidence, Role::Fit));
         let (mut white, mut white_jacobian) = (residual.clone(), jacobian.clone());
         known.whiten(white.as_mut_slice());
-        white_jacobian.column_iter_mut().for_each(|mut column| known.whiten(column.as_mut_slice()));
+        white_jacobian
+            .column_iter_mut()
+            .for_each(|mut column| known.whiten(column.as_mut_slice()));
         Self {
             data: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             hessian: white_jacobian.tr_mul(&white_jacobian).cholesky(),
@@ -147,6 +152,18 @@ impl Tangent {
         let gain = -scale * cross - scale * scale * square / 2.0;
         let unknowns = -hessian.solve(&(&self.gradient + scale * along));
         gain.is_finite().then_some(Step { scale, unknowns, gain })
+    }
+
+    /// What the present unknowns and the discrepancy gain by themselves on this part of the evidence.
+    fn gain_alone(&self) -> f64 {
+        let Some(hessian) = &self.hessian else { return 0.0 };
+        let stay = Step {
+            scale: 0.0,
+            unknowns: -hessian.solve(&self.gradient),
+            gain: 0.0,
+        };
+        let here = self.residual.rows(0, self.data).into_owned();
+        self.gain_with_discrepancy(&here, &stay).max(0.0)
     }
 
     /// What a step gains in the logarithm of the posterior density, where the discrepancy becomes what is then left.
@@ -192,7 +209,9 @@ impl Point {
     }
 
     fn strengthened(&self, own: &Added, value: f64) -> f64 {
-        let ParameterRole::Strength { vanishes_at } = own.role else { return value };
+        let ParameterRole::Strength { vanishes_at } = own.role else {
+            return value;
+        };
         let scaled = if vanishes_at.is_infinite() {
             value / self.scale
         } else {
@@ -208,7 +227,9 @@ impl Point {
             ParameterRole::Strength { vanishes_at } => Some((own, towards(own, shift), vanishes_at)),
             _ => None,
         });
-        let Some((own, value, vanishes_at)) = strengths.next() else { return (1.0, 1.0) };
+        let Some((own, value, vanishes_at)) = strengths.next() else {
+            return (1.0, 1.0);
+        };
         let (low, high) = own.range;
         let [a, b] = if vanishes_at.is_infinite() {
             [value / high, value / low]
@@ -216,7 +237,11 @@ impl Point {
             [low, high].map(|end| (end - vanishes_at) / (value - vanishes_at))
         };
         let (least, most) = (a.min(b), a.max(b));
-        if least.is_finite() && most.is_finite() { (least, most) } else { (1.0, 1.0) }
+        if least.is_finite() && most.is_finite() {
+            (least, most)
+        } else {
+            (1.0, 1.0)
+        }
     }
 }
 
@@ -229,11 +254,19 @@ fn coefficient(form: Form, value: f64) -> f64 {
 fn grid(candidate: &Candidate) -> Vec<Point> {
     let parameters = candidate.parameters();
     let is_shape = |own: &&Added| own.role == ParameterRole::Shape && !own.known;
-    let of_shape: &[f64] = if parameters.iter().filter(is_shape).count() > 1 { &FEW_SHAPES } else { &SHAPES };
+    let of_shape: &[f64] = if parameters.iter().filter(is_shape).count() > 1 {
+        &FEW_SHAPES
+    } else {
+        &SHAPES
+    };
     let start = vec![0.0; parameters.len()];
     let mut points = vec![start.clone()];
     for (k, own) in parameters.iter().enumerate().filter(|(_, own)| !own.known) {
-        let shifts = if own.role == ParameterRole::Shape { of_shape } else { &OTHERS };
+        let shifts = if own.role == ParameterRole::Shape {
+            of_shape
+        } else {
+            &OTHERS
+        };
         let moved = |from: &Vec<f64>| {
             let from = from.clone();
             shifts.iter().map(move |&shift| {

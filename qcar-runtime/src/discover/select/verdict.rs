@@ -111,8 +111,9 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     if std::env::var_os("QCAR_TELL").is_some() {
         for set in &sets {
             eprintln!(
-                "{:10.1} {:10.1} gap {:.3} {:.3} cost {:.1} {:?}",
+                "{:10.1} {:10.1} {:10.1} gap {:.3} {:.3} cost {:.1} {:?}",
                 set.log_posterior(),
+                log_score(set, evidence),
                 set.explanation.refit.log_evidence,
                 set.explanation.gap.fit,
                 set.explanation.gap.held_out,
@@ -131,7 +132,9 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
             let mut groups: std::collections::BTreeMap<String, (f64, usize)> = Default::default();
             for (series, residuals) in evidence.series.iter().zip(&set.explanation.gap.residuals) {
                 let role = evidence.runs[series.run].role;
-                if role != Role::Fit { continue; }
+                if role != Role::Fit {
+                    continue;
+                }
                 let key = format!("{}_{:?}_{:?}", series.sensor.location, series.sensor.axis, series.kind);
                 let own = groups.entry(key).or_default();
                 own.0 += residuals.iter().map(|r| r * r).sum::<f64>();
@@ -140,10 +143,20 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
             for (key, (sum, count)) in groups {
                 eprint!("   {key} {sum:.0}/{count}");
             }
-            eprintln!("  chi2 {:.1} sum c2 {:.1}", set.explanation.refit.chi2, set.explanation.refit.coefficients.iter().zip(set.explanation.refit.nuisance.sigmas()).map(|(c, s)| (c / s).powi(2)).sum::<f64>());
+            eprintln!(
+                "  chi2 {:.1} sum c2 {:.1}",
+                set.explanation.refit.chi2,
+                set.explanation
+                    .refit
+                    .coefficients
+                    .iter()
+                    .zip(set.explanation.refit.nuisance.sigmas())
+                    .map(|(c, s)| (c / s).powi(2))
+                    .sum::<f64>()
+            );
         }
     }
-    let best = &sets[answers[0].set];
+    let best = &sets[predictive(&sets, answers[0].set, evidence)];
     let before = sets[0].explanation.clone();
     let after = best.explanation.clone();
     let mut sum = 0.0;
@@ -179,6 +192,46 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
         after,
         visible: Vec::new(),
     }
+}
+
+/// The set itself, or the part of it that predicts the runs that judge better: what does not predict is withdrawn.
+fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
+    if evidence.of_role(Role::HeldOut).next().is_none() {
+        return best;
+    }
+    loop {
+        let names = sets[best].names();
+        let is_part = |other: &usize| {
+            let own = sets[*other].names();
+            own.len() < names.len() && own.iter().all(|name| names.contains(name))
+        };
+        let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+        let part = (0..sets.len()).filter(is_part).max_by(order);
+        match part.filter(|&part| log_score(&sets[part], evidence) >= log_score(&sets[best], evidence)) {
+            Some(part) => best = part,
+            None => return best,
+        }
+    }
+}
+
+/// Logarithm of the likelihood of the runs that judge, but for a constant (the logarithmic score).
+fn log_score(set: &Set, evidence: &Evidence) -> f64 {
+    let Some(discrepancy) = &set.explanation.refit.discrepancy else {
+        return f64::NEG_INFINITY;
+    };
+    let mut residual = Vec::new();
+    for (place, series) in evidence.of_role(Role::HeldOut) {
+        let parts = if series.kind.complex() { 2 } else { 1 };
+        let own = &set.explanation.gap.residuals[place];
+        let units = series
+            .sigma
+            .iter()
+            .zip(&series.noise)
+            .map(|(sigma, noise)| sigma / noise);
+        let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
+        residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
+    }
+    discrepancy.carried_to(evidence, Role::HeldOut).log_likelihood(residual)
 }
 
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.

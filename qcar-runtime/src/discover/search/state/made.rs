@@ -242,6 +242,8 @@ pub fn ride() -> Stimulus {
 /// hundredth.
 pub fn evidence(ratio: f64, runs: Vec<(Role, Stimulus, usize)>) -> Evidence {
     let series = runs.iter().enumerate().map(|(run, &(.., count))| Series {
+        noise: vec![1.0; count],
+        least_discrepancy: 0.0,
         run,
         sensor: point("wheel"),
         kind: Kind::Harmonic(1),
