@@ -53,7 +53,11 @@ fn program(symbols: &[Symbol], prepared: &[u32], numbers: &[f64], steps: &[Step]
         });
     }
     let outputs = (0..ops.len() as u32).rev().map(Value).collect();
-    Program { ops, outputs }
+    Program {
+        ops,
+        outputs,
+        ..Program::default()
+    }
 }
 
 /// The program in its own order.
