@@ -18,15 +18,15 @@ impl Resolver<'_> {
         let (knots, values) = (self.entries(&table.knots, locals), self.entries(&table.values, locals));
         let (x, knots, values) = (x?, knots?, values?);
         self.points_agree(table)?;
-        let argument = (table.x.span, x.unit);
-        self.agree_with(
+        let (argument, first) = ((table.x.span, x.unit), (table.values.entries[0].span, values[0].unit));
+        let of_knots = self.agree_with(
             argument,
             &table.knots,
             &knots,
             "the argument and the abscissae of a table are",
-        )?;
-        let first = (table.values.entries[0].span, values[0].unit);
+        );
         let unit = self.agree_with(first, &table.values, &values, "the ordinates of a table are")?;
+        of_knots?;
         let knots = self.increasing(&table.knots, &knots)?;
         let graph = &mut self.model.graph;
         let values: Vec<Expr> = values.iter().map(|value| value.expr).collect();

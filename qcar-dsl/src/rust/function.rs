@@ -270,21 +270,24 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// Abscissae, ordinates and slopes in a line each.
+    /// Abscissae, ordinates and slopes, each from a line of its own on.
     fn table(&self, order: u8, x: &str, curve: &Curve<Value>) -> String {
-        let row = |entries: &[Value]| {
-            let entries: Vec<_> = entries.iter().map(|&entry| self.operand(entry)).collect();
-            entries.join(", ")
+        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
+        let rows: [Vec<String>; 3] = [
+            curve.knots().map(literal).collect(),
+            entries(&curve.values),
+            entries(&curve.slopes),
+        ];
+        let row = |entries: Vec<String>| {
+            let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
+            format!("    &[{}]", lines.join(",\n      "))
         };
-        let knots: Vec<String> = curve.knots().map(literal).collect();
-        format!(
-            "{TABLE}({order}, {x},\n    &[{}],\n    &[{}],\n    &[{}])",
-            knots.join(", "),
-            row(&curve.values),
-            row(&curve.slopes)
-        )
+        format!("{TABLE}({order}, {x},\n{})", rows.map(row).join(",\n"))
     }
 }
+
+/// How many points of a table stand on a line.
+const ENTRIES: usize = 8;
 
 /// What interpolates at run time.
 const TABLE: &str = "::qcar_runtime::generated::table";
