@@ -7,6 +7,7 @@ use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 use qcar_dsl::syntax::Item;
 
+use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 
@@ -53,10 +54,6 @@ pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
 
 fn shipped(name: &str) -> Option<&'static models::ShippedEffect> {
     models::effects().iter().find(|shipped| shipped.name == name)
-}
-
-fn looks_like_a_path(name: &str) -> bool {
-    name.contains(['/', '\\', '.'])
 }
 
 fn holds_effect(name: &str, text: &str) -> bool {
