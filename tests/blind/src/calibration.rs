@@ -70,3 +70,49 @@ impl Curve {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const RATE: f64 = 1000.0;
+
+    /// Gain and phase of a curve at a frequency, from what it makes of a sine.
+    fn response(curve: &Curve, hertz: f64) -> (f64, f64) {
+        let wave: Vec<f64> = (0..20_000).map(|i| (TAU * hertz * f64::from(i) / RATE).sin()).collect();
+        let seen = curve.pass(&wave, RATE);
+        let part = |wave: fn(f64) -> f64| {
+            let own = |i: usize| wave(TAU * hertz * i as f64 / RATE);
+            (10_000..20_000).map(|i| seen[i] * own(i)).sum::<f64>() / 5000.0
+        };
+        let (re, im) = (part(f64::sin), part(f64::cos));
+        (re.hypot(im), im.atan2(re))
+    }
+
+    /// Bode's relation: the phase is the slope of the logarithmic gain over ln f, weighted by ln coth |u/2| / π.
+    fn phase_of_gain(curve: &Curve, hertz: f64) -> f64 {
+        let step = 1e-3;
+        let slope = |u: f64| {
+            let gain = |u: f64| curve.magnitude(hertz * u.exp()).ln();
+            (gain(u + step) - gain(u - step)) / (2.0 * step)
+        };
+        let weight = |u: f64| (1.0 / (u.abs() / 2.0).tanh()).ln();
+        let points = (-8000..8000).map(|k| (f64::from(k) + 0.5) * step);
+        points.map(|u| slope(u) * weight(u) * step).sum::<f64>() / std::f64::consts::PI
+    }
+
+    #[test]
+    fn the_phase_belongs_to_the_gain() {
+        let curve = Curve::draw(0.02, Random::new(5, "a test"));
+        for hertz in [1.0, 4.0, 10.0, 25.0] {
+            let (gain, phase) = response(&curve, hertz);
+            assert!((gain - curve.magnitude(hertz)).abs() < 2e-4, "{gain} at {hertz} Hz");
+            let belongs = phase_of_gain(&curve, hertz);
+            assert!(
+                (phase - belongs).abs() < 3e-4,
+                "{phase} rad at {hertz} Hz, {belongs} belongs"
+            );
+            assert!(phase.abs() > 1e-3);
+        }
+    }
+}

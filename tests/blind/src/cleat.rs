@@ -130,7 +130,7 @@ impl Rolling<'_> {
         let cosine = 1.0 / slope.hypot(1.0);
         let deflection = a.static_tire_def + (height - z) * cosine;
         let rate = (growth * (self.speed + y[COORDINATES + X_WHEEL]) - y[COORDINATES + ring]) * cosine;
-        let spring = self.elastic(deflection.max(0.0)) + y[crate::corner::TIRE_BRANCH];
+        let spring = self.elastic(deflection.max(0.0)) + self.corner.tire_memory(y);
         let force = (spring + a.c_tire * rate).max(0.0);
         Push {
             z: force * cosine - a.static_load(),
@@ -155,7 +155,7 @@ impl Rolling<'_> {
         let d = deflection(a.r_tire, o.area);
         let width = 2.0 * (2.0 * a.r_tire * a.static_tire_def - a.static_tire_def.powi(2)).sqrt();
         let e = towards_centre(o.moment, o.area);
-        let spring = (self.elastic(d) + y[crate::corner::TIRE_BRANCH]).max(0.0);
+        let spring = (self.elastic(d) + self.corner.tire_memory(y)).max(0.0);
         let grow = a.c_tire * o.growth[0] / width;
         let shrink = (a.c_tire * o.shrinkage[0] / width).max(-spring);
         let eg = towards_centre([o.growth[1], o.growth[2]], o.growth[0].max(1e-12));
@@ -173,7 +173,8 @@ impl Rolling<'_> {
         let (f0, d0) = (a.static_load(), a.static_tire_def);
         let exponent = a.k_tire * d0 / f0;
         let growth = self.corner.laws.tire_increase.unwrap_or(0.0);
-        f0 * (d / d0).powf(exponent) + 0.5 * a.k_tire * growth / d0 * (d - d0).max(0.0).powi(2)
+        let other = self.corner.laws.other.map_or(0.0, |law| law.tire(a.k_tire, d - d0));
+        f0 * (d / d0).powf(exponent) + 0.5 * a.k_tire * growth / d0 * (d - d0).max(0.0).powi(2) + other
     }
 }
 
@@ -211,7 +212,8 @@ pub fn run(corner: &Corner, drive: &CleatRun, late: f64) -> Track {
     let h = 1.0 / (RATE * FINER as f64);
     let derivative = |t: f64, y: &State| corner.derivative(0.0, y, rolling.push(t, y), false);
     let mut y = [0.0; STATES];
-    let is_dry = corner.laws.friction.is_some() || corner.laws.bouc_wen.is_some();
+    let laws = corner.laws;
+    let is_dry = laws.friction.is_some() || laws.bouc_wen.is_some() || laws.other.is_some_and(|law| law.is_dry());
     let steps = if is_dry { STICKING } else { 1 };
     let mut track = Track::default();
     let mut mean = Average::default();

@@ -52,3 +52,46 @@ fn cam_heights(road: &Road, radius: f64, cams: Cams) -> Vec<f64> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axle::{Layout, Mount};
+
+    /// An ellipse that comes to a step rests on its edge: by its equation it is as high there as `1 - (1 - u^c)^(1/c)` of
+    /// its half height leaves of the step.
+    #[test]
+    fn a_cam_climbs_a_step_by_its_own_equation() {
+        let axle = Axle::draw(
+            Layout {
+                top_mount: true,
+                subframe: false,
+                powertrain: Mount::None,
+            },
+            1,
+        );
+        let (step, start) = (0.02, 1000);
+        let road = Road {
+            z: (0..3000).map(|i| if i < start { 0.0 } else { step }).collect(),
+            slope: Vec::new(),
+        };
+        let cams = Cams {
+            length: 1.0,
+            height: 0.9,
+            order: 2.0,
+            apart: 0.8,
+        };
+        let lowest = cam_heights(&road, axle.r_tire, cams);
+        for ahead in [10, 50, 80] {
+            let u = ahead as f64 * SPACING / axle.r_tire;
+            let expected = step - 0.9 * axle.r_tire * (1.0 - (1.0 - u * u).sqrt());
+            assert!((lowest[start - ahead] - expected.max(0.0)).abs() < 1e-12);
+        }
+        let felt = Felt::new(&road, &axle, cams);
+        assert_eq!(felt.at(0.3), [0.0; 3]);
+        let [height, growth, slope] = felt.at(2.2);
+        assert!((height - step).abs() < 1e-12 && growth.abs() < 1e-12 && slope.abs() < 1e-12);
+        let [height, _, slope] = felt.at(1.0);
+        assert!((0.4 * step..step).contains(&height) && slope > 0.0);
+    }
+}

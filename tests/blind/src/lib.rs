@@ -12,6 +12,8 @@ pub mod hardware;
 pub mod programme;
 
 // What is hidden in the car, and the car.
+mod other_law;
+
 pub mod hidden;
 
 mod axle;

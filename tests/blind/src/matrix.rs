@@ -1,6 +1,9 @@
 //! The cases of the blind matrix.
 
 mod entries;
+mod other_laws;
+
+pub use other_laws::family;
 
 use crate::Order;
 use crate::hardware::Flaw;
@@ -8,7 +11,8 @@ use crate::hidden::Hidden;
 use crate::programme::Programme;
 use crate::random::Random;
 
-use entries::{Entry, OUTSIDE, SINGLES};
+use entries::{Entry, OUTSIDE, OUTSIDE_LATER, SINGLES};
+use other_laws::OTHER_LAWS;
 
 /// What a case is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,11 +31,15 @@ pub enum Kind {
     HardwareClean,
     /// One effect of usual strength in hardware with flaws.
     HardwareSingle,
+    /// One effect of usual strength in a campaign that shows little.
+    Minimal,
+    /// One effect of usual strength by another law than the catalogue's.
+    OtherLaw,
 }
 
 impl Kind {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 9] = [
         Self::Single,
         Self::Clean,
         Self::Outside,
@@ -39,6 +47,8 @@ impl Kind {
         Self::FastClean,
         Self::HardwareClean,
         Self::HardwareSingle,
+        Self::Minimal,
+        Self::OtherLaw,
     ];
 
     /// A kind by its name as `{:?}` prints it.
@@ -76,11 +86,16 @@ pub fn cases(seed: u64) -> Vec<Case> {
     let draw = Draw { seed };
     let mut cases = draw.of_entries(Kind::Single, &SINGLES);
     cases.extend(draw.of_entries(Kind::Outside, &OUTSIDE));
+    if draw.is_fresh() {
+        cases.extend(draw.outside_later());
+    }
     cases.extend(draw.clean());
     cases.extend(draw.pairs());
     cases.extend(draw.fast_clean());
     cases.extend(draw.hardware_clean());
     cases.extend(draw.hardware_single());
+    cases.extend(draw.minimal());
+    cases.extend(draw.other_laws());
     cases
 }
 
@@ -148,6 +163,16 @@ impl Draw {
         cases
     }
 
+    fn outside_later(&self) -> Vec<Case> {
+        let of_number = |(k, entry): (usize, &Entry)| {
+            let name = format!("{} {k}", entry.title());
+            let hidden = self.hidden(entry, 1, &name, ANY);
+            self.case(Kind::Outside, &name, self.order(250 + k, entry.axle, vec![hidden]))
+        };
+        let twice = OUTSIDE_LATER.iter().chain(&OUTSIDE_LATER);
+        twice.enumerate().map(of_number).collect()
+    }
+
     fn clean(&self) -> Vec<Case> {
         let axles = ["a", "c", "d", "a", "c", "d", "c", "a", "d", "c"];
         let of_axle = |(k, axle): (usize, &str)| {
@@ -187,7 +212,7 @@ impl Draw {
     fn fast_clean(&self) -> Vec<Case> {
         let of_number = |k: usize| {
             let mut random = self.random(&format!("fast clean {k}"));
-            let axle = ["a", "c", "d"][(random.uniform(0.0, 3.0)) as usize];
+            let axle = any(&["a", "c", "d"], &mut random);
             let order = Order {
                 noise: 0.01 * 4_f64.powf(random.uniform(0.0, 1.0)),
                 systematic: random.uniform(0.003, 0.012),
@@ -202,7 +227,7 @@ impl Draw {
     /// Each flaw alone, and all together in twenty, half of them short.
     fn hardware_clean(&self) -> Vec<Case> {
         let of_number = |(k, words, flaws, programme): (usize, String, Vec<Flaw>, Programme)| {
-            let axle = ["a", "c", "d"][self.random(&format!("hardware {k}")).uniform(0.0, 3.0) as usize];
+            let axle = any(&["a", "c", "d"], &mut self.random(&format!("hardware {k}")));
             let order = Order {
                 flaws,
                 programme,
@@ -228,7 +253,6 @@ impl Draw {
 
     /// Every effect of the car in hardware with all flaws.
     fn hardware_single(&self) -> Vec<Case> {
-        let of_car = SINGLES.iter().filter(|entry| !entry.name.starts_with("sensor_"));
         let of_entry = |(k, entry): (usize, &Entry)| {
             let name = format!("hardware {}", entry.title());
             let hidden = self.hidden(entry, 1, &name, USUAL);
@@ -238,8 +262,65 @@ impl Draw {
             };
             self.case(Kind::HardwareSingle, &name, order)
         };
-        of_car.enumerate().map(of_entry).collect()
+        of_car().into_iter().enumerate().map(of_entry).collect()
     }
+
+    /// Effects that are drawn, in campaigns that show little.
+    fn minimal(&self) -> Vec<Case> {
+        let of_number = |k: usize| {
+            let mut random = self.random(&format!("minimal {k}"));
+            let (words, programme) = little(k, &mut random);
+            let entry = any(&of_car(), &mut random);
+            let hidden = entry.drawn(USUAL, &mut random);
+            let order = Order {
+                programme,
+                ..self.order(700 + k, entry.axle, vec![hidden])
+            };
+            self.case(Kind::Minimal, &format!("{words}: {} {k}", entry.title()), order)
+        };
+        (0..32).map(of_number).collect()
+    }
+
+    /// Every law of another form twice.
+    fn other_laws(&self) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for (k, (entry, _)) in OTHER_LAWS.iter().enumerate() {
+            for draw in 0..2 {
+                let name = format!("{} {draw}", entry.title());
+                let hidden = self.hidden(entry, 1 + draw, &name, USUAL);
+                let order = self.order(800 + 2 * k + draw, entry.axle, vec![hidden]);
+                cases.push(self.case(Kind::OtherLaw, &name, order));
+            }
+        }
+        cases
+    }
+}
+
+/// The ways in which a campaign may show little, in turn.
+pub const LITTLE: [&str; 4] = ["no body sensor", "one sweep", "cleats alone", "a third of the band"];
+
+fn little(k: usize, random: &mut Random) -> (&'static str, Programme) {
+    let programme = match k % LITTLE.len() {
+        0 => Programme::no_body_sensor(),
+        1 => Programme::one_sweep(any(&[50, 100, 150], random)),
+        2 => Programme::cleats_alone(),
+        _ => {
+            let (from, to) = any(&[(0.5, 10.0), (5.0, 15.0), (10.0, 20.0), (20.0, 30.0)], random);
+            Programme::band(from, to)
+        }
+    };
+    (LITTLE[k % LITTLE.len()], programme)
+}
+
+/// Effects of the car, which no sensor has.
+fn of_car() -> Vec<&'static Entry> {
+    let all = SINGLES.iter();
+    all.filter(|entry| !entry.name.starts_with("sensor_")).collect()
+}
+
+/// One of several, drawn.
+fn any<T: Copy>(of: &[T], random: &mut Random) -> T {
+    of[random.uniform(0.0, of.len() as f64) as usize]
 }
 
 /// Two effects at different places, of which an upright axle can have both.

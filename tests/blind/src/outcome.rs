@@ -3,7 +3,7 @@
 use serde_json::Value;
 
 use crate::hidden::Hidden;
-use crate::matrix::{Case, Kind};
+use crate::matrix::{Case, Kind, family};
 
 /// An answer beside the truth.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,7 +55,7 @@ pub const HEADER: &str = "kind\tcase\tstrength\ttruth\tverdict\tprobability\tnam
 impl Place {
     fn of_hidden(hidden: &Hidden) -> Self {
         Self {
-            name: hidden.name.clone(),
+            name: family(&hidden.name).to_owned(),
             at: hidden.at.clone(),
         }
     }

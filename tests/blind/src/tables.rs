@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-use crate::matrix::Kind;
+use crate::matrix::{Kind, LITTLE};
 use crate::outcome::{Outcome, Place};
 
 /// What stands clear of noise and calibration: below this the data hardly hold the effect.
@@ -30,6 +30,18 @@ impl Outcome {
         self.is("found") && self.named.len() == self.truth.len() && self.truth.iter().all(named)
     }
 
+    /// All that is named is of the family that is hidden.
+    fn is_of_family(&self) -> bool {
+        self.is("found") && !self.named.is_empty() && !self.is_wrong()
+    }
+
+    /// Nothing is named, but the place is where the law is.
+    fn is_unknown_there(&self) -> bool {
+        let learned = self.learned.iter().map(|(at, _)| at);
+        let mut places = learned.chain(&self.places).take(1);
+        self.is("unknown") && places.any(|at| self.truth.iter().any(|truth| truth.at == *at))
+    }
+
     /// The same, wherever it was placed.
     fn is_right_by_name(&self) -> bool {
         let named = |truth: &Place| self.named.iter().any(|own| truth.has_name_of(own));
@@ -51,10 +63,11 @@ impl Outcome {
     /// Whether the answer is one that may be given.
     fn is_true(&self) -> bool {
         match self.verdict.as_str() {
+            "found" if self.kind == Kind::OtherLaw => self.is_of_family(),
             "found" => self.is_right(),
             "class" => self.is_class_with_it(),
             "none" => !self.separable(),
-            "unknown" => self.kind == Kind::Outside,
+            "unknown" => matches!(self.kind, Kind::Outside | Kind::OtherLaw),
             _ => false,
         }
     }
@@ -67,6 +80,8 @@ pub fn tables(outcomes: &[Outcome]) -> String {
     clean(outcomes, &mut table);
     outside(outcomes, &mut table);
     hardware(outcomes, &mut table);
+    minimal(outcomes, &mut table);
+    other_laws(outcomes, &mut table);
     parameters(outcomes, &mut table);
     seconds(outcomes, &mut table);
     table.text + &reliability(outcomes) + &by_effect(outcomes) + &misses(outcomes)
@@ -137,19 +152,7 @@ fn outside(outcomes: &[Outcome], table: &mut Table) {
     table.count("effects outside the catalogue given no name", &outside, |outcome| {
         outcome.is("unknown") || outcome.is("none")
     });
-    let learned: Vec<f64> = outside
-        .iter()
-        .filter_map(|outcome| Some(outcome.learned.as_ref()?.1))
-        .collect();
-    table.row(
-        "share of the excess gap closed by their learned law, median and least",
-        learned.len(),
-        &format!(
-            "{:.2}, {:.2}",
-            median(&learned),
-            learned.iter().copied().fold(f64::NAN, f64::min)
-        ),
-    );
+    learned("effects outside the catalogue", &outside, table);
 }
 
 fn hardware(outcomes: &[Outcome], table: &mut Table) {
@@ -164,8 +167,51 @@ fn hardware(outcomes: &[Outcome], table: &mut Table) {
     table.count("the same, given a wrong effect", &single, Outcome::is_wrong);
 }
 
+fn minimal(outcomes: &[Outcome], table: &mut Table) {
+    for words in LITTLE {
+        let mut own = of(outcomes, Kind::Minimal);
+        own.retain(|outcome| outcome.case.starts_with(words));
+        let mut count = |what: &str, wanted: &dyn Fn(&Outcome) -> bool| {
+            table.count(&format!("{words}: {what}"), &own, wanted);
+        };
+        count("named and placed", &Outcome::is_right);
+        count("a class with it", &Outcome::is_class_with_it);
+        count("none", &|outcome| outcome.is("none"));
+        count("unknown", &|outcome| outcome.is("unknown"));
+        count("wrong", &Outcome::is_wrong);
+    }
+}
+
+fn other_laws(outcomes: &[Outcome], table: &mut Table) {
+    let all = of(outcomes, Kind::OtherLaw);
+    let mut count = |what: &str, wanted: &dyn Fn(&Outcome) -> bool| {
+        table.count(&format!("laws of another form: {what}"), &all, wanted);
+    };
+    count("named by their family", &Outcome::is_of_family);
+    count("a class with it", &Outcome::is_class_with_it);
+    count("unknown at their place", &Outcome::is_unknown_there);
+    count("unknown elsewhere", &|outcome| {
+        outcome.is("unknown") && !outcome.is_unknown_there()
+    });
+    count("none", &|outcome| outcome.is("none"));
+    count("wrong", &Outcome::is_wrong);
+    learned("laws of another form", &all, table);
+}
+
+/// What the laws close that were learned.
+fn learned(what: &str, outcomes: &[&Outcome], table: &mut Table) {
+    let closed = outcomes.iter().filter_map(|outcome| Some(outcome.learned.as_ref()?.1));
+    let closed: Vec<f64> = closed.collect();
+    let least = closed.iter().copied().fold(f64::INFINITY, f64::min);
+    table.row(
+        &format!("{what}: share of the excess gap closed by the learned law, median and least"),
+        closed.len(),
+        &format!("{:.2}, {least:.2}", median(&closed)),
+    );
+}
+
 fn parameters(outcomes: &[Outcome], table: &mut Table) {
-    let right = |outcome: &&Outcome| !outcome.truth.is_empty() && outcome.is_right();
+    let right = |outcome: &&Outcome| !outcome.truth.is_empty() && outcome.kind != Kind::OtherLaw && outcome.is_right();
     let right: Vec<&Outcome> = outcomes.iter().filter(right).collect();
     let median_of =
         |value: fn(&Outcome) -> f64| median(&right.iter().map(|outcome| value(outcome)).collect::<Vec<_>>());
@@ -257,7 +303,8 @@ fn misses(outcomes: &[Outcome]) -> String {
         Kind::Pair => !o.is_right(),
         Kind::Clean | Kind::FastClean | Kind::HardwareClean => !o.is("none"),
         Kind::Outside => o.gives_a_name(),
-        Kind::HardwareSingle => !(o.is_right() || o.is_class_with_it()),
+        Kind::HardwareSingle | Kind::Minimal => !(o.is_right() || o.is_class_with_it()),
+        Kind::OtherLaw => !(o.is_of_family() || o.is_class_with_it() || o.is_unknown_there()),
     };
     for o in outcomes.iter().filter(is_miss) {
         let named: Vec<String> = o.named.iter().chain(&o.alike).map(Place::words).collect();

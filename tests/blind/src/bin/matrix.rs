@@ -18,7 +18,8 @@ use qcar_blind::tables::tables;
 const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
   --qcar PATH     the program that answers; the one beside this is the default
   --seeds 1,2     draws; 1 is the default
-  --kinds A,B     Single, Clean, Outside, Pair, FastClean, HardwareClean, HardwareSingle; all are the default
+  --kinds A,B     Single, Clean, Outside, Pair, FastClean, HardwareClean, HardwareSingle,
+                  Minimal, OtherLaw; all are the default
   --only WORD     the cases with a word in their names, or of a kind
   --part K/N      every N-th of them, from the K-th on
   --jobs N        so many searches at once, each with one thread

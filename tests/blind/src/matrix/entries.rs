@@ -16,7 +16,8 @@ pub struct Entry {
     parameters: &'static [(&'static str, [f64; 3])],
 }
 
-const fn entry(
+/// An entry in the usual form.
+pub const fn entry(
     name: &'static str,
     at: &'static str,
     axle: &'static str,
@@ -311,4 +312,15 @@ pub const OUTSIDE: [Entry; 3] = [
     entry("damper_fade", "damper", "c", &[("share", [0.1, 0.2, 0.4])]),
     entry("cubic_top_mount", "top_mount", "a", &[("k3", [3e11, 1e12, 4e12])]),
     entry("sensor_saturation", "body", "c", &[("soft_limit", [20.0, 10.0, 5.0])]),
+];
+
+/// Effects that the catalogue has in no form, which the first draws did not have either.
+pub const OUTSIDE_LATER: [Entry; 2] = [
+    entry("position_damper", "damper", "c", &[("travel", [0.04, 0.02, 0.01])]),
+    entry(
+        "hydraulic_stop",
+        "damper",
+        "a",
+        &[("gap", [0.01, 0.007, 0.005]), ("c_per_metre", [200e3, 400e3, 800e3])],
+    ),
 ];
