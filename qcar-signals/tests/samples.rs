@@ -1,0 +1,216 @@
+//! Every sample file is read to what other programs read in it, and every trap is refused for its reason.
+//!
+//! `samples/README.md` says where the files come from. Those that are not in the repository are read from the folder that
+//! `QCAR_FORMAT_SAMPLES` names.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use qcar_signals::read::{read, recognise};
+use qcar_signals::signal::{Recording, Signal, TimeBase, Value};
+use serde_json::Value as Json;
+
+fn samples() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples")
+}
+
+/// The path of a sample, or nothing where it is not here.
+fn sample(name: &str) -> Option<PathBuf> {
+    let elsewhere = std::env::var_os("QCAR_FORMAT_SAMPLES").map(|folder| Path::new(&folder).join(name));
+    let found = [Some(samples().join(name)), elsewhere]
+        .into_iter()
+        .flatten()
+        .find(|path| path.exists());
+    if found.is_none() {
+        println!("{name} is not in the repository: QCAR_FORMAT_SAMPLES names the folder that has it");
+    }
+    found
+}
+
+fn expected() -> Json {
+    serde_json::from_str(&fs::read_to_string(samples().join("expected.json")).unwrap()).unwrap()
+}
+
+/// Reads all samples of a folder and compares them; gives them back by name.
+fn agree(folder: &str) {
+    let expected = expected();
+    for (name, file) in expected["files"].as_object().unwrap() {
+        if !name.starts_with(folder) {
+            continue;
+        }
+        let Some(path) = sample(name) else { continue };
+        let recording = read(&path).unwrap_or_else(|error| panic!("{error}"));
+        for channel in file["channels"].as_array().unwrap() {
+            agree_in_channel(name, channel, &recording);
+        }
+        let times = file["channels"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|channel| is_time(channel))
+            .count();
+        let raw = file["channels"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .filter(|channel| channel["bytes_per_sample"].is_u64());
+        let listed = file["channels"].as_array().unwrap().len() - times - raw.count();
+        assert_eq!(recording.signals.len(), listed, "{name}: {:?}", names(&recording));
+    }
+}
+
+fn names(recording: &Recording) -> Vec<&str> {
+    recording.signals.iter().map(|signal| signal.name.as_str()).collect()
+}
+
+/// A channel that a recording keeps as the time base of the others.
+fn is_time(channel: &Json) -> bool {
+    channel["name"] == "Time"
+}
+
+fn agree_in_channel(file: &str, channel: &Json, recording: &Recording) {
+    let name = channel["name"].as_str().unwrap();
+    let what = format!("{file}, {name}");
+    if channel["bytes_per_sample"].is_u64() {
+        assert!(recording.passed_over.iter().any(|passed| passed.name == name), "{what}");
+        return;
+    }
+    if is_time(channel) {
+        let TimeBase::Times(times) = &recording.signals[0].time else {
+            panic!("{what}: no times");
+        };
+        agree_in_numbers(&what, channel, times);
+        return;
+    }
+    let signal = recording
+        .signal(name.trim_matches('"'))
+        .unwrap_or_else(|fault| panic!("{file}{fault}"));
+    assert_eq!(
+        signal.unit,
+        channel["unit"].as_str().unwrap().trim_matches('"'),
+        "{what}"
+    );
+    agree_in_time(&what, channel, signal);
+    if channel["last"].is_string() {
+        agree_in_labels(&what, channel, signal);
+    } else {
+        agree_in_numbers(&what, channel, &signal.samples);
+    }
+    if let Some(invalid) = channel["invalid_samples"].as_array() {
+        let missing = signal.samples.iter().enumerate().filter(|(_, value)| value.is_nan());
+        let missing: Vec<u64> = missing.map(|(at, _)| at as u64).collect();
+        assert_eq!(
+            missing,
+            invalid.iter().map(|at| at.as_u64().unwrap()).collect::<Vec<_>>(),
+            "{what}"
+        );
+    }
+}
+
+fn agree_in_time(what: &str, channel: &Json, signal: &Signal) {
+    if let Some(step) = channel["dt_s"].as_f64() {
+        assert!(
+            matches!(signal.time, TimeBase::Even { step: own, .. } if own == step),
+            "{what}: {:?}",
+            signal.time
+        );
+    }
+    let Some(time) = channel.get("time") else { return };
+    let count = time["n"].as_u64().unwrap() as usize;
+    let (start, end) = match &signal.time {
+        TimeBase::Even { start, step } => (*start, start + step * (count - 1) as f64),
+        TimeBase::Times(times) => {
+            assert_eq!(times.len(), count, "{what}");
+            (times[0], times[count - 1])
+        }
+        TimeBase::Unknown => panic!("{what}: no time base"),
+    };
+    for (found, expected) in [(start, &time["start"]), (end, &time["end"])] {
+        let expected = expected.as_f64().unwrap();
+        assert!(
+            (found - expected).abs() <= 1e-14 * expected.abs(),
+            "{what}: {found} s, not {expected} s"
+        );
+    }
+}
+
+fn agree_in_labels(what: &str, channel: &Json, signal: &Signal) {
+    let label = |value: f64| &signal.labels.iter().find(|(code, _)| *code == value).unwrap().1;
+    let first: Vec<_> = signal.samples[..3].iter().map(|&value| label(value).as_str()).collect();
+    let expected: Vec<_> = channel["first3"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|text| text.as_str().unwrap())
+        .collect();
+    assert_eq!(first, expected, "{what}");
+    assert_eq!(
+        label(*signal.samples.last().unwrap()),
+        channel["last"].as_str().unwrap(),
+        "{what}"
+    );
+}
+
+fn agree_in_numbers(what: &str, channel: &Json, samples: &[f64]) {
+    assert_eq!(samples.len() as u64, channel["n"].as_u64().unwrap(), "{what}");
+    let valid: Vec<f64> = samples.iter().copied().filter(|value| value.is_finite()).collect();
+    let missing = channel["n_missing"].as_u64().unwrap_or(0);
+    assert_eq!((samples.len() - valid.len()) as u64, missing, "{what}");
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / valid.len() as f64;
+    let rms = mean(&mut valid.iter().map(|value| value * value)).sqrt();
+    let mut pairs: Vec<(f64, &Json)> = samples
+        .iter()
+        .copied()
+        .zip(channel["first3"].as_array().unwrap())
+        .collect();
+    pairs.extend([
+        (samples[samples.len() - 1], &channel["last"]),
+        (mean(&mut valid.iter().copied()), &channel["mean"]),
+        (rms, &channel["rms"]),
+    ]);
+    for (found, expected) in pairs {
+        same(what, found, expected, rms);
+    }
+}
+
+/// Equal in all nine digits that are given. `size` is that of what was summed, whose rounding a small mean shows.
+fn same(what: &str, found: f64, expected: &Json, size: f64) {
+    let Some(expected) = expected.as_f64() else {
+        assert!(found.is_nan(), "{what}: {found}, not nothing");
+        return;
+    };
+    let last_digit = match expected {
+        0.0 => 0.0,
+        _ => 10f64.powf(expected.abs().log10().floor() - 8.0),
+    };
+    let rounding = 0.5 * last_digit + 1e-14 * size;
+    assert!((found - expected).abs() <= rounding, "{what}: {found}, not {expected}");
+}
+
+/// What is said of the first bytes of a sample.
+fn fault_of_cut(name: &str, bytes: usize) -> String {
+    let whole = fs::read(samples().join(name)).unwrap();
+    recognise(&whole[..bytes]).unwrap_err().to_string()
+}
+
+fn says(fault: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(fault.contains(part), "`{part}` is not in: {fault}");
+    }
+}
+
+#[test]
+fn tables_of_text() {
+    agree("table/kc_semi");
+    agree("table/rig");
+}
+
+#[test]
+fn mdf() {
+    agree("mdf/");
+    let fault = fault_of_cut("mdf/plain_3groups.mf4", 28683);
+    says(
+        &fault,
+        &["the first data group", "byte 49520", "28683 bytes", "cut off"],
+    );
+}
