@@ -18,5 +18,9 @@ mod table;
 mod csv;
 // Of ASAM.
 mod mdf;
+// Of SDRC.
+mod uff;
+// Of MTS.
+mod rpc;
 // The door: which format it is, and its channels.
 pub mod read;

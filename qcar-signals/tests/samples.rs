@@ -214,3 +214,42 @@ fn mdf() {
         &["the first data group", "byte 49520", "28683 bytes", "cut off"],
     );
 }
+
+#[test]
+fn uff() {
+    agree("uff/");
+    let fault = fault_of_cut("uff/151_164_58_58b.uff", 56067);
+    says(
+        &fault,
+        &[
+            "`damper_force`",
+            "8192 bytes",
+            "1970 bytes",
+            "-1",
+            "the 3 functions before it are whole",
+        ],
+    );
+}
+
+#[test]
+fn a_geometry_has_no_channel_and_says_so() {
+    let geometry = read(&samples().join("uff/testlab_151_164_geometry.uff")).unwrap();
+    let nodes = &geometry.passed_over[1];
+    assert_eq!(
+        (nodes.name.as_str(), nodes.why.as_str()),
+        ("dataset 15", "nodes of a geometry, no measured function")
+    );
+}
+
+#[test]
+fn rpc() {
+    agree("rpc/");
+    let fault = fault_of_cut("rpc/short_4frames_group.tim", 26881);
+    let parts = [
+        "2 groups (7 frames of 512, 4 channels, 32768 bytes)",
+        "21249 bytes",
+        "1 groups are whole",
+        "2048 samples",
+    ];
+    says(&fault, &parts);
+}
