@@ -22,5 +22,9 @@ mod mdf;
 mod uff;
 // Of MTS.
 mod rpc;
+// Of LabVIEW.
+mod tdms;
+// Of MATLAB.
+mod mat;
 // The door: which format it is, and its channels.
 pub mod read;

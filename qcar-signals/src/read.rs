@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::{Fault, Place, Read, ReadError};
 use crate::signal::Recording;
-use crate::{csv, mdf, rpc, uff};
+use crate::{csv, mat, mdf, rpc, tdms, uff};
 
 /// Reads a file of any format that this crate knows. The content decides which it is, not the file's ending.
 ///
@@ -36,6 +36,12 @@ pub fn recognise(bytes: &[u8]) -> Read<Recording> {
     }
     if bytes.starts_with(mdf::MAGIC) || bytes.starts_with(mdf::UNFINISHED) {
         return mdf::read(bytes);
+    }
+    if bytes.starts_with(tdms::MAGIC) {
+        return tdms::read(bytes);
+    }
+    if mat::is_mat(bytes) || mat::is_hdf5(bytes) {
+        return mat::read(bytes);
     }
     if rpc::is_rpc(bytes) {
         return rpc::read(bytes);

@@ -110,7 +110,7 @@ fn agree_in_channel(file: &str, channel: &Json, recording: &Recording) {
 fn agree_in_time(what: &str, channel: &Json, signal: &Signal) {
     if let Some(step) = channel["dt_s"].as_f64() {
         assert!(
-            matches!(signal.time, TimeBase::Even { step: own, .. } if own == step),
+            matches!(signal.time, TimeBase::Even { step: own, .. } if (own - step).abs() <= f64::EPSILON * step),
             "{what}: {:?}",
             signal.time
         );
@@ -252,4 +252,28 @@ fn rpc() {
         "2048 samples",
     ];
     says(&fault, &parts);
+}
+
+#[test]
+fn tdms() {
+    agree("tdms/");
+    let fault = fault_of_cut("tdms/waveform_2segments.tdms", 68623);
+    says(&fault, &["56000 bytes", "38845 bytes", "segment 2", "the 1 segments before it are whole"]);
+}
+
+#[test]
+fn mat() {
+    agree("mat/");
+    let fault = fault_of_cut("mat/testlab_v7.mat", 37767);
+    says(&fault, &["`Signal_2`", "15827 bytes", "6483 bytes", "2 variables before it are whole: Signal_0, Signal_1"]);
+}
+
+#[test]
+fn single_values_of_a_mat_file_stand_beside_its_channels() {
+    let recording = read(&samples().join("mat/labcontrol_ensaio_A1.mat")).unwrap();
+    let expected = &expected()["files"]["mat/labcontrol_ensaio_A1.mat"]["scalars"];
+    for (name, value) in expected.as_object().unwrap() {
+        let scalar = recording.scalars.iter().find(|scalar| scalar.name == *name).unwrap();
+        assert_eq!(scalar.value, Value::Number(value.as_f64().unwrap()), "{name}");
+    }
 }
