@@ -37,10 +37,18 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     while at < bytes.len() as u64 {
         let lead_in = Bytes::of_file(bytes, Order::Little).part(at, LEAD_IN, "a segment's lead-in")?;
         if !lead_in.data.starts_with(MAGIC) {
-            return Err(Fault::damaged(Place::Byte(at), "something else", format!("segment {number} (`TDSm`)")));
+            return Err(Fault::damaged(
+                Place::Byte(at),
+                "something else",
+                format!("segment {number} (`TDSm`)"),
+            ));
         }
         let contents = lead_in.u32(4, "contents")?;
-        let order = if contents & BIG_ENDIAN == 0 { Order::Little } else { Order::Big };
+        let order = if contents & BIG_ENDIAN == 0 {
+            Order::Little
+        } else {
+            Order::Big
+        };
         let lead_in = Bytes { order, ..lead_in };
         let (length, raw) = (lead_in.u64(12, "a length")?, lead_in.u64(20, "the place of raw data")?);
         let segment = segment(bytes, at, order, length, raw, number)?;
@@ -96,7 +104,9 @@ impl File {
     fn add(&mut self, segment: &Bytes, contents: u32, raw: u64, number: u32) -> Read<()> {
         if contents & HAS_METADATA != 0 {
             if contents & NEW_LIST != 0 {
-                self.active.drain(..).for_each(|active| self.objects[active].active = false);
+                self.active
+                    .drain(..)
+                    .for_each(|active| self.objects[active].active = false);
             }
             self.add_objects(segment, raw)?;
         }
@@ -105,19 +115,33 @@ impl File {
         }
         let place = segment.place(raw);
         let length = segment.len().checked_sub(raw).ok_or_else(|| {
-            let found = format!("raw data from byte {raw} on in segment {number} of {} bytes", segment.len());
+            let found = format!(
+                "raw data from byte {raw} on in segment {number} of {} bytes",
+                segment.len()
+            );
             Fault::damaged(segment.place(0), found, "raw data within the segment")
         })?;
         let data = segment.part(raw, length, "raw data")?;
-        let indices = self.active.iter().filter_map(|&at| Some((at, self.objects[at].index.clone()?)));
+        let indices = self
+            .active
+            .iter()
+            .filter_map(|&at| Some((at, self.objects[at].index.clone()?)));
         let used: Vec<(usize, Index)> = indices.filter(|(_, index)| index.count > 0).collect();
         let interleaved = contents & INTERLEAVED != 0;
-        let has_others = used.iter().any(|(_, index)| matches!(index.layout, Layout::Unread { .. }));
+        let has_others = used
+            .iter()
+            .any(|(_, index)| matches!(index.layout, Layout::Unread { .. }));
         if interleaved && has_others {
             let remedy = "export the file without interleaving";
-            return Err(Fault::new(place, "numbers interleaved with other data", "interleaved numbers", remedy));
+            return Err(Fault::new(
+                place,
+                "numbers interleaved with other data",
+                "interleaved numbers",
+                remedy,
+            ));
         }
-        let chunk = metadata::chunk(&used).ok_or_else(|| Fault::damaged(place.clone(), "sizes without end", "sizes"))?;
+        let chunk =
+            metadata::chunk(&used).ok_or_else(|| Fault::damaged(place.clone(), "sizes without end", "sizes"))?;
         if chunk == 0 || length % chunk != 0 {
             if length == 0 {
                 return Ok(());
@@ -136,7 +160,11 @@ impl File {
         let mut at = 4;
         for _ in 0..metadata.u32(0, "a number of objects")? {
             let place = metadata.place(at);
-            let known = |path: &str| self.by_path.get(path).and_then(|&known| self.objects[known].index.clone());
+            let known = |path: &str| {
+                self.by_path
+                    .get(path)
+                    .and_then(|&known| self.objects[known].index.clone())
+            };
             let new = object(&metadata, &mut at, &known)?;
             let index = *self.by_path.entry(new.path.clone()).or_insert_with(|| {
                 self.objects.push(Object {
@@ -183,8 +211,16 @@ impl File {
                     at += *bytes as usize;
                 }
                 Layout::Daqmx { scalers, .. } => {
-                    for Scaler { id, number, buffer, byte } in scalers {
-                        let Some((buffer, width)) = metadata::buffer(used, chunk, *buffer) else { continue };
+                    for Scaler {
+                        id,
+                        number,
+                        buffer,
+                        byte,
+                    } in scalers
+                    {
+                        let Some((buffer, width)) = metadata::buffer(used, chunk, *buffer) else {
+                            continue;
+                        };
                         let from = buffer.get(*byte as usize..).unwrap_or(&[]);
                         object.extend(Some(*id), number.strided(from, width, order));
                     }
@@ -198,14 +234,23 @@ impl File {
         let mut times: HashMap<String, TimeBase> = HashMap::new();
         let mut channels = Vec::new();
         for object in &mut self.objects {
-            let Some((group, name)) = channel_of(&object.path) else { continue };
+            let Some((group, name)) = channel_of(&object.path) else {
+                continue;
+            };
             match object.values() {
                 Ok(samples) => channels.push((group, name, &*object, samples)),
                 Err(why) => recording.pass_over(name, object.place.clone(), why),
             }
         }
-        let untimed = |group: &str| channels.iter().any(|(own, _, object, _)| own == group && object.step().is_none());
-        for (group, name, object, samples) in channels.iter().filter(|(group, name, ..)| is_time(name) && untimed(group)) {
+        let untimed = |group: &str| {
+            channels
+                .iter()
+                .any(|(own, _, object, _)| own == group && object.step().is_none())
+        };
+        for (group, name, object, samples) in channels
+            .iter()
+            .filter(|(group, name, ..)| is_time(name) && untimed(group))
+        {
             if let Some(factor) = seconds(&object.unit()) {
                 let mut own = samples.clone();
                 in_seconds(&mut own, factor);
@@ -221,7 +266,9 @@ impl File {
                 continue;
             }
             let time = match (object.step(), of_group) {
-                (Some((start, step)), _) => evenly(start, step, object.place.clone()).map_err(|fault| fault.of(&name))?,
+                (Some((start, step)), _) => {
+                    evenly(start, step, object.place.clone()).map_err(|fault| fault.of(&name))?
+                }
                 (None, Some(TimeBase::Times(times))) if times.len() == samples.len() => TimeBase::Times(times.clone()),
                 _ => TimeBase::Unknown,
             };
@@ -265,7 +312,10 @@ impl Object {
 
     fn unit(&self) -> String {
         let text = ["unit_string", "NI_UnitDescription", "unit", "Unit"];
-        text.iter().find_map(|name| self.properties.text(name)).unwrap_or("").into()
+        text.iter()
+            .find_map(|name| self.properties.text(name))
+            .unwrap_or("")
+            .into()
     }
 }
 

@@ -258,14 +258,30 @@ fn rpc() {
 fn tdms() {
     agree("tdms/");
     let fault = fault_of_cut("tdms/waveform_2segments.tdms", 68623);
-    says(&fault, &["56000 bytes", "38845 bytes", "segment 2", "the 1 segments before it are whole"]);
+    says(
+        &fault,
+        &[
+            "56000 bytes",
+            "38845 bytes",
+            "segment 2",
+            "the 1 segments before it are whole",
+        ],
+    );
 }
 
 #[test]
 fn mat() {
     agree("mat/");
     let fault = fault_of_cut("mat/testlab_v7.mat", 37767);
-    says(&fault, &["`Signal_2`", "15827 bytes", "6483 bytes", "2 variables before it are whole: Signal_0, Signal_1"]);
+    says(
+        &fault,
+        &[
+            "`Signal_2`",
+            "15827 bytes",
+            "6483 bytes",
+            "2 variables before it are whole: Signal_0, Signal_1",
+        ],
+    );
 }
 
 #[test]

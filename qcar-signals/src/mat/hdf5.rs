@@ -30,7 +30,11 @@ pub(super) fn superblock(bytes: &[u8]) -> Option<usize> {
 
 /// All variables of a file whose superblock stands at byte `at`.
 pub(super) fn variables(bytes: &[u8], at: usize) -> Read<Vec<Variable>> {
-    let file = Bytes { data: &bytes[at..], order: Order::Little, origin: Origin::At(at as u64) };
+    let file = Bytes {
+        data: &bytes[at..],
+        order: Order::Little,
+        origin: Origin::At(at as u64),
+    };
     let version = file.u8(8, "the superblock")?;
     let sizes = (file.u8(13, "the superblock")?, file.u8(14, "the superblock")?);
     if version > 1 || sizes != (8, 8) {
@@ -38,14 +42,21 @@ pub(super) fn variables(bytes: &[u8], at: usize) -> Read<Vec<Variable>> {
         return Err(too_new(&file, 8, found));
     }
     let root = file.u64(if version == 0 { 64 } else { 68 }, "the root group")?;
-    let mut reader = Reader { file, visited: HashSet::new() };
+    let mut reader = Reader {
+        file,
+        visited: HashSet::new(),
+    };
     let header = Header::read(&file, root)?;
     let mut variables = Vec::new();
     for (name, address) in reader.members(&header)? {
         // Names of MATLAB's own begin with #.
         if !name.starts_with('#') {
             let value = reader.value(address, DEEPEST).map_err(|fault| fault.of(&name))?;
-            variables.push(Variable { name, value, place: file.place(address) });
+            variables.push(Variable {
+                name,
+                value,
+                place: file.place(address),
+            });
         }
     }
     Ok(variables)
@@ -77,7 +88,11 @@ impl<'a> Reader<'a> {
         let header = Header::read(&self.file, address)?;
         if header.symbol_table.is_some() {
             return match depth {
-                0 => Err(Fault::damaged(self.file.place(address), "groups within groups without end", "a value")),
+                0 => Err(Fault::damaged(
+                    self.file.place(address),
+                    "groups within groups without end",
+                    "a value",
+                )),
                 _ => self.structure(&header, depth - 1),
             };
         }
@@ -90,7 +105,10 @@ impl<'a> Reader<'a> {
             Class::Other => return Ok(Value::Other("data that are no real numbers")),
         };
         if header.is_empty {
-            return Ok(Value::Numbers(Array { dimensions: vec![0], numbers: Vec::new() }));
+            return Ok(Value::Numbers(Array {
+                dimensions: vec![0],
+                numbers: Vec::new(),
+            }));
         }
         let (bytes, mut dimensions) = self.data(&header)?;
         let order = header.datatype.map_or(Order::Little, |datatype| datatype.order);
@@ -126,7 +144,12 @@ impl<'a> Reader<'a> {
                 lists.push((name, cells.into_iter()));
             }
         }
-        let element = |_| lists.iter_mut().filter_map(|(name, list)| Some((name.clone(), list.next()?))).collect();
+        let element = |_| {
+            lists
+                .iter_mut()
+                .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
+                .collect()
+        };
         Ok(Value::Structs((0..elements).map(element).collect()))
     }
 
@@ -136,7 +159,9 @@ impl<'a> Reader<'a> {
         }
         let (bytes, _) = self.data(header)?;
         let addresses = bytes.chunks_exact(8).filter_map(|address| address.first_chunk());
-        addresses.map(|&address| self.value(u64::from_le_bytes(address), depth - 1)).collect()
+        addresses
+            .map(|&address| self.value(u64::from_le_bytes(address), depth - 1))
+            .collect()
     }
 
     /// Names and addresses of the members of a group, in the order of their names.
@@ -151,7 +176,11 @@ impl<'a> Reader<'a> {
         for node in self.leaves(tree, 0, 0)? {
             let head = self.file.part(node.child, 8, "symbols")?;
             if !head.data.starts_with(b"SNOD") {
-                return Err(Fault::damaged(head.place(0), format!("`{}`", text(&head.data[..4])), "symbols (`SNOD`)"));
+                return Err(Fault::damaged(
+                    head.place(0),
+                    format!("`{}`", text(&head.data[..4])),
+                    "symbols (`SNOD`)",
+                ));
             }
             let count = u64::from(head.u16(6, "a number of symbols")?);
             let symbols = self.file.part(node.child + 8, 40 * count, "symbols")?;
@@ -173,7 +202,11 @@ impl<'a> Reader<'a> {
             self.first_time(at)?;
             let head = self.file.part(at, 24, "a tree")?;
             if !head.data.starts_with(b"TREE") || head.data[4] != kind {
-                return Err(Fault::damaged(head.place(0), format!("`{}`", text(&head.data[..4])), "a tree (`TREE`)"));
+                return Err(Fault::damaged(
+                    head.place(0),
+                    format!("`{}`", text(&head.data[..4])),
+                    "a tree (`TREE`)",
+                ));
             }
             let count = u64::from(head.u16(6, "a number of entries")?);
             let entries = self.file.part(at + 24, count * (key + 8), "entries of a tree")?;
@@ -182,9 +215,18 @@ impl<'a> Reader<'a> {
                 let numbers = Number::U64.all(entries.take(entry, key, "a key")?, Order::Little);
                 let child = entries.u64(entry + key, "an address")?;
                 let size = entries.u32(entry, "the size of a chunk")?;
-                let skipped = if kind == 0 { 0 } else { entries.u32(entry + 4, "a filter mask")? };
+                let skipped = if kind == 0 {
+                    0
+                } else {
+                    entries.u32(entry + 4, "a filter mask")?
+                };
                 let offsets = numbers.iter().skip(1).map(|&offset| offset as u64).collect();
-                children.push(Leaf { size, skipped, offsets, child });
+                children.push(Leaf {
+                    size,
+                    skipped,
+                    offsets,
+                    child,
+                });
             }
             match head.data[5] {
                 0 => leaves.extend(children),

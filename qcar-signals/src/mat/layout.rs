@@ -33,7 +33,9 @@ pub(super) fn recording(format: &str, variables: Vec<Variable>) -> Read<Recordin
                     value: Single::Text(text),
                     place,
                 }),
-                Value::Structs(_) => recording.pass_over(name, place, "a structure without a time history that is known"),
+                Value::Structs(_) => {
+                    recording.pass_over(name, place, "a structure without a time history that is known")
+                }
                 Value::Cells(_) => recording.pass_over(name, place, "a cell array"),
                 Value::Other(what) => recording.pass_over(name, place, what),
             }
@@ -53,10 +55,17 @@ fn missing(place: &Place, what: &str, expected: &str) -> Box<Fault> {
 fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Place) -> Read<()> {
     let quantity = ["y_values", "quantity"];
     let transformation = |name: &str| value.number(&["y_values", "quantity", "unit_transformation", name]);
-    let (factor, offset) = (transformation("factor").unwrap_or(1.0), transformation("offset").unwrap_or(0.0));
+    let (factor, offset) = (
+        transformation("factor").unwrap_or(1.0),
+        transformation("offset").unwrap_or(0.0),
+    );
     if !(factor.is_finite() && factor != 0.0 && offset.is_finite()) {
         let found = format!("a unit transformation with factor {factor} and offset {offset}");
-        return Err(Fault::damaged(place.clone(), found, "finite numbers, the factor not zero"));
+        return Err(Fault::damaged(
+            place.clone(),
+            found,
+            "finite numbers, the factor not zero",
+        ));
     }
     let stored = value.numbers(&["y_values", "values"]);
     let stored = stored.ok_or_else(|| missing(place, "numbers in y_values.values", "an array of numbers"))?;
@@ -64,7 +73,11 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
     let time_unit = label(&["x_values", "quantity"]);
     let name = value.text(&["function_record", "name"]).unwrap_or(variable).to_string();
     let Some(per_unit) = seconds(&time_unit) else {
-        recording.pass_over(name, place.clone(), format!("a function over `{time_unit}`, not over time"));
+        recording.pass_over(
+            name,
+            place.clone(),
+            format!("a function over `{time_unit}`, not over time"),
+        );
         return Ok(());
     };
     let along = |key: &str| value.number(&["x_values", key]);
@@ -72,7 +85,11 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
     recording.signals.push(Signal {
         name,
         unit: label(&quantity),
-        time: evenly(along("start_value").unwrap_or(0.0) * per_unit, step * per_unit, place.clone())?,
+        time: evenly(
+            along("start_value").unwrap_or(0.0) * per_unit,
+            step * per_unit,
+            place.clone(),
+        )?,
         samples: stored.iter().map(|stored| (stored - offset) / factor).collect(),
         labels: Vec::new(),
         source: Source {
@@ -87,13 +104,18 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
 /// which element of `X` is meant, from 1.
 fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &Place) -> Read<()> {
     let mut elements = |name: &str| value.take(name).map(Value::into_elements).unwrap_or_default();
-    let times = elements("X").iter().map(|axis| dspace_times(axis, place)).collect::<Read<Vec<_>>>()?;
+    let times = elements("X")
+        .iter()
+        .map(|axis| dspace_times(axis, place))
+        .collect::<Read<Vec<_>>>()?;
     for mut channel in elements("Y") {
         let name = channel.text(&["Name"]).unwrap_or(variable).to_string();
         let Some(Value::Numbers(Array { numbers: samples, .. })) = channel.take("Data") else {
             return Err(missing(place, "numbers in Y.Data", "samples").of(&name));
         };
-        let index = channel.number(&["XIndex"]).map_or(0, |index| (index as usize).saturating_sub(1));
+        let index = channel
+            .number(&["XIndex"])
+            .map_or(0, |index| (index as usize).saturating_sub(1));
         let time = times.get(index).cloned().unwrap_or(TimeBase::Unknown);
         if let TimeBase::Times(times) = &time
             && times.len() != samples.len()
@@ -129,7 +151,13 @@ fn times_of(times: &[f64], factor: f64, name: &str, place: &Place) -> Read<TimeB
     in_seconds(&mut times, factor);
     TimeBase::from_times(times).map_err(|(at, found)| {
         let remedy = "correct it, or give the variable another name if it holds no times";
-        Fault::new(place.clone(), format!("{found} in element {}", at + 1), "times that never fall", remedy).of(name)
+        Fault::new(
+            place.clone(),
+            format!("{found} in element {}", at + 1),
+            "times that never fall",
+            remedy,
+        )
+        .of(name)
     })
 }
 
@@ -146,7 +174,12 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>) -> Read
             channels.push((name, array, place));
         }
     }
-    let base = |length: usize| bases.iter().find(|(own, _)| *own == length).map(|(_, base)| base.clone());
+    let base = |length: usize| {
+        bases
+            .iter()
+            .find(|(own, _)| *own == length)
+            .map(|(_, base)| base.clone())
+    };
     for (name, array, place) in channels {
         for (name, samples) in split(&name, array, &|length| base(length).is_some()) {
             recording.signals.push(Signal {
@@ -176,6 +209,8 @@ fn split(name: &str, array: Array, is_timed: &dyn Fn(usize) -> bool) -> Vec<(Str
         (0..rows).map(|at| (format!("{name}[{at},:]"), row(at))).collect()
     } else {
         let columns = array.numbers.chunks_exact(rows).enumerate();
-        columns.map(|(at, column)| (format!("{name}[:,{at}]"), column.to_vec())).collect()
+        columns
+            .map(|(at, column)| (format!("{name}[:,{at}]"), column.to_vec()))
+            .collect()
     }
 }

@@ -20,7 +20,11 @@ const DEEPEST: usize = 32;
 
 /// All variables of a file.
 pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
-    let order = if bytes[HEADER - 2..HEADER] == *b"IM" { Order::Little } else { Order::Big };
+    let order = if bytes[HEADER - 2..HEADER] == *b"IM" {
+        Order::Little
+    } else {
+        Order::Big
+    };
     let file = Bytes::of_file(bytes, order);
     let mut variables: Vec<Variable> = Vec::new();
     let mut at = HEADER as u64;
@@ -37,7 +41,11 @@ pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
         let unpacked;
         let variable = if element.kind == PACKED {
             unpacked = unpack(&element, at, u64::MAX)?;
-            let inside = Bytes { data: &unpacked, order, origin: Origin::PackedAt(at) };
+            let inside = Bytes {
+                data: &unpacked,
+                order,
+                origin: Origin::PackedAt(at),
+            };
             self::element(&inside, 0)?
         } else {
             element
@@ -54,7 +62,10 @@ pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
 /// What a packed element holds, at most `most` bytes of it.
 fn unpack(element: &Element, at: u64, most: u64) -> Read<Vec<u8>> {
     let mut unpacked = Vec::new();
-    match ZlibDecoder::new(element.data.data).take(most).read_to_end(&mut unpacked) {
+    match ZlibDecoder::new(element.data.data)
+        .take(most)
+        .read_to_end(&mut unpacked)
+    {
         Ok(_) => Ok(unpacked),
         Err(error) => {
             let found = format!("packed data that end with: {error}");
@@ -72,7 +83,11 @@ fn name_of_packed(file: &Bytes, at: u64) -> Option<String> {
     while let Ok(more @ 1..) = decoder.read(&mut begin[length..]) {
         length += more;
     }
-    let bytes = Bytes { data: &begin[..length], order: file.order, origin: Origin::PackedAt(at) };
+    let bytes = Bytes {
+        data: &begin[..length],
+        order: file.order,
+        origin: Origin::PackedAt(at),
+    };
     // Behind the tag of the matrix, its flags and its dimensions.
     let dimensions = element(&bytes, 24).ok()?;
     let name = element(&bytes, dimensions.next).ok()?;
@@ -91,12 +106,24 @@ fn element<'a>(from: &Bytes<'a>, at: u64) -> Read<Element<'a>> {
     let tag = from.u32(at, "a tag")?;
     if tag >> 16 != 0 {
         let data = from.part(at + 4, (tag >> 16).into(), "a small element")?;
-        return Ok(Element { kind: tag & 0xffff, data, next: at + 8 });
+        return Ok(Element {
+            kind: tag & 0xffff,
+            data,
+            next: at + 8,
+        });
     }
     let length = u64::from(from.u32(at + 4, "a tag")?);
     let data = from.part(at + 8, length, "an element")?;
-    let filled = if tag == PACKED { length } else { length.next_multiple_of(8) };
-    Ok(Element { kind: tag, data, next: at + 8 + filled })
+    let filled = if tag == PACKED {
+        length
+    } else {
+        length.next_multiple_of(8)
+    };
+    Ok(Element {
+        kind: tag,
+        data,
+        next: at + 8 + filled,
+    })
 }
 
 /// Elements of a matrix: flags, dimensions, name, then what its class says.
@@ -109,7 +136,11 @@ fn matrix(data: &Bytes, depth: usize) -> Read<(String, Value)> {
     let dimensions = element(data, flags.next)?;
     let name_element = element(data, dimensions.next)?;
     let name = field(name_element.data.data);
-    let dimensions: Vec<u64> = Number::I32.all(dimensions.data.data, data.order).into_iter().map(|d| d as u64).collect();
+    let dimensions: Vec<u64> = Number::I32
+        .all(dimensions.data.data, data.order)
+        .into_iter()
+        .map(|d| d as u64)
+        .collect();
     let at = name_element.next;
     let complex = class & 0x0800 != 0;
     let value = match class & 0xff {
@@ -122,7 +153,10 @@ fn matrix(data: &Bytes, depth: usize) -> Read<(String, Value)> {
         5 => Ok(Value::Other("a sparse matrix")),
         _ => Ok(Value::Other("a function or an object")),
     };
-    Ok((name.clone(), value.map_err(|fault| if name.is_empty() { fault } else { fault.of(&name) })?))
+    Ok((
+        name.clone(),
+        value.map_err(|fault| if name.is_empty() { fault } else { fault.of(&name) })?,
+    ))
 }
 
 fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
@@ -138,14 +172,24 @@ fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
         9 => Number::F64,
         12 => Number::I64,
         13 => Number::U64,
-        kind => return Err(Fault::damaged(data.place(at), format!("data of type {kind}"), "numbers")),
+        kind => {
+            return Err(Fault::damaged(
+                data.place(at),
+                format!("data of type {kind}"),
+                "numbers",
+            ));
+        }
     };
     let numbers = number.all(element.data.data, data.order);
     let promised = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
     if promised != Some(numbers.len() as u64) {
         let sizes: Vec<String> = dimensions.iter().map(u64::to_string).collect();
         let found = format!("{} numbers", numbers.len());
-        return Err(Fault::damaged(data.place(at), found, format!("an array of {}", sizes.join(" x "))));
+        return Err(Fault::damaged(
+            data.place(at),
+            found,
+            format!("an array of {}", sizes.join(" x ")),
+        ));
     }
     Ok(Array { dimensions, numbers })
 }

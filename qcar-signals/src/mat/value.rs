@@ -33,7 +33,9 @@ pub(super) type Fields = Vec<(String, Value)>;
 impl Value {
     /// What lies at a path of fields, through structures of one element.
     pub(super) fn at(&self, path: &[&str]) -> Option<&Value> {
-        let Some((first, rest)) = path.split_first() else { return Some(self) };
+        let Some((first, rest)) = path.split_first() else {
+            return Some(self);
+        };
         match self {
             Value::Structs(elements) => match elements.as_slice() {
                 [fields] => fields.iter().find(|(name, _)| name == first)?.1.at(rest),
@@ -54,7 +56,10 @@ impl Value {
     /// The elements of a structure array, each as a structure of its own.
     pub(super) fn into_elements(self) -> Vec<Value> {
         match self {
-            Value::Structs(elements) => elements.into_iter().map(|fields| Value::Structs(vec![fields])).collect(),
+            Value::Structs(elements) => elements
+                .into_iter()
+                .map(|fields| Value::Structs(vec![fields]))
+                .collect(),
             Value::Cells(cells) => cells,
             _ => Vec::new(),
         }

@@ -24,9 +24,15 @@ pub(super) struct Index {
 pub(super) enum Layout {
     Plain(Number),
     /// Bytes in a chunk that are no numbers.
-    Unread { bytes: u64, why: String },
+    Unread {
+        bytes: u64,
+        why: String,
+    },
     /// Several objects in common buffers, of these widths.
-    Daqmx { scalers: Vec<Scaler>, widths: Vec<u32> },
+    Daqmx {
+        scalers: Vec<Scaler>,
+        widths: Vec<u32>,
+    },
 }
 
 /// Where DAQmx put a value.
@@ -90,7 +96,9 @@ pub(super) fn chunk(used: &[(usize, Index)]) -> Option<u64> {
         Layout::Unread { bytes, .. } => Some(*bytes),
         Layout::Daqmx { .. } => Some(0),
     };
-    let plain = used.iter().try_fold(0_u64, |all, (_, index)| all.checked_add(own(index)?))?;
+    let plain = used
+        .iter()
+        .try_fold(0_u64, |all, (_, index)| all.checked_add(own(index)?))?;
     let rows = rows_of_buffers(used);
     let taken = |index: &Index| match &index.layout {
         Layout::Daqmx { scalers, .. } => scalers.iter().map(|scaler| scaler.number.size() as u64).sum(),
@@ -101,14 +109,17 @@ pub(super) fn chunk(used: &[(usize, Index)]) -> Option<u64> {
     if taken > MOST_USES * widths {
         return None;
     }
-    rows.iter().try_fold(plain, |all, (rows, width)| all.checked_add(rows.checked_mul(*width)?))
+    rows.iter()
+        .try_fold(plain, |all, (rows, width)| all.checked_add(rows.checked_mul(*width)?))
 }
 
 /// Rows and width of each DAQmx buffer: it has as many rows as the object with the most values in it.
 fn rows_of_buffers(used: &[(usize, Index)]) -> Vec<(u64, u64)> {
     let mut buffers: Vec<(u64, u64)> = Vec::new();
     for (_, index) in used {
-        let Layout::Daqmx { scalers, widths } = &index.layout else { continue };
+        let Layout::Daqmx { scalers, widths } = &index.layout else {
+            continue;
+        };
         for (at, &width) in widths.iter().enumerate() {
             if buffers.len() <= at {
                 buffers.push((0, width.into()));
@@ -153,7 +164,11 @@ pub(super) fn object(from: &Bytes, at: &mut u64, known: &dyn Fn(&str) -> Option<
         let value = property(from, at)?;
         properties.extend(value.map(|value| (name, value)));
     }
-    Ok(Described { path, index, properties })
+    Ok(Described {
+        path,
+        index,
+        properties,
+    })
 }
 
 fn step_u32(from: &Bytes, at: &mut u64) -> Read<u32> {
@@ -190,7 +205,12 @@ fn plain(from: &Bytes, at: &mut u64) -> Read<Index> {
         _ => {
             let remedy = "export the channel as a number";
             let found = format!("data of type {kind:#x}");
-            return Err(Fault::new(from.place(*at - 16), found, "whole or floating-point numbers", remedy));
+            return Err(Fault::new(
+                from.place(*at - 16),
+                found,
+                "whole or floating-point numbers",
+                remedy,
+            ));
         }
     };
     Ok(Index { count, layout })
@@ -226,7 +246,12 @@ fn daqmx(from: &Bytes, at: &mut u64, digital: bool) -> Read<Index> {
         *at += if digital { 1 } else { 4 };
         let id = step_u32(from, at)?;
         match daqmx_number(kind).filter(|_| !digital) {
-            Some(number) => scalers.push(Scaler { id, number, buffer, byte }),
+            Some(number) => scalers.push(Scaler {
+                id,
+                number,
+                buffer,
+                byte,
+            }),
             None => unread = Some(kind),
         }
     }
@@ -243,11 +268,24 @@ fn daqmx(from: &Bytes, at: &mut u64, digital: bool) -> Read<Index> {
             count,
             layout: Layout::Daqmx { scalers, widths },
         }),
-        None => Err(Fault::damaged(from.place(start), "a value outside the rows of its buffer", "a value in a row")),
+        None => Err(Fault::damaged(
+            from.place(start),
+            "a value outside the rows of its buffer",
+            "a value in a row",
+        )),
         Some(kind) => {
-            let found = if digital { "digital lines of DAQmx".into() } else { format!("DAQmx data of type {kind}") };
+            let found = if digital {
+                "digital lines of DAQmx".into()
+            } else {
+                format!("DAQmx data of type {kind}")
+            };
             let remedy = "export the file without them";
-            Err(Fault::new(from.place(start), found, "DAQmx data of whole or floating-point numbers", remedy))
+            Err(Fault::new(
+                from.place(start),
+                found,
+                "DAQmx data of whole or floating-point numbers",
+                remedy,
+            ))
         }
     }
 }
@@ -285,5 +323,7 @@ fn property(from: &Bytes, at: &mut u64) -> Read<Option<Property>> {
     }
     let bytes = from.take(*at, size, "a property")?;
     *at += size;
-    Ok(number.and_then(|number| number.all(bytes, from.order).first().copied()).map(Property::Number))
+    Ok(number
+        .and_then(|number| number.all(bytes, from.order).first().copied())
+        .map(Property::Number))
 }

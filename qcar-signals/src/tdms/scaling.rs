@@ -25,7 +25,9 @@ impl Scaling {
     /// # Errors
     /// Why they cannot be followed.
     pub(super) fn of(properties: &Properties) -> Result<Scaling, String> {
-        let done = properties.text("NI_Scaling_Status").is_some_and(|status| status == "scaled");
+        let done = properties
+            .text("NI_Scaling_Status")
+            .is_some_and(|status| status == "scaled");
         let number = properties.number("NI_Number_Of_Scales").unwrap_or(0.0) as usize;
         if number > MOST {
             return Err(format!("{number} scales"));
@@ -49,7 +51,10 @@ impl Scaling {
             let (first, further) = (raw.swap_remove(0).1, raw.len());
             return match further {
                 0 => Ok(first),
-                _ => Err(format!("{} raw values a sample, and no scale that joins them", further + 1)),
+                _ => Err(format!(
+                    "{} raw values a sample, and no scale that joins them",
+                    further + 1
+                )),
             };
         };
         // From the last scale back to the raw values, then forward again.
@@ -62,7 +67,9 @@ impl Scaling {
             }
             at = scale.input;
         }
-        let source = raw.into_iter().find(|(id, _)| id.is_none() || at == RAW || *id == Some(at));
+        let source = raw
+            .into_iter()
+            .find(|(id, _)| id.is_none() || at == RAW || *id == Some(at));
         let (_, mut values) = source.ok_or_else(|| format!("a scale that takes in {at}, which is not there"))?;
         for scale in chain.iter().rev() {
             values.iter_mut().for_each(|value| *value = scale.of(*value));
@@ -85,7 +92,11 @@ fn scale(properties: &Properties, name: &str) -> Result<Option<Scale>, String> {
         let value = properties.number(&format!("{name}{key}"));
         value.ok_or_else(|| format!("a scale without `{name}{key}`"))
     };
-    let input = |key: &str| properties.number(&format!("{name}{key}")).map_or(RAW, |input| input as u32);
+    let input = |key: &str| {
+        properties
+            .number(&format!("{name}{key}"))
+            .map_or(RAW, |input| input as u32)
+    };
     match properties.text(&format!("{name}Scale_Type")) {
         None => Ok(None),
         Some("Linear") => Ok(Some(Scale {

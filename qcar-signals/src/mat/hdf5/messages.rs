@@ -45,7 +45,7 @@ pub(super) enum Class {
 pub(super) enum Layout<'a> {
     /// In the header.
     Compact(&'a [u8]),
-    /// At an address, so many bytes.
+    /// At an address, at most so many bytes.
     Contiguous(u64, u64),
     /// In a tree, in chunks of these dimensions; the last is the size of an element.
     Chunked(u64, Vec<u32>),
@@ -55,7 +55,10 @@ impl<'a> Header<'a> {
     pub(super) fn read(file: &Bytes<'a>, at: u64) -> Read<Header<'a>> {
         let head = file.part(at, 16, "an object header")?;
         if head.data[0] != 1 {
-            let found = format!("an object header of version {}", if head.data[0] == b'O' { 2 } else { head.data[0] });
+            let found = format!(
+                "an object header of version {}",
+                if head.data[0] == b'O' { 2 } else { head.data[0] }
+            );
             return Err(too_new(file, at, found));
         }
         let mut header = Header::default();
@@ -95,10 +98,17 @@ impl<'a> Header<'a> {
     /// version 1, and the data. Version 3 has one byte more.
     fn add_attribute(&mut self, message: &Bytes) -> Read<()> {
         let version = message.u8(0, "an attribute")?;
-        let filled = |size: u16| if version == 1 { u64::from(size).next_multiple_of(8) } else { size.into() };
+        let filled = |size: u16| {
+            if version == 1 {
+                u64::from(size).next_multiple_of(8)
+            } else {
+                size.into()
+            }
+        };
         let name_at = if version == 3 { 9 } else { 8 };
         let name_size = message.u16(2, "an attribute")?;
-        let before = name_at + filled(name_size) + filled(message.u16(4, "a type")?) + filled(message.u16(6, "a space")?);
+        let before =
+            name_at + filled(name_size) + filled(message.u16(4, "a type")?) + filled(message.u16(6, "a space")?);
         let name = field(message.take(name_at, name_size.into(), "the name of an attribute")?);
         let data = message.data.get(before as usize..).unwrap_or(&[]);
         match name.as_str() {
@@ -114,7 +124,9 @@ impl<'a> Header<'a> {
 fn dimensions(message: &Bytes) -> Read<Vec<u64>> {
     let start = if message.u8(0, "a space")? == 1 { 8 } else { 4 };
     let count = u64::from(message.u8(1, "a space")?);
-    (0..count).map(|at| message.u64(start + 8 * at, "a dimension")).collect()
+    (0..count)
+        .map(|at| message.u64(start + 8 * at, "a dimension"))
+        .collect()
 }
 
 impl Datatype {
@@ -142,24 +154,56 @@ impl Datatype {
 }
 
 impl<'a> Layout<'a> {
-    /// Version 3: version 1, class 1, then what the class says.
+    /// Version 3: version 1, class 1, then what the class says. Versions 1 and 2: version 1, dimensions 1, class 1, fill 5, an
+    /// address 8 unless the class is compact, dimensions of 4 each, of compact data their size 4.
     fn read(message: &Bytes<'a>) -> Read<Layout<'a>> {
         let (version, class) = (message.u8(0, "a layout")?, message.u8(1, "a layout")?);
+        if matches!(version, 1 | 2) {
+            let (count, class) = (u64::from(class), message.u8(2, "a layout")?);
+            let sizes = |start: u64| {
+                (0..count)
+                    .map(|at| message.u32(start + 4 * at, "a dimension"))
+                    .collect::<Read<_>>()
+            };
+            return match class {
+                0 => {
+                    let size = message.u32(8 + 4 * count, "a layout")?;
+                    Ok(Layout::Compact(message.take(
+                        12 + 4 * count,
+                        size.into(),
+                        "elements",
+                    )?))
+                }
+                1 => Ok(Layout::Contiguous(message.u64(8, "a layout")?, u64::MAX)),
+                _ => Ok(Layout::Chunked(message.u64(8, "a layout")?, sizes(16)?)),
+            };
+        }
         match (version, class) {
             (3, 0) => {
                 let size = message.u16(2, "a layout")?;
                 Ok(Layout::Compact(message.take(4, size.into(), "elements")?))
             }
-            (3, 1) => Ok(Layout::Contiguous(message.u64(2, "a layout")?, message.u64(10, "a layout")?)),
+            (3, 1) => Ok(Layout::Contiguous(
+                message.u64(2, "a layout")?,
+                message.u64(10, "a layout")?,
+            )),
             (3, 2) => {
                 let count = u64::from(message.u8(2, "a layout")?);
                 let sizes = (0..count).map(|at| message.u32(11 + 4 * at, "the size of a chunk"));
-                Ok(Layout::Chunked(message.u64(3, "a layout")?, sizes.collect::<Read<_>>()?))
+                Ok(Layout::Chunked(
+                    message.u64(3, "a layout")?,
+                    sizes.collect::<Read<_>>()?,
+                ))
             }
             _ => {
                 let found = format!("a layout of version {version} and class {class}");
                 let remedy = "save the file with MATLAB (-v7 or -v7.3)";
-                Err(Fault::new(message.place(0), found, "a layout of version 3", remedy))
+                Err(Fault::new(
+                    message.place(0),
+                    found,
+                    "a layout of version 1 to 3",
+                    remedy,
+                ))
             }
         }
     }
@@ -174,10 +218,18 @@ fn filters(message: &Bytes) -> Read<Vec<u16>> {
     for _ in 0..count {
         let id = message.u16(at, "a filter")?;
         let named = version == 1 || id >= 256;
-        let name = if named { u64::from(message.u16(at + 2, "a filter")?) } else { 0 };
+        let name = if named {
+            u64::from(message.u16(at + 2, "a filter")?)
+        } else {
+            0
+        };
         let values_at = if named { at + 6 } else { at + 4 };
         let values = u64::from(message.u16(values_at, "a filter")?);
-        let filled = if version == 1 { values.next_multiple_of(2) } else { values };
+        let filled = if version == 1 {
+            values.next_multiple_of(2)
+        } else {
+            values
+        };
         at = values_at + 2 + if version == 1 { name.next_multiple_of(8) } else { name } + 4 * filled;
         ids.push(id);
     }

@@ -19,18 +19,28 @@ impl<'a> Reader<'a> {
     pub(super) fn data(&mut self, header: &Header<'a>) -> Read<(Cow<'a, [u8]>, Vec<u64>)> {
         let element = header.datatype.map_or(1, |datatype| u64::from(datatype.size));
         let dimensions = header.dimensions.clone();
-        let promised = dimensions.iter().try_fold(element, |all, &size| all.checked_mul(size)).unwrap_or(u64::MAX);
+        let promised = dimensions
+            .iter()
+            .try_fold(element, |all, &size| all.checked_mul(size))
+            .unwrap_or(u64::MAX);
         let (there, bytes) = match &header.layout {
             Some(Layout::Compact(bytes)) => (bytes.len() as u64, Cow::Borrowed(*bytes)),
             Some(Layout::Contiguous(at, size)) if promised <= *size => {
                 self.first_time(*at)?;
-                (promised, Cow::Borrowed(self.file.take(*at, promised, "elements of a dataset")?))
+                (
+                    promised,
+                    Cow::Borrowed(self.file.take(*at, promised, "elements of a dataset")?),
+                )
             }
             Some(Layout::Contiguous(_, size)) => (*size, Cow::Borrowed(&[][..])),
             Some(Layout::Chunked(tree, chunk)) => {
                 let chunks = self.chunks(*tree, chunk, header, element)?;
                 let there = chunks.iter().map(|(_, bytes)| bytes.len() as u64).sum();
-                let joined = if promised <= there { join(&chunks, chunk, &dimensions, element) } else { Vec::new() };
+                let joined = if promised <= there {
+                    join(&chunks, chunk, &dimensions, element)
+                } else {
+                    Vec::new()
+                };
                 (there, Cow::Owned(joined))
             }
             None => (0, Cow::Borrowed(&[][..])),
@@ -50,7 +60,11 @@ impl<'a> Reader<'a> {
         let size = chunk.iter().try_fold(1_u64, |all, &size| all.checked_mul(size.into()));
         let Some(size) = size.filter(|_| fits) else {
             let found = format!("chunks of {chunk:?} for a dataset of {:?}", header.dimensions);
-            return Err(Fault::damaged(self.file.place(tree), found, "chunks with as many dimensions"));
+            return Err(Fault::damaged(
+                self.file.place(tree),
+                found,
+                "chunks with as many dimensions",
+            ));
         };
         let leaves = self.leaves(tree, 1, chunk.len() as u64)?;
         let mut chunks = Vec::new();
@@ -59,7 +73,11 @@ impl<'a> Reader<'a> {
             let bytes = self.chunk(&leaf, header, element, size)?;
             if bytes.len() as u64 != size {
                 let found = format!("a chunk of {} bytes", bytes.len());
-                return Err(Fault::damaged(self.file.place(leaf.child), found, format!("{size} bytes")));
+                return Err(Fault::damaged(
+                    self.file.place(leaf.child),
+                    found,
+                    format!("{size} bytes"),
+                ));
             }
             chunks.push((leaf.offsets, bytes));
         }
@@ -86,7 +104,13 @@ impl<'a> Reader<'a> {
                 }
                 SHUFFLE => unshuffled(&bytes, element as usize),
                 CHECKSUM => bytes[..bytes.len().saturating_sub(4)].to_vec(),
-                other => return Err(too_new(&self.file, leaf.child, format!("data packed by filter {other}"))),
+                other => {
+                    return Err(too_new(
+                        &self.file,
+                        leaf.child,
+                        format!("data packed by filter {other}"),
+                    ));
+                }
             };
         }
         Ok(bytes)
@@ -115,7 +139,9 @@ fn join(chunks: &[(Vec<u64>, Vec<u8>)], chunk: &[u32], dimensions: &[u64], eleme
     let row = sizes.last().copied().unwrap_or(1);
     for (offsets, bytes) in chunks {
         for (index, part) in bytes.chunks_exact((row * element) as usize).enumerate() {
-            let Some((at, length)) = row_at(index as u64, offsets, &sizes, dimensions) else { continue };
+            let Some((at, length)) = row_at(index as u64, offsets, &sizes, dimensions) else {
+                continue;
+            };
             let (at, length) = ((at * element) as usize, (length * element) as usize);
             joined[at..at + length].copy_from_slice(&part[..length]);
         }
@@ -125,7 +151,9 @@ fn join(chunks: &[(Vec<u64>, Vec<u8>)], chunk: &[u32], dimensions: &[u64], eleme
 
 /// The element of a dataset at which a row of a chunk begins, and how many of the row lie within it.
 fn row_at(mut index: u64, offsets: &[u64], sizes: &[u64], dimensions: &[u64]) -> Option<(u64, u64)> {
-    let Some(last) = dimensions.len().checked_sub(1) else { return Some((0, 1)) };
+    let Some(last) = dimensions.len().checked_sub(1) else {
+        return Some((0, 1));
+    };
     let mut at = 0;
     let mut stride = 1;
     let mut length = 0;
