@@ -26,5 +26,7 @@ mod rpc;
 mod tdms;
 // Of MATLAB.
 mod mat;
+// Of Excel.
+mod excel;
 // The door: which format it is, and its channels.
 pub mod read;

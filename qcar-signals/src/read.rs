@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::error::{Fault, Place, Read, ReadError};
 use crate::signal::Recording;
-use crate::{csv, mat, mdf, rpc, tdms, uff};
+use crate::{csv, excel, mat, mdf, rpc, tdms, uff};
 
 /// Reads a file of any format that this crate knows. The content decides which it is, not the file's ending.
 ///
@@ -39,6 +39,12 @@ pub fn recognise(bytes: &[u8]) -> Read<Recording> {
     }
     if bytes.starts_with(tdms::MAGIC) {
         return tdms::read(bytes);
+    }
+    if bytes.starts_with(excel::MAGIC) {
+        return excel::read(bytes);
+    }
+    if bytes.starts_with(excel::OLD_MAGIC) {
+        return Err(excel::refuse_old());
     }
     if mat::is_mat(bytes) || mat::is_hdf5(bytes) {
         return mat::read(bytes);

@@ -6,6 +6,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use qcar_signals::error::Place;
 use qcar_signals::read::{read, recognise};
 use qcar_signals::signal::{Recording, Signal, TimeBase, Value};
 use serde_json::Value as Json;
@@ -203,6 +204,33 @@ fn says(fault: &str, parts: &[&str]) {
 fn tables_of_text() {
     agree("table/kc_semi");
     agree("table/rig");
+}
+
+#[test]
+fn workbooks() {
+    agree("table/kc_bounce");
+    agree("table/vehicle");
+    let fault = fault_of_cut("table/kc_bounce.xlsx", 5919);
+    says(&fault, &["no ZIP directory at the end", "cut off", "copy it again"]);
+}
+
+#[test]
+fn named_cells_of_a_workbook_are_single_values() {
+    let recording = read(&samples().join("table/vehicle_template.xlsx")).unwrap();
+    let expected = &expected()["files"]["table/vehicle_template.xlsx"]["cells"];
+    for cell in expected.as_array().unwrap() {
+        let name = cell["name"].as_str().unwrap();
+        let scalar = recording.scalars.iter().find(|scalar| scalar.name == name).unwrap();
+        assert_eq!(scalar.unit, cell["unit"].as_str().unwrap(), "{name}");
+        assert_eq!(scalar.place, Place::Sheet("Vehicle".into(), cell["cell"].as_str().unwrap().into()), "{name}");
+        let value = match (&cell["value"], name) {
+            (Json::Number(number), _) => Value::Number(number.as_f64().unwrap()),
+            (Json::String(text), _) => Value::Text(text.clone()),
+            (_, "m_sprung") => Value::Formula("C3-C4".into()),
+            _ => Value::Empty,
+        };
+        assert_eq!(scalar.value, value, "{name}");
+    }
 }
 
 #[test]
