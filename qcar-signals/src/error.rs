@@ -7,7 +7,7 @@ use thiserror::Error;
 
 /// A file that cannot be read.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{file}{fault}", file = .file.display())]
+#[error("{file}{separator} {fault}", file = .file.display(), separator = .fault.separator())]
 pub struct ReadError {
     /// The file, as it was opened.
     pub file: PathBuf,
@@ -65,21 +65,26 @@ impl fmt::Display for Place {
 
 impl fmt::Display for Fault {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        if self.place != Place::File {
-            write!(out, ", {}", self.place)?;
+        let place = (self.place != Place::File).then(|| self.place.to_string());
+        let channel = self.channel.as_ref().map(|channel| format!("channel `{channel}`"));
+        let location: Vec<String> = place.into_iter().chain(channel).collect();
+        if !location.is_empty() {
+            write!(out, "{}: ", location.join(", "))?;
         }
-        if let Some(channel) = &self.channel {
-            write!(out, ", channel `{channel}`")?;
-        }
-        write!(
-            out,
-            ": found {}, expected {}; {}",
-            self.found, self.expected, self.remedy
-        )
+        write!(out, "found {}, expected {}; {}", self.found, self.expected, self.remedy)
     }
 }
 
 impl Fault {
+    /// What stands between the name of the file and the fault, which may begin with a place.
+    fn separator(&self) -> char {
+        if self.place == Place::File && self.channel.is_none() {
+            ':'
+        } else {
+            ','
+        }
+    }
+
     /// A fault that concerns no single channel; see the fields for how to word it.
     pub(crate) fn new(
         place: Place,

@@ -2,6 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::Cursor;
+use std::panic::catch_unwind;
 
 use calamine::{DataRef, Reader, Xlsx, XlsxError};
 
@@ -25,7 +26,12 @@ const MOST_EMPTY: usize = 64;
 /// Refuses a workbook of a kind that nothing here reads.
 pub(crate) fn refuse_old() -> Box<Fault> {
     let remedy = "open it in Excel and save it as .xlsx";
-    Fault::new(Place::File, "a workbook of Excel before 2007 (.xls), or a document of that time", "an .xlsx file", remedy)
+    Fault::new(
+        Place::File,
+        "a workbook of Excel before 2007 (.xls), or a document of that time",
+        "an .xlsx file",
+        remedy,
+    )
 }
 
 /// Reads all sheets and named cells of a workbook.
@@ -34,8 +40,25 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     let tail = &bytes[bytes.len().saturating_sub(within)..];
     if !tail.windows(end.len()).any(|window| window == end) {
         let place = Place::Byte(bytes.len() as u64);
-        return Err(Fault::cut_off(place, "no ZIP directory at the end", "a whole .xlsx file, which ends with one"));
+        return Err(Fault::cut_off(
+            place,
+            "no ZIP directory at the end",
+            "a whole .xlsx file, which ends with one",
+        ));
     }
+    // A few sums in that crate are not checked; what trips over them is no workbook.
+    catch_unwind(|| workbook(bytes)).unwrap_or_else(|_| {
+        let remedy = "open it in Excel and save it again as .xlsx";
+        Err(Fault::new(
+            Place::File,
+            "references to cells that do not exist",
+            "a workbook of Excel (.xlsx)",
+            remedy,
+        ))
+    })
+}
+
+fn workbook(bytes: &[u8]) -> Read<Recording> {
     let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(Place::File, &error))?;
     let mut recording = Recording::new("xlsx");
     let mut sheets = HashMap::new();
@@ -45,7 +68,9 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         sheets.insert(name, sheet);
     }
     for (name, reference) in workbook.defined_names() {
-        let Some((sheet, row, column)) = single_cell(reference) else { continue };
+        let Some((sheet, row, column)) = single_cell(reference) else {
+            continue;
+        };
         if let Some(sheet) = sheets.get(&sheet) {
             recording.scalars.push(sheet.scalar(name, row, column));
         }
@@ -55,7 +80,12 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
 
 fn unreadable(place: Place, error: &XlsxError) -> Box<Fault> {
     let remedy = "open it in Excel and save it again as .xlsx";
-    Fault::new(place, format!("what is no workbook: {error}"), "a workbook of Excel (.xlsx)", remedy)
+    Fault::new(
+        place,
+        format!("what is no workbook: {error}"),
+        "a workbook of Excel (.xlsx)",
+        remedy,
+    )
 }
 
 /// A sheet: its cells that are filled, by row and column from 0.
@@ -85,7 +115,11 @@ impl Sheet {
             if column >= MOST_COLUMNS {
                 let found = format!("a cell in column {}", u64::from(column) + 1);
                 let place = Place::Sheet(name.into(), format!("row {}", u64::from(row) + 1));
-                return Err(Fault::damaged(place, found, format!("at most {MOST_COLUMNS} columns, as Excel allows")));
+                return Err(Fault::damaged(
+                    place,
+                    found,
+                    format!("at most {MOST_COLUMNS} columns, as Excel allows"),
+                ));
             }
             let value = match cell.value {
                 DataRef::Int(number) => Cell::Number(number as f64),
@@ -124,10 +158,17 @@ impl Sheet {
             return Ok(());
         };
         let first = numbers[layout.first];
-        let count = numbers[layout.first..].iter().zip(first..).take_while(|(row, expected)| *row == expected).count();
+        let count = numbers[layout.first..]
+            .iter()
+            .zip(first..)
+            .take_while(|(row, expected)| *row == expected)
+            .count();
         let filled: usize = self.rows.range(first..).take(count).map(|(_, row)| row.len()).sum();
         if count * layout.columns.len() > MOST_EMPTY * filled {
-            let found = format!("{count} rows of {} columns with {filled} cells in them", layout.columns.len());
+            let found = format!(
+                "{count} rows of {} columns with {filled} cells in them",
+                layout.columns.len()
+            );
             return Err(Fault::damaged(self.place(first, 0), found, "a table that is filled"));
         }
         let filled = self.fill(layout.columns, first, count)?;
@@ -213,13 +254,22 @@ fn cell_name(row: u32, mut column: u32) -> String {
 /// Sheet, row and column of a reference such as `'Front axle'!$C$3`.
 fn single_cell(reference: &str) -> Option<(String, u32, u32)> {
     let (sheet, cell) = reference.rsplit_once('!')?;
-    let sheet = sheet.strip_prefix('\'').and_then(|sheet| sheet.strip_suffix('\'')).unwrap_or(sheet);
+    let sheet = sheet
+        .strip_prefix('\'')
+        .and_then(|sheet| sheet.strip_suffix('\''))
+        .unwrap_or(sheet);
     let cell = cell.replace('$', "");
     let digits = cell.find(|c: char| c.is_ascii_digit())?;
     let (letters, row) = cell.split_at(digits);
     let value = |letter: u8| letter.is_ascii_uppercase().then(|| u32::from(letter - b'A') + 1);
-    let column = letters.bytes().try_fold(0_u32, |all, letter| all.checked_mul(26)?.checked_add(value(letter)?))?;
-    Some((sheet.replace("''", "'"), row.parse::<u32>().ok()?.checked_sub(1)?, column.checked_sub(1)?))
+    let column = letters
+        .bytes()
+        .try_fold(0_u32, |all, letter| all.checked_mul(26)?.checked_add(value(letter)?))?;
+    Some((
+        sheet.replace("''", "'"),
+        row.parse::<u32>().ok()?.checked_sub(1)?,
+        column.checked_sub(1)?,
+    ))
 }
 
 #[cfg(test)]
@@ -228,9 +278,18 @@ mod tests {
 
     #[test]
     fn cells_are_named_as_excel_names_them() {
-        for (row, column, name) in [(0, 0, "A1"), (6, 25, "Z7"), (0, 26, "AA1"), (99, 701, "ZZ100"), (0, 702, "AAA1")] {
+        for (row, column, name) in [
+            (0, 0, "A1"),
+            (6, 25, "Z7"),
+            (0, 26, "AA1"),
+            (99, 701, "ZZ100"),
+            (0, 702, "AAA1"),
+        ] {
             assert_eq!(cell_name(row, column), name);
-            assert_eq!(single_cell(&format!("'a b'!${name}")), Some(("a b".into(), row, column)));
+            assert_eq!(
+                single_cell(&format!("'a b'!${name}")),
+                Some(("a b".into(), row, column))
+            );
         }
         assert_eq!(single_cell("Vehicle!$A$6:$D$86"), None);
     }

@@ -89,7 +89,15 @@ fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
         _ => {
             for _ in 0..=random.below(4) {
                 let at = place(random, bytes.len());
-                let values = [0, 1, 0x7f, 0x80, 0xff, random.below(256) as u8, bytes[at].wrapping_add(1)];
+                let values = [
+                    0,
+                    1,
+                    0x7f,
+                    0x80,
+                    0xff,
+                    random.below(256) as u8,
+                    bytes[at].wrapping_add(1),
+                ];
                 let value = values[random.below(values.len())];
                 let end = (at + [1, 1, 2, 4, 8][random.below(5)]).min(bytes.len());
                 bytes[at..end].fill(value);
@@ -113,41 +121,82 @@ fn survives(names: &[&str], mutations: usize) {
             let held = catch_unwind(|| memory_of(&bytes));
             let held = held.unwrap_or_else(|_| panic!("mutation {at} of {name} made the reader panic"));
             let bound = (PER_BYTE * bytes.len() + ALWAYS) as isize;
-            assert!(held <= bound, "mutation {at} of {name}: {held} bytes for a file of {}", bytes.len());
+            assert!(
+                held <= bound,
+                "mutation {at} of {name}: {held} bytes for a file of {}",
+                bytes.len()
+            );
         }
     }
 }
 
 #[test]
 fn tables_of_text() {
-    survives(&["table/kc_semicolon_comma_latin1.csv", "table/rig_units_row_bom_crlf.csv"], 3000);
+    survives(
+        &[
+            "table/kc_semicolon_comma_latin1.csv",
+            "table/rig_units_row_bom_crlf.csv",
+        ],
+        3000,
+    );
 }
 
 #[test]
 fn mdf() {
-    let plain = ["mdf/plain_3groups.mf4", "mdf/v330_3groups.mdf", "mdf/special_text_invalid_bits.mf4"];
+    let plain = [
+        "mdf/plain_3groups.mf4",
+        "mdf/v330_3groups.mdf",
+        "mdf/special_text_invalid_bits.mf4",
+    ];
     survives(&plain, 4000);
     survives(&["mdf/other_writer_dz.mf4", "mdf/dz_transposed_3groups.mf4"], 1000);
 }
 
 #[test]
 fn uff() {
-    survives(&["uff/151_164_58_58b.uff", "uff/binary8byte_58b.uff", "uff/time_history_partial_line.uff"], 3000);
+    survives(
+        &[
+            "uff/151_164_58_58b.uff",
+            "uff/binary8byte_58b.uff",
+            "uff/time_history_partial_line.uff",
+        ],
+        3000,
+    );
 }
 
 #[test]
 fn rpc() {
-    survives(&["rpc/short_4frames_group.tim", "rpc/drive_spaces_zero_channel.drv", "rpc/float_1frame_group.rpc"], 3000);
+    survives(
+        &[
+            "rpc/short_4frames_group.tim",
+            "rpc/drive_spaces_zero_channel.drv",
+            "rpc/float_1frame_group.rpc",
+        ],
+        3000,
+    );
 }
 
 #[test]
 fn tdms() {
-    survives(&["tdms/waveform_2segments.tdms", "tdms/int16_linear_scale_time_channel.tdms"], 3000);
+    survives(
+        &[
+            "tdms/waveform_2segments.tdms",
+            "tdms/int16_linear_scale_time_channel.tdms",
+        ],
+        3000,
+    );
 }
 
 #[test]
 fn mat() {
-    survives(&["mat/dspace_v6.mat", "mat/matlab65_struct_v6.mat", "mat/labcontrol_ensaio_A1.mat"], 3000);
+    survives(
+        &[
+            "mat/dspace_v6.mat",
+            "mat/matlab65_struct_v6.mat",
+            "mat/labcontrol_ensaio_A1.mat",
+        ],
+        3000,
+    );
     survives(&["mat/testlab_v73.mat", "mat/matlab74_double_v73.mat"], 3000);
 }
 
@@ -191,11 +240,17 @@ fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
 
     let file = sample("rpc/short_4frames_group.tim");
     let frames = find(&file, b"FRAMES\0") + 32;
-    refused(&claiming("rpc/short_4frames_group.tim", frames, b"2441406\0"), &["2441406 frames", "are there", "cut off"]);
+    refused(
+        &claiming("rpc/short_4frames_group.tim", frames, b"2441406\0"),
+        &["2441406 frames", "2 groups are whole", "cut off"],
+    );
 
     let file = sample("uff/binary8byte_58b.uff");
     let count = find(&file, b"         4       250") + 10;
-    refused(&claiming("uff/binary8byte_58b.uff", count, b"1250000000"), &["10000000000 bytes", "channel `NONE`"]);
+    refused(
+        &claiming("uff/binary8byte_58b.uff", count, b"1250000000"),
+        &["10000000000 bytes", "channel `NONE`"],
+    );
 
     let file = sample("tdms/waveform_2segments.tdms");
     let length = file.len() - 56000 - 28;
@@ -207,12 +262,18 @@ fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
 
     let file = sample("mat/matlab65_struct_v6.mat");
     let field = find(&file, &[9, 0, 0, 0, 24, 0, 0, 0]);
-    refused(&claiming("mat/matlab65_struct_v6.mat", field + 4, &many.to_le_bytes()[..4]), &["1250000000 bytes", "teststruct"]);
+    refused(
+        &claiming("mat/matlab65_struct_v6.mat", field + 4, &many.to_le_bytes()[..4]),
+        &["1250000000 bytes", "doublefield"],
+    );
 
     let file = sample("mat/matlab74_double_v73.mat");
     let size = 9_u64.to_le_bytes();
     let dimension = find(&file, &[size, 1_u64.to_le_bytes()].concat());
-    refused(&claiming("mat/matlab74_double_v73.mat", dimension, &many.to_le_bytes()), &["1250000000", "testdouble"]);
+    refused(
+        &claiming("mat/matlab74_double_v73.mat", dimension, &many.to_le_bytes()),
+        &["10000000000 bytes", "testdouble"],
+    );
 }
 
 #[test]

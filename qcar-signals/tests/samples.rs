@@ -85,7 +85,7 @@ fn agree_in_channel(file: &str, channel: &Json, recording: &Recording) {
     }
     let signal = recording
         .signal(name.trim_matches('"'))
-        .unwrap_or_else(|fault| panic!("{file}{fault}"));
+        .unwrap_or_else(|fault| panic!("{file}: {fault}"));
     assert_eq!(
         signal.unit,
         channel["unit"].as_str().unwrap().trim_matches('"'),
@@ -222,7 +222,11 @@ fn named_cells_of_a_workbook_are_single_values() {
         let name = cell["name"].as_str().unwrap();
         let scalar = recording.scalars.iter().find(|scalar| scalar.name == name).unwrap();
         assert_eq!(scalar.unit, cell["unit"].as_str().unwrap(), "{name}");
-        assert_eq!(scalar.place, Place::Sheet("Vehicle".into(), cell["cell"].as_str().unwrap().into()), "{name}");
+        assert_eq!(
+            scalar.place,
+            Place::Sheet("Vehicle".into(), cell["cell"].as_str().unwrap().into()),
+            "{name}"
+        );
         let value = match (&cell["value"], name) {
             (Json::Number(number), _) => Value::Number(number.as_f64().unwrap()),
             (Json::String(text), _) => Value::Text(text.clone()),
@@ -319,5 +323,105 @@ fn single_values_of_a_mat_file_stand_beside_its_channels() {
     for (name, value) in expected.as_object().unwrap() {
         let scalar = recording.scalars.iter().find(|scalar| scalar.name == *name).unwrap();
         assert_eq!(scalar.value, Value::Number(value.as_f64().unwrap()), "{name}");
+    }
+}
+
+/// The samples of a group, stored sample by sample instead of channel by channel.
+#[test]
+fn multiplexed_groups_hold_the_same_as_demultiplexed_ones() {
+    let file = fs::read(samples().join("rpc/short_4frames_group.tim")).unwrap();
+    let (channels, points) = (4, 2048);
+    let start = file.len() - 2 * channels * points * 2;
+    let mut multiplexed = file[..start].to_vec();
+    for group in file[start..].chunks_exact(channels * points * 2) {
+        for (point, channel) in (0..points).flat_map(|point| (0..channels).map(move |channel| (point, channel))) {
+            let at = 2 * (channel * points + point);
+            multiplexed.extend_from_slice(&group[at..at + 2]);
+        }
+    }
+    let key = multiplexed
+        .windows(9)
+        .position(|window| window == b"TIME_TYPE")
+        .unwrap();
+    multiplexed[key + 32..key + 43].copy_from_slice(b"MULT_RESP\0\0");
+    assert_eq!(recognise(&multiplexed), recognise(&file));
+}
+
+#[test]
+fn a_channel_that_two_groups_have_needs_its_group() {
+    // The channel of the second group gets the name of one of the first.
+    let mut file = fs::read(samples().join("mdf/plain_3groups.mf4")).unwrap();
+    let name = file.windows(13).position(|window| window == b"spring_travel").unwrap();
+    file[name..name + 13].copy_from_slice(b"body_left_z\0\0");
+    let recording = recognise(&file).unwrap();
+    let fault = recording.signal("body_left_z").unwrap_err().to_string();
+    says(
+        &fault,
+        &[
+            "2 channels",
+            "`rig_500Hz/body_left_z`",
+            "`string_pot_100Hz/body_left_z`",
+            "`group/name`",
+        ],
+    );
+    assert_eq!(recording.signal("string_pot_100Hz/body_left_z").unwrap().unit, "mm");
+    let fault = recording.signal("wheel").unwrap_err().to_string();
+    says(&fault, &["no channel of this name", "qcar inspect"]);
+}
+
+/// Dialects of one table: each line is a separator, a decimal sign and what stands around.
+#[test]
+fn a_table_is_the_same_in_every_dialect() {
+    let rows = [[0.0, 1.5, -2.25], [0.01, 1.625, -2.5], [0.02, 1200.5, -2.75]];
+    let written = |separator: &str, decimal: &str, end: &str| {
+        let row = |row: &[f64; 3]| row.map(|value| value.to_string().replace('.', decimal)).join(separator);
+        let mut lines = vec![["t", "a", "b"].join(separator), ["s", "g", "mm"].join(separator)];
+        lines.extend(rows.iter().map(row));
+        lines.join(end) + end
+    };
+    let expected = recognise(written(",", ".", "\n").as_bytes()).unwrap().signals;
+    assert_eq!(expected[0].samples, [1.5, 1.625, 1200.5]);
+    assert_eq!((expected[1].name.as_str(), expected[1].unit.as_str()), ("b", "mm"));
+    assert_eq!(expected[0].time.rate().map(f64::round), Some(100.0));
+    for separator in [";", "\t", "|", " "] {
+        for (decimal, end) in [(".", "\n"), (",", "\r\n")] {
+            let text = written(separator, decimal, end);
+            assert_eq!(recognise(text.as_bytes()).unwrap().signals, expected, "{text}");
+        }
+    }
+    let utf16: Vec<u8> = "\u{feff}"
+        .encode_utf16()
+        .chain(written(";", ",", "\n").encode_utf16())
+        .flat_map(u16::to_le_bytes)
+        .collect();
+    assert_eq!(recognise(&utf16).unwrap().signals, expected);
+    let headings = written(",", ".", "\n").replace("t,a,b\ns,g,mm", "t [s],a [g],b (mm)");
+    assert_eq!(recognise(headings.as_bytes()).unwrap().signals, expected);
+}
+
+#[test]
+fn a_cell_that_is_no_number_is_named() {
+    let cases = [
+        (
+            "t;a\n0;1,5\n1;2,5\n2;x\n",
+            vec!["line 4, column `a`", "`x`", "decimal comma"],
+        ),
+        ("t,a\n0,1.5\n1,2.5\n2\n", vec!["line 4", "1 columns", "2 columns"]),
+        (
+            "t,a\n0,1.5\n1,2.5\n0.5,2\n",
+            vec!["line 4, column `t`", "0.5 s after 1 s"],
+        ),
+        (
+            "t [fortnight],a\n0,1.5\n1,2.5\n",
+            vec!["column `t`", "`fortnight`", "s, ms, us"],
+        ),
+        (
+            "t;a\n0;1,5\n1;2.5\n",
+            vec!["`1,5`", "`2.5`", "line 3", "same decimal sign"],
+        ),
+        ("nothing\nto see\n", vec!["no row of numbers"]),
+    ];
+    for (table, parts) in cases {
+        says(&recognise(table.as_bytes()).unwrap_err().to_string(), &parts);
     }
 }
