@@ -1,11 +1,17 @@
 //! The door: which format a file is, by its content, and its channels.
 
 use std::fs;
+use std::io::Read as _;
 use std::path::Path;
+
+use flate2::read::MultiGzDecoder;
 
 use crate::error::{Fault, Place, Read, ReadError};
 use crate::signal::Recording;
 use crate::{csv, excel, mat, mdf, rpc, tdms, uff};
+
+/// What a file begins with that gzip packed.
+const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Reads a file of any format that this crate knows. The content decides which it is, not the file's ending.
 ///
@@ -25,11 +31,26 @@ pub fn read(file: &Path) -> Result<Recording, ReadError> {
     })
 }
 
-/// The same for the content of a file.
+/// The same for the content of a file, which gzip may have packed.
 ///
 /// # Errors
 /// As [`read`], without the file.
 pub fn recognise(bytes: &[u8]) -> Read<Recording> {
+    if !bytes.starts_with(GZIP) {
+        return unpacked(bytes);
+    }
+    let mut whole = Vec::new();
+    match MultiGzDecoder::new(bytes).read_to_end(&mut whole) {
+        Ok(_) => unpacked(&whole),
+        Err(error) => Err(Fault::cut_off(
+            Place::Byte(bytes.len() as u64),
+            format!("packed data that end with: {error}"),
+            "a whole .gz file",
+        )),
+    }
+}
+
+fn unpacked(bytes: &[u8]) -> Read<Recording> {
     if bytes.is_empty() {
         let remedy = "copy it again from where it was recorded";
         return Err(Fault::new(Place::File, "an empty file", "a measured file", remedy));
