@@ -74,7 +74,7 @@ pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -
         let run = campaign.runs.iter().find(|run| run.file == own.name);
         records.push(record(
             campaign,
-            run.expect("the evidence is of this campaign"),
+            (run.expect("the evidence is of this campaign"), &own.stimulus),
             simulated,
         )?);
     }
