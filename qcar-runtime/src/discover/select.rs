@@ -150,7 +150,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
-    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, progress)?;
+    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, least, progress);
     if std::env::var_os("QCAR_TELL").is_some() {
         eprintln!("race {:.2} s", begun.elapsed().as_secs_f64());
     }
