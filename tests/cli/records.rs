@@ -362,13 +362,14 @@ fn an_input_between_two_masses_has_a_gain_and_what_is_not_recorded_rests() {
         ];
         columns.push(("z_other", mass([0.0; 2], |t| -GAIN * push(t))));
         if blown > 0.0 {
-            columns.push(("wind", of(&wind)));
+            columns.push(("wind", of(&|t| blown * wind(t))));
         }
         columns
     };
     let runs = [run(1.0), run(0.0), run(2.0)];
     let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
-    campaign(folder.path(), "./pair.axle", "", "band_limited = false", &runs);
+    let gain = parameter("gain", 0.9, "1", "range = [0.2, 5.0]\n");
+    campaign(folder.path(), "./pair.axle", &gain, "band_limited = false", &runs);
     let manifest = folder.path().join("campaign.toml");
     let more = "[[channel]]\nname = \"z_other\"\nlocation = \"other\"\nside = \"centre\"\naxis = \"z\"\n\
                 quantity = \"displacement\"\nunit = \"m\"\n\n[[channel]]\nname = \"wind\"\nlocation = \"g\"\n\
