@@ -150,7 +150,7 @@ fn note(guessed: &[String]) -> String {
         [] => String::new(),
         names => format!(
             "\nnote: at the campaign's start values: {}; what depends on them is as good as these. `qcar discover --out` \
-             finds those that cleat runs with the role fit determine\n",
+             finds those that runs with the role fit determine\n",
             names.join(", ")
         ),
     }
