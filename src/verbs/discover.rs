@@ -29,6 +29,8 @@ use crate::workshop::Bench;
 
 // Where something would explain the gap.
 pub(crate) mod places;
+// What a model leaves of each sensor.
+mod left;
 // The answer as text and JSON.
 pub(crate) mod render;
 // The gap as a figure.

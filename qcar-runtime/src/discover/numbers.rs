@@ -18,6 +18,10 @@ pub const CORRELATION_OCTAVES: f64 = 0.7;
 /// share of draws (Chernoff's bound of the χ² distribution with one degree of freedom, summed over the candidates).
 pub const FALSE_ALARMS: f64 = 0.01;
 
+/// Odds of a further effect beside one that is there, before any measurement: one in ten of the axles of a study has two
+/// (DESIGN, section 7: two effects at once are the rare and hard case).
+pub const FURTHER: f64 = 0.1;
+
 /// Effects of a set. Three at once are what measured campaigns were ever explained by (DESIGN of the search, section 2).
 pub const MOST_EFFECTS: usize = 3;
 

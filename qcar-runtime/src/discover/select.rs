@@ -20,7 +20,7 @@ use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
 use super::explain::Setting;
-use super::numbers::{FALSE_ALARMS, MOST_EFFECTS};
+use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
 use super::search::{Discovery, News, Progress};
 use crate::campaign::Role;
@@ -166,7 +166,12 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         let Some(assembly) = set.assembly.with(candidate) else {
             continue;
         };
-        let prior = set.log_prior + log_prior(candidate, &candidates);
+        let further = if set.assembly.effects().is_empty() {
+            1.0
+        } else {
+            FURTHER
+        };
+        let prior = set.log_prior + log_prior(candidate, &candidates) + further.ln();
         sets.push(Set::new(assembly, explanation, prior));
     }
     for own in &mut sets {

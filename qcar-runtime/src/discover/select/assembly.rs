@@ -37,6 +37,13 @@ pub struct Placed {
     pub taken: Taken,
 }
 
+impl Placed {
+    /// Its name and place.
+    pub fn name(&self) -> (&str, &str) {
+        (&self.effect, &self.at)
+    }
+}
+
 /// A model that can be fitted: that of an assembly, or of a candidate beside it.
 pub struct Hypothesis<'a> {
     model: &'a dyn Model,
