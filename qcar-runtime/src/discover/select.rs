@@ -6,8 +6,10 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
-// and how probable each set is.
+// how probable each set is,
 mod verdict;
+// and which effects would have been seen.
+mod visible;
 
 use std::sync::Arc;
 
@@ -15,6 +17,7 @@ use assembly::{Assembly, Place, Placed};
 use race::{Fidelity, race};
 use screen::screen;
 use verdict::{Set, judged};
+use visible::visible;
 
 use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
@@ -22,7 +25,7 @@ use super::evidence::{Evidence, Stimulus};
 use super::explain::Setting;
 use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
-use super::search::{Discovery, News, Progress};
+use super::search::{Discovery, News, Progress, Verdict};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -56,7 +59,13 @@ pub fn discover(
     }
     let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress)?;
     sets.extend(without);
-    Ok(judged(sets, evidence))
+    let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
+    let mut discovery = judged(sets, evidence);
+    if discovery.verdict == Verdict::None {
+        let steady = evidence.less(&refit.unsteady).hurried();
+        discovery.visible = visible(&assembly, &refit, &looks(&steady).fine);
+    }
+    Ok(discovery)
 }
 
 /// The most probable set.

@@ -84,7 +84,7 @@ pub fn screen(
 }
 
 /// The present fit, linearised: residuals, and what all unknowns could imitate.
-struct Tangent {
+pub struct Tangent {
     /// In units of the noise, those of the priors behind those of the data.
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
@@ -112,7 +112,8 @@ struct Step {
 }
 
 impl Tangent {
-    fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
+    /// Of a fit.
+    pub fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
         let (residual, jacobian) = refit.linearised(assembly.model(), evidence);
         let known = refit
             .discrepancy_of(evidence)
@@ -154,6 +155,15 @@ impl Tangent {
         gain.is_finite().then_some(Step { scale, unknowns, gain })
     }
 
+    /// The sum of squares of a change of the residuals of the data that nothing else can imitate.
+    pub fn trace(&self, there: &DVector<f64>) -> Option<f64> {
+        let mut change = there - self.residual.rows(0, self.data);
+        self.discrepancy.whiten(change.as_mut_slice());
+        let along = self.white_jacobian.rows(0, self.data).tr_mul(&change);
+        let imitated = self.hessian.as_ref()?.solve(&along);
+        Some(change.norm_squared() - along.dot(&imitated))
+    }
+
     /// What the present unknowns and the discrepancy gain by themselves on this part of the evidence.
     fn gain_alone(&self) -> f64 {
         let Some(hessian) = &self.hessian else { return 0.0 };
@@ -183,15 +193,23 @@ impl Tangent {
 
 /// How far each parameter of a candidate is towards the ends of its range: by place among its parameters.
 #[derive(Clone, Debug)]
-struct Point {
+pub struct Point {
     shifts: Vec<f64>,
     /// Factor of the strength.
     scale: f64,
 }
 
 impl Point {
+    /// The start of every parameter.
+    pub fn usual(candidate: &Candidate) -> Self {
+        Self {
+            shifts: vec![0.0; candidate.parameters().len()],
+            scale: 1.0,
+        }
+    }
+
     /// The place in which the candidate stands at this point beside the present fit.
-    fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
+    pub fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
         let mut there = here.clone();
         let parameters = candidate.parameters().iter().zip(&self.shifts);
         let values: BTreeMap<String, f64> = parameters

@@ -5,7 +5,7 @@ use crate::campaign::Role;
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::Explanation;
-use crate::discover::numbers::CERTAIN;
+use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY};
 use crate::discover::search::{Discovery, Finding, Probable, Rival, Verdict};
 
 /// A set of effects with its fit.
@@ -159,6 +159,7 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     let all = || credible.iter().map(|&place| probability(place)).fold(0.0, f64::max);
     Discovery {
         verdict: match (findings.is_empty(), alike) {
+            (true, _) if is_missing(&sets[best]) => Verdict::Unknown,
             (true, _) => Verdict::None,
             (false, 0) => Verdict::Found,
             (false, _) => Verdict::Class,
@@ -179,6 +180,14 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
         after,
         visible: Vec::new(),
     }
+}
+
+/// True where a model leaves more of any sensor than models of its kind do.
+fn is_missing(set: &Set) -> bool {
+    let discrepancy = set.explanation.refit.discrepancy.iter();
+    discrepancy
+        .flat_map(|own| own.missed())
+        .any(|missed| missed.tau > EXPECTED_DISCREPANCY)
 }
 
 /// The smallest list of sets that holds [`CERTAIN`] of the probability, without those that only add to another one of it. It is the
