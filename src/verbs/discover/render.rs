@@ -75,8 +75,8 @@ struct Seen<'a> {
 
 #[derive(Serialize)]
 struct Evidence {
-    /// Fall of the sum of squares of the fitted runs.
-    chi2_lowered_by: f64,
+    /// Rise of the logarithm of the evidence with all that was found; of a search by rules the fall of the sum of squares.
+    log_evidence: f64,
     /// Share of the excess of the held-out gap.
     gap_closed: f64,
     /// Of what any effect at this place could explain of the sweeps, the share that is explained; `null` of several effects.
@@ -191,7 +191,7 @@ fn effect<'a>(
             .collect(),
         units,
         evidence: Evidence {
-            chi2_lowered_by: finding.evidence,
+            log_evidence: finding.evidence,
             gap_closed: finding.closed,
             of_ceiling: places::of_ceiling(of, &finding.at).filter(|_| alone),
         },
@@ -435,13 +435,12 @@ fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
         let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
     }
     for rival in finding.rivals.iter().take(4) {
-        let when = if rival.early { ", when it was left behind" } else { "" };
         let _ = writeln!(
             out,
-            "behind it by {}: {} at {}{when}",
-            number(rival.behind, 3),
+            "less likely: {} at {}, lower by {} in log evidence",
             rival.effect,
-            rival.at
+            rival.at,
+            number(rival.behind, 3)
         );
     }
     out

@@ -5,7 +5,7 @@ use crate::campaign::Role;
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::Explanation;
-use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY};
+use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY, EXPLAINED};
 use crate::discover::search::{Discovery, Finding, Probable, Rival, Verdict};
 
 /// A set of effects with its fit.
@@ -109,8 +109,11 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
 pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     let answers = answers(&sets);
     let credible = credible(&sets, &answers);
-    let best = predictive(&sets, credible[0], evidence);
     let before = sets[0].explanation.clone();
+    let predictive = predictive(&sets, credible[0], evidence);
+    // What explains less than most of the gap is not the answer, however probable beside the others.
+    let explains = closed(&before, &sets[predictive].explanation, evidence) >= EXPLAINED;
+    let best = if explains { predictive } else { 0 };
     let after = sets[best].explanation.clone();
     let probability = |place: usize| {
         let holds = |own: &&Answer| is_part(&sets[place], &sets[own.set]);
