@@ -321,8 +321,8 @@ pub(super) fn text(of: &Answer) -> String {
     out += &gaps.text();
     if let Some(probability) = of.discovery.probability {
         let _ = writeln!(out, "\nprobability of this answer: {probability:.3}");
-        out += &candidates(&of.discovery.candidates);
     }
+    out += &candidates(&of.discovery.candidates);
     out += &remaining(of);
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         out += &format!("\n{}{}", choice(of, place), described(finding, units));

@@ -115,10 +115,6 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     let explains = closed(&before, &sets[predictive].explanation, evidence) >= EXPLAINED;
     let best = if explains { predictive } else { 0 };
     let after = sets[best].explanation.clone();
-    let probability = |place: usize| {
-        let holds = |own: &&Answer| is_part(&sets[place], &sets[own.set]);
-        answers.iter().filter(holds).map(|own| own.probability).sum()
-    };
     let finding = |set: &Set, own: &Placed| Finding {
         effect: own.effect.clone(),
         at: own.at.clone(),
@@ -159,23 +155,27 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
                 .map(|own| finding(&sets[best], own)),
         );
     }
-    let all = || credible.iter().map(|&place| probability(place)).fold(0.0, f64::max);
+    let verdict = match (findings.is_empty(), alike) {
+        (true, _) if is_missing(&sets[best]) => Verdict::Unknown,
+        (true, _) => Verdict::None,
+        (false, 0) => Verdict::Found,
+        (false, _) => Verdict::Class,
+    };
+    let of_answer = |wanted: &dyn Fn(usize) -> bool| -> f64 {
+        let wanted = answers.iter().filter(|own| wanted(own.set));
+        wanted.map(|own| own.probability).sum()
+    };
+    let probability = match verdict {
+        Verdict::None => Some(of_answer(&|set| set == 0)),
+        Verdict::Found => Some(of_answer(&|set| is_part(&sets[best], &sets[set]))),
+        Verdict::Class => Some(of_answer(&|set| {
+            credible.iter().any(|&own| is_part(&sets[own], &sets[set]))
+        })),
+        Verdict::Unknown => None,
+    };
     Discovery {
-        verdict: match (findings.is_empty(), alike) {
-            (true, _) if is_missing(&sets[best]) => Verdict::Unknown,
-            (true, _) => Verdict::None,
-            (false, 0) => Verdict::Found,
-            (false, _) => Verdict::Class,
-        },
-        probability: Some(match alike {
-            0 => probability(best),
-            _ => answers
-                .iter()
-                .filter(|own| credible.contains(&own.set))
-                .map(|own| own.probability)
-                .sum::<f64>()
-                .max(all()),
-        }),
+        verdict,
+        probability,
         candidates: candidates(&sets, &answers, &before, evidence),
         findings,
         alike,
