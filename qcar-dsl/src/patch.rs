@@ -8,8 +8,16 @@
 mod rewrite;
 // The model as a tree.
 mod base;
+// What expressions are worth in it.
+mod ask;
+// How far and how hard a place is moved.
+mod scale;
 // What a link connects.
 mod stretch;
+// What stands in its law.
+mod terms;
+// What the parts of a model do.
+mod roles;
 // Where an effect may apply.
 mod place;
 // What its names mean there.
@@ -22,9 +30,11 @@ mod start;
 // What it must say.
 mod rules;
 
+pub use ask::Values;
 pub(crate) use base::Base;
 use bind::Bindings;
-pub use start::Values;
+use roles::Roles;
+pub use scale::Scale;
 
 use crate::check::Checked;
 use crate::diagnostic::{Diagnostic, Report, effects};
@@ -163,7 +173,8 @@ impl Patch {
         } else {
             &forms
         };
-        let places = place::fitting(&Base::of(model), &self.effect.pattern).into_iter();
+        let base = Base::of(model);
+        let places = place::fitting(&base, &Roles::of(&base, values), &self.effect.pattern).into_iter();
         places
             .flat_map(|place| {
                 forms
@@ -203,7 +214,8 @@ impl Patch {
     }
 
     fn tree(&self, base: &Base, label: &str, values: Values) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
-        let places = place::fitting(base, &self.effect.pattern);
+        let roles = Roles::of(base, values);
+        let places = place::fitting(base, &roles, &self.effect.pattern);
         let Some(place) = places.iter().find(|place| place.label == label) else {
             let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
             let (name, model) = (&self.effect.name, &base.axle.name.text);
@@ -211,7 +223,8 @@ impl Patch {
                 name.span, &name.text, label, model, &labels,
             )));
         };
-        let mut patching = apply::apply(Bindings::new(base, &self.effect, place))?;
+        self.form_fits(base, place)?;
+        let mut patching = apply::apply(Bindings::new(base, &roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
             let [start, low, high] =
@@ -228,6 +241,17 @@ impl Patch {
         tidy::tidy(&mut tree);
         self.rename(&mut tree, label);
         Ok((tree, parameters, patching.signals))
+    }
+
+    /// What its form asks of the place beyond what all forms do.
+    fn form_fits(&self, base: &Base, place: &place::Place) -> Made<()> {
+        let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
+            return Ok(());
+        };
+        match form.terms.iter().find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term))) {
+            Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, &place.name))),
+            None => Ok(()),
+        }
     }
 
     /// Says in name and sentence of a model what has been added.

@@ -140,3 +140,18 @@ fn forms_of_one_name_are_refused() {
         "{report}"
     );
 }
+
+#[test]
+#[ignore]
+fn counts() {
+    for file in files("axles") {
+        let model = checked(&file);
+        let mut n = [0, 0];
+        for effect in effects() {
+            for patched in effect.candidates(&model, &|_| None) {
+                n[usize::from(!patched.signals.is_empty())] += 1;
+            }
+        }
+        println!("{} model {} sensor {}", model.name, n[0], n[1]);
+    }
+}

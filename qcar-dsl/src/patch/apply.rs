@@ -2,8 +2,8 @@
 
 use super::base::{Base, rolling};
 use super::bind::Bindings;
-use super::place::is_term;
 use super::rewrite::{self, binary};
+use super::terms::is_term;
 use super::{Made, Signal, SignalChange, refused};
 use crate::diagnostic::effects;
 use crate::source::Span;
@@ -243,8 +243,8 @@ impl<'a> Patching<'a> {
 
     /// The link that a name means, with its direction: the place's own where it is the variable.
     fn meant_link(&self, direction: &str, name: &Name) -> Made<(String, String)> {
-        let link = self.bindings.name(name);
-        let home = if link == self.bindings.place.name {
+        let link = &self.bindings.name_along(name, direction);
+        let home = if *link == self.bindings.place.name {
             &self.bindings.place.direction
         } else {
             direction

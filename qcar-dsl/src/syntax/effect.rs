@@ -37,6 +37,8 @@ pub struct Form {
     pub name: Name,
     /// The sentence.
     pub doc: String,
+    /// `with law`: terms that the link must have for this form.
+    pub terms: Vec<Name>,
     /// In the order of the text.
     pub body: Vec<Change>,
 }
@@ -53,7 +55,12 @@ pub struct Pattern {
     /// `named damper` or `named sf as subframe`: the names that a place may have, with what the catalogue calls it.
     /// Any name where there is none.
     pub names: Vec<(Name, Option<Name>)>,
-    /// `with spring, damper`: linear terms that the link must have.
+    /// `role suspension` or `role body | pivot as subframe`: what the place does, with what the catalogue calls it.
+    /// Anything where there is none.
+    pub roles: Vec<(Name, Option<Name>)>,
+    /// `on body`: the point that is the upper end of the link.
+    pub on: Option<Name>,
+    /// `with spring, damper`: linear terms that the link must have, `damping` of any law, or a `law` beside linear terms.
     pub terms: Vec<Name>,
     /// `given m_corner, pivot`: what the model must declare.
     pub given: Vec<Name>,
