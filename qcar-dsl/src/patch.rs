@@ -10,6 +10,8 @@ mod rewrite;
 mod base;
 // What expressions are worth in it.
 mod ask;
+// What all its parts do.
+mod watch;
 // How far and how hard a place is moved.
 mod scale;
 // What a link connects.
@@ -35,6 +37,7 @@ pub(crate) use base::Base;
 use bind::Bindings;
 use roles::Roles;
 pub use scale::Scale;
+pub use watch::watched;
 
 use crate::check::Checked;
 use crate::diagnostic::{Diagnostic, Report, effects};
@@ -235,11 +238,18 @@ impl Patch {
                 expressions: [start?, low?, high?],
             });
         }
-        let (parameters, declared) = start::evaluate(base, &asked, values)?.into_iter().unzip();
+        let (parameters, declared): (Vec<NewParameter>, Vec<_>) =
+            start::evaluate(base, &asked, values)?.into_iter().unzip();
         patching.declare_parameters(declared);
         let mut tree = patching.tree;
         tidy::tidy(&mut tree);
         self.rename(&mut tree, label);
+        // What this model has no use for.
+        let used = |own: &NewParameter| {
+            let sensed = patching.signals.iter().any(|signal| signal.parameter == own.name);
+            sensed || tree.global(&own.name).is_some()
+        };
+        let parameters = parameters.into_iter().filter(used).collect();
         Ok((tree, parameters, patching.signals))
     }
 
@@ -248,7 +258,11 @@ impl Patch {
         let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
             return Ok(());
         };
-        match form.terms.iter().find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term))) {
+        match form
+            .terms
+            .iter()
+            .find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term)))
+        {
             Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, &place.name))),
             None => Ok(()),
         }

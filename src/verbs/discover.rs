@@ -109,6 +109,7 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let bench = bench.measured(&evidence);
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),

@@ -148,7 +148,11 @@ fn list(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<Name>> {
 }
 
 fn terms(tokens: &mut Tokens) -> Parsed<Vec<Name>> {
-    list(tokens, "`spring`, `damper`, `inerter`, `damping` or `law`", "with spring, damper")
+    list(
+        tokens,
+        "`spring`, `damper`, `inerter`, `damping` or `law`",
+        "with spring, damper",
+    )
 }
 
 /// `named body | sf as subframe`
@@ -251,8 +255,16 @@ fn replace(tokens: &mut Tokens) -> Parsed<Change> {
     };
     if tokens.take_word("by") {
         let by = expression(tokens)?;
+        let rolling = if tokens.take_word("rolling") {
+            Some(expression(tokens)?)
+        } else {
+            None
+        };
         tokens.expect(";", POINT)?;
-        return Ok(Change::ReplacePoint { point: what, of, by });
+        return Ok(match of {
+            Some(of) if what.to_string() == "s" => Change::ReplaceStretch { of, by, rolling },
+            of => Change::ReplacePoint { point: what, of, by },
+        });
     }
     match (what.names.as_slice(), of) {
         ([term], Some(link)) => Ok(Change::ReplaceTerm(term.clone(), link, law_block(tokens, TERM)?)),

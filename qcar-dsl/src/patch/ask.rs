@@ -50,7 +50,9 @@ pub fn numbers(base: &Base, asked: &[Expression], values: Values) -> Vec<f64> {
         let own = definitions.find(|definition| definition.name == name(place))?;
         Some(value(&model, own.value, values))
     };
-    (0..asked.len()).map(|place| answer(place).unwrap_or(f64::NAN)).collect()
+    (0..asked.len())
+        .map(|place| answer(place).unwrap_or(f64::NAN))
+        .collect()
 }
 
 /// The value of a parameter: what somebody knows, its default, or the middle of its range.

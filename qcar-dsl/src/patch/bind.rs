@@ -138,7 +138,11 @@ impl<'a> Bindings<'a> {
     /// A reference value: of the place, as it is seen from the point of the pattern; the force of a mass is its inertia's.
     fn scale(&self, direction: &str, name: &str, scale: Scale) -> Expression {
         if let (Scale::Force, Some(mass)) = (scale, self.mass(direction, name)) {
-            return binary(Operator::Multiply, mass, named(&Scale::Acceleration.name(direction, name)));
+            return binary(
+                Operator::Multiply,
+                mass,
+                named(&Scale::Acceleration.name(direction, name)),
+            );
         }
         let own = named(&scale.name(direction, name));
         let lever = self.lever.as_ref().filter(|_| name == self.place.name);

@@ -26,7 +26,9 @@ pub fn fitting(base: &Base, roles: &Roles, pattern: &Pattern) -> Vec<Place> {
             continue;
         }
         for name in candidates(direction, pattern) {
-            let Some(called) = called(roles, along, pattern, &name) else { continue };
+            let Some(called) = called(roles, along, pattern, &name) else {
+                continue;
+            };
             if !is_on(base, roles, along, pattern, &name) {
                 continue;
             }

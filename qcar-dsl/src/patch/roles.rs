@@ -47,7 +47,11 @@ impl Roles {
             let along = direction.name.text.clone();
             let on_tyre = upper(base, &along, tyre).map(|name| base.pointed_at(&along, &name));
             roles.along = Some(along.clone());
-            roles.body.extend(masses.heaviest(&along, on_tyre.as_deref()).map(|body| (along.clone(), body)));
+            roles.body.extend(
+                masses
+                    .heaviest(&along, on_tyre.as_deref())
+                    .map(|body| (along.clone(), body)),
+            );
             roles.wheel = on_tyre.map(|mass| carried(base, direction, mass, &masses, roles.body.get(&along)));
         }
         for direction in base.directions() {
@@ -76,6 +80,10 @@ impl Roles {
                     held.len() == 2 && held.iter().any(|end| self.hanging.contains(end))
                 });
                 own.next().map(|link| link.name.text.clone())
+            }
+            "wheel_bushing" => {
+                let mut own = links(base.direction(direction)?).map(|link| &link.name.text);
+                own.find(|link| self.is_link(direction, link, word)).cloned()
             }
             _ => None,
         }
@@ -137,7 +145,10 @@ impl Roles {
         }
         if ends.contains(&wheel) {
             let reached = reached(base, direction, &body, &|_, held| held.contains(&wheel));
-            return ends.iter().any(|end| *end != wheel && reached.contains(end)).then_some("suspension");
+            return ends
+                .iter()
+                .any(|end| *end != wheel && reached.contains(end))
+                .then_some("suspension");
         }
         if ends.len() < 2 {
             return None;
@@ -148,7 +159,11 @@ impl Roles {
             return Some("hanger");
         }
         let carries = lower(base, along, link).map(|name| base.pointed_at(along, &name)) == self.pivot;
-        Some(if carries && self.pivot.is_some() { "pivot_mount" } else { "mount" })
+        Some(if carries && self.pivot.is_some() {
+            "pivot_mount"
+        } else {
+            "mount"
+        })
     }
 }
 
@@ -168,17 +183,27 @@ impl Masses {
         let expressions: Vec<Expression> = all.iter().map(|(.., mass)| mass.clone()).collect();
         let weights = numbers(base, &expressions, values);
         let weighed = all.into_iter().zip(weights);
-        Masses(weighed.map(|((direction, name, _), weight)| (direction, name, weight)).collect())
+        Masses(
+            weighed
+                .map(|((direction, name, _), weight)| (direction, name, weight))
+                .collect(),
+        )
     }
 
     fn weight(&self, direction: &str, name: &str) -> Option<f64> {
-        let own = self.0.iter().find(|(along, own, _)| along == direction && own == name)?;
+        let own = self
+            .0
+            .iter()
+            .find(|(along, own, _)| along == direction && own == name)?;
         Some(own.2)
     }
 
     /// The heaviest mass of a direction but one; of equal ones, and of those that nobody knows, the first.
     fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
-        let others = self.0.iter().filter(|(along, name, _)| along == direction && Some(name.as_str()) != but);
+        let others = self
+            .0
+            .iter()
+            .filter(|(along, name, _)| along == direction && Some(name.as_str()) != but);
         let heavier = |best: Option<&'_ (String, String, f64)>, own: &(String, String, f64)| {
             best.is_none_or(|best| own.2 > best.2 || best.2.is_nan() && !own.2.is_nan())
         };
@@ -206,7 +231,11 @@ fn carried(base: &Base, direction: &Direction, mass: String, masses: &Masses, bo
         return mass;
     };
     let heavier = masses.weight(along, only) > masses.weight(along, &mass);
-    if heavier && Some(only) != body { only.clone() } else { mass }
+    if heavier && Some(only) != body {
+        only.clone()
+    } else {
+        mass
+    }
 }
 
 fn is_mass(base: &Base, direction: &str, point: &str) -> bool {
@@ -215,7 +244,12 @@ fn is_mass(base: &Base, direction: &str, point: &str) -> bool {
 }
 
 /// What is connected to a point by links but some.
-fn reached(base: &Base, direction: &Direction, from: &str, but: &dyn Fn(&Link, &BTreeSet<String>) -> bool) -> BTreeSet<String> {
+fn reached(
+    base: &Base,
+    direction: &Direction,
+    from: &str,
+    but: &dyn Fn(&Link, &BTreeSet<String>) -> bool,
+) -> BTreeSet<String> {
     let along = &direction.name.text;
     let joined: Vec<BTreeSet<String>> = links(direction)
         .map(|link| (link, held(base, along, link)))
@@ -259,8 +293,8 @@ fn is_tyre(direction: &Direction, link: &Link) -> bool {
     let mut found = false;
     names_in(&link.stretch, &mut |name| {
         let Some(last) = name.names.last() else { return };
-        found |= coordinates(direction)
-            .any(|own| own.name.text == last.text && matches!(own.kind, CoordinateKind::Road));
+        found |=
+            coordinates(direction).any(|own| own.name.text == last.text && matches!(own.kind, CoordinateKind::Road));
     });
     found
 }

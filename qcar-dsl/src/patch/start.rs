@@ -10,7 +10,9 @@ use super::scale::Scale;
 use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
 use crate::model::Model;
-use crate::syntax::{EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Statement};
+use crate::syntax::{
+    EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Statement,
+};
 use crate::units::Unit;
 
 /// A parameter of an effect with its expressions in the names of the model.

@@ -25,7 +25,9 @@ pub fn is_term(statement: &LawStatement, kind: &str) -> bool {
 pub fn has_terms(law: &[LawStatement], terms: &[Name]) -> bool {
     terms.iter().all(|term| match term.text.as_str() {
         "damping" => damps(law),
-        "law" => law.iter().any(|s| matches!(s, LawStatement::Force(_) | LawStatement::Use(_))),
+        "law" => law
+            .iter()
+            .any(|s| matches!(s, LawStatement::Force(_) | LawStatement::Use(_))),
         kind => law.iter().any(|statement| is_term(statement, kind)),
     })
 }

@@ -71,6 +71,10 @@ fn change_lines(change: &Change) -> Vec<String> {
             let of = of.as_ref().map_or(String::new(), |link| format!(" of {}", link.text));
             vec![format!("replace {point}{of} by {by};")]
         }
+        Change::ReplaceStretch { of, by, rolling } => {
+            let rolling = rolling.as_ref().map_or(String::new(), |by| format!(" rolling {by}"));
+            vec![format!("replace s of {} by {by}{rolling};", of.text)]
+        }
         Change::Remove(link) => vec![format!("remove {};", link.text)],
         Change::Direction { name, without, body } => {
             let without = worded(" without ", &texts(without), ", ");

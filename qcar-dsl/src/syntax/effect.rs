@@ -116,6 +116,15 @@ pub enum Change {
         /// What stands there instead.
         by: Expression,
     },
+    /// `replace s of l by 1.2 * s rolling 1.3 * s;`: what the law of a link takes for its stretch.
+    ReplaceStretch {
+        /// The link.
+        of: Name,
+        /// What stands for `s`.
+        by: Expression,
+        /// The same while a tyre rolls; nothing changes there where there is none.
+        rolling: Option<Expression>,
+    },
     /// `remove l;`
     Remove(Name),
     /// `direction x without sf { … }`: changes that are made where the place moves along this direction as well.
