@@ -35,6 +35,7 @@ mod rules;
 pub use ask::Values;
 pub(crate) use base::Base;
 use bind::Bindings;
+use place::Place;
 use roles::Roles;
 pub use scale::Scale;
 pub use watch::watched;
@@ -177,14 +178,13 @@ impl Patch {
             &forms
         };
         let base = Base::of(model);
-        let places = place::fitting(&base, &Roles::of(&base, values), &self.effect.pattern).into_iter();
-        places
-            .flat_map(|place| {
-                forms
-                    .iter()
-                    .filter_map(move |form| form.apply(model, &place.label, values).ok())
-            })
-            .collect()
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let at = |place: &Place| -> Vec<Patched> {
+            let made = forms.iter().map(|form| form.made(&base, &roles, place, values));
+            made.filter_map(Result::ok).collect()
+        };
+        places.iter().flat_map(at).collect()
     }
 
     /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
@@ -195,11 +195,27 @@ impl Patch {
     /// the patched model breaks.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
         let base = Base::of(model);
-        let patched = self.tree(&base, place, values).map_err(|diagnostics| Report {
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let Some(place) = places.iter().find(|own| own.label == place) else {
+            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
+            let (name, model) = (&self.effect.name, &base.axle.name.text);
+            let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
+            return Err(self.report(refused(mistake)));
+        };
+        self.made(&base, &roles, place, values)
+    }
+
+    fn report(&self, diagnostics: Refused) -> Report {
+        Report {
             sources: vec![self.source.clone()],
             diagnostics,
-        })?;
-        let (tree, parameters, signals) = patched;
+        }
+    }
+
+    fn made(&self, base: &Base, roles: &Roles, place: &Place, values: Values) -> Result<Patched, Report> {
+        let made = self.tree(base, roles, place, values);
+        let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
         let text = Source {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
@@ -207,27 +223,24 @@ impl Patch {
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
         Ok(Patched {
             effect: self.effect.name.text.clone(),
-            place: place.to_string(),
+            place: place.label.clone(),
             form: self.forms().next().map(str::to_string),
             model,
             parameters,
             signals,
-            comments: self.comments(place),
+            comments: self.comments(&place.label),
         })
     }
 
-    fn tree(&self, base: &Base, label: &str, values: Values) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
-        let roles = Roles::of(base, values);
-        let places = place::fitting(base, &roles, &self.effect.pattern);
-        let Some(place) = places.iter().find(|place| place.label == label) else {
-            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
-            let (name, model) = (&self.effect.name, &base.axle.name.text);
-            return Err(refused(effects::no_such_place(
-                name.span, &name.text, label, model, &labels,
-            )));
-        };
+    fn tree(
+        &self,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
         self.form_fits(base, place)?;
-        let mut patching = apply::apply(Bindings::new(base, &roles, &self.effect, place))?;
+        let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
             let [start, low, high] =
@@ -243,7 +256,7 @@ impl Patch {
         patching.declare_parameters(declared);
         let mut tree = patching.tree;
         tidy::tidy(&mut tree);
-        self.rename(&mut tree, label);
+        self.rename(&mut tree, &place.label);
         // What this model has no use for.
         let used = |own: &NewParameter| {
             let sensed = patching.signals.iter().any(|signal| signal.parameter == own.name);
@@ -254,7 +267,7 @@ impl Patch {
     }
 
     /// What its form asks of the place beyond what all forms do.
-    fn form_fits(&self, base: &Base, place: &place::Place) -> Made<()> {
+    fn form_fits(&self, base: &Base, place: &Place) -> Made<()> {
         let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
             return Ok(());
         };
