@@ -27,6 +27,8 @@ pub mod inertias;
 pub mod catalogue;
 // Effects that a model may miss.
 pub mod effects;
+// How far and how hard the parts of a model move in a campaign.
+pub mod scales;
 // Models with effects in them.
 pub mod workshop;
 // Dense and named matrices.

@@ -8,12 +8,14 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::difference::difference;
 use qcar_dsl::patch::{self, NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::Axis;
+use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::nuisance::Form;
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
 
 use crate::evaluated::Evaluated;
+use crate::scales::scales;
 
 /// A model on the bench, and the catalogue beside it.
 #[derive(Clone)]
@@ -32,6 +34,16 @@ impl Bench {
             model,
             catalogue,
             values,
+        }
+    }
+
+    /// The same with what the ranges of effects are measured by in a campaign.
+    pub fn measured(&self, evidence: &Evidence) -> Self {
+        let mut values = scales(&self.model, &self.values, evidence);
+        values.extend(self.values.iter().map(|(name, value)| (name.clone(), *value)));
+        Bench {
+            values: Arc::new(values),
+            ..self.clone()
         }
     }
 

@@ -8,8 +8,18 @@
 mod rewrite;
 // The model as a tree.
 mod base;
+// What expressions are worth in it.
+mod ask;
+// What all its parts do.
+mod watch;
+// How far and how hard a place is moved.
+mod scale;
 // What a link connects.
 mod stretch;
+// What stands in its law.
+mod terms;
+// What the parts of a model do.
+mod roles;
 // Where an effect may apply.
 mod place;
 // What its names mean there.
@@ -22,9 +32,14 @@ mod start;
 // What it must say.
 mod rules;
 
+pub use ask::Values;
 pub(crate) use base::Base;
 use bind::Bindings;
-pub use start::{ParameterRole, Values};
+use place::Place;
+use roles::Roles;
+pub use scale::Scale;
+pub use start::ParameterRole;
+pub use watch::watched;
 
 use crate::check::Checked;
 use crate::diagnostic::{Diagnostic, Report, effects};
@@ -165,14 +180,14 @@ impl Patch {
         } else {
             &forms
         };
-        let places = place::fitting(&Base::of(model), &self.effect.pattern).into_iter();
-        places
-            .flat_map(|place| {
-                forms
-                    .iter()
-                    .filter_map(move |form| form.apply(model, &place.label, values).ok())
-            })
-            .collect()
+        let base = Base::of(model);
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let at = |place: &Place| -> Vec<Patched> {
+            let made = forms.iter().map(|form| form.made(&base, &roles, place, values));
+            made.filter_map(Result::ok).collect()
+        };
+        places.iter().flat_map(at).collect()
     }
 
     /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
@@ -183,11 +198,27 @@ impl Patch {
     /// the patched model breaks.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
         let base = Base::of(model);
-        let patched = self.tree(&base, place, values).map_err(|diagnostics| Report {
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let Some(place) = places.iter().find(|own| own.label == place) else {
+            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
+            let (name, model) = (&self.effect.name, &base.axle.name.text);
+            let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
+            return Err(self.report(refused(mistake)));
+        };
+        self.made(&base, &roles, place, values)
+    }
+
+    fn report(&self, diagnostics: Refused) -> Report {
+        Report {
             sources: vec![self.source.clone()],
             diagnostics,
-        })?;
-        let (tree, parameters, signals) = patched;
+        }
+    }
+
+    fn made(&self, base: &Base, roles: &Roles, place: &Place, values: Values) -> Result<Patched, Report> {
+        let made = self.tree(base, roles, place, values);
+        let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
         let text = Source {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
@@ -195,25 +226,24 @@ impl Patch {
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
         Ok(Patched {
             effect: self.effect.name.text.clone(),
-            place: place.to_string(),
+            place: place.label.clone(),
             form: self.forms().next().map(str::to_string),
             model,
             parameters,
             signals,
-            comments: self.comments(place),
+            comments: self.comments(&place.label),
         })
     }
 
-    fn tree(&self, base: &Base, label: &str, values: Values) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
-        let places = place::fitting(base, &self.effect.pattern);
-        let Some(place) = places.iter().find(|place| place.label == label) else {
-            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
-            let (name, model) = (&self.effect.name, &base.axle.name.text);
-            return Err(refused(effects::no_such_place(
-                name.span, &name.text, label, model, &labels,
-            )));
-        };
-        let mut patching = apply::apply(Bindings::new(base, &self.effect, place))?;
+    fn tree(
+        &self,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
+        self.form_fits(base, place)?;
+        let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
             let expressions = start::expressions(declared).map(|e| patching.meaning(e));
@@ -223,12 +253,34 @@ impl Patch {
                 expressions: expressions.collect::<Made<_>>()?,
             });
         }
-        let (parameters, declared) = start::evaluate(base, &asked, values)?.into_iter().unzip();
+        let (parameters, declared): (Vec<NewParameter>, Vec<_>) =
+            start::evaluate(base, &asked, values)?.into_iter().unzip();
         patching.declare_parameters(declared);
         let mut tree = patching.tree;
         tidy::tidy(&mut tree);
-        self.rename(&mut tree, label);
+        self.rename(&mut tree, &place.label);
+        // What this model has no use for.
+        let used = |own: &NewParameter| {
+            let sensed = patching.signals.iter().any(|signal| signal.parameter == own.name);
+            sensed || tree.global(&own.name).is_some()
+        };
+        let parameters = parameters.into_iter().filter(used).collect();
         Ok((tree, parameters, patching.signals))
+    }
+
+    /// What its form asks of the place beyond what all forms do.
+    fn form_fits(&self, base: &Base, place: &Place) -> Made<()> {
+        let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
+            return Ok(());
+        };
+        match form
+            .terms
+            .iter()
+            .find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term)))
+        {
+            Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, &place.name))),
+            None => Ok(()),
+        }
     }
 
     /// Says in name and sentence of a model what has been added.

@@ -83,6 +83,10 @@ fn value(name: &str) -> Option<f64> {
         ("c_sf_x", 1500.0),
         ("k_pwt_x", 3e5),
         ("c_pwt_x", 600.0),
+        ("m_body", 2.0),
+        ("c_body", 3.0),
+        ("k_body", 50.0),
+        ("f_offset", 0.0),
     ];
     known.iter().find(|(own, _)| *own == name).map(|(_, value)| *value)
 }
@@ -194,7 +198,7 @@ fn vanished(patched: &Patched, nearly: bool) -> Option<Vec<(&str, f64)>> {
         ParameterRole::Strength { vanishes_at } if vanishes_at.is_infinite() => 1e8 * own.start,
         ParameterRole::Strength { vanishes_at: 0.0 } if nearly => 1e-6 * own.start,
         ParameterRole::Strength { vanishes_at } => vanishes_at,
-        _ => replaced(&own.name).unwrap_or(own.start),
+        _ => beside(patched, own),
     };
     let new = patched.parameters.iter().filter(|own| own.is_new);
     Some(new.map(|own| (own.name.as_str(), value(own))).collect())
@@ -207,9 +211,15 @@ fn vanishes_at(patched: &Patched) -> Option<f64> {
     })
 }
 
-/// What stands in the place of a coefficient of the model is what that is, at the wheel.
-fn replaced(name: &str) -> Option<f64> {
-    ["c0", "c_rebound", "c_compression"].contains(&name).then_some(1900.0)
+/// What another parameter is where nothing is left: one in the place of a coefficient of the model is what that is, at
+/// the wheel, and one of a second part leaves nothing of that.
+fn beside(patched: &Patched, own: &NewParameter) -> f64 {
+    match (patched.effect.as_str(), own.effect_name.as_str()) {
+        (_, "c0" | "c_rebound" | "c_compression") => 1900.0,
+        ("sliding_friction", "c_slide") => 0.0,
+        ("compliant_digressive_damper", "k_series") => 1e8 * own.start,
+        _ => own.start,
+    }
 }
 
 /// Rates of the base model's states are the same, standing and rolling.
@@ -244,7 +254,8 @@ fn same_responses(what: &str, without: &Running, with: &Running) {
     }
 }
 
-/// What is infinitely stiff or heavy takes the motion of its neighbour over time; so responses say whether it vanishes.
+/// What is infinitely stiff or heavy takes the motion of its neighbour over time, as a damper's force on a stiff end does;
+/// so responses say whether it vanishes.
 #[test]
 fn an_effect_vanishes_with_its_strength() {
     let mut vanishing = BTreeSet::new();
@@ -258,7 +269,8 @@ fn an_effect_vanishes_with_its_strength() {
             };
             vanishing.insert(patched.effect.clone());
             let with = Running::new(&patched.model, &exactly);
-            if with.evaluator.about().linear && vanishes_at(&patched) == Some(f64::INFINITY) {
+            let moves_by_itself = with.evaluator.about().linear || patched.effect == "compliant_digressive_damper";
+            if moves_by_itself && vanishes_at(&patched) == Some(f64::INFINITY) {
                 same_responses(&what, &without, &with);
                 continue;
             }
@@ -638,4 +650,194 @@ fn a_tyre_that_relaxes_while_rolling_stands_as_it_was() {
     };
     assert_eq!(running.rate("vz_wheel", &relaxing), 0.0);
     assert_eq!(running.rates(&relaxing, true)[0].1, 50.0);
+}
+
+/// The inner states of a law at the damper of axle_b_rigid_tm after the wheel has moved at constant speeds (m/s), each
+/// for a time (s): the classical Runge-Kutta method on what the compiled model says of their rates alone.
+fn driven(running: &Running, legs: &[(f64, f64)]) -> Vec<(String, f64)> {
+    let mut inner: Vec<(String, f64)> = running
+        .rates(&|_| 0.0, false)
+        .into_iter()
+        .filter(|(name, _)| name.starts_with("z_damper_"))
+        .map(|(name, _)| (name, 0.0))
+        .collect();
+    let mut travel = 0.0;
+    for &(speed, time) in legs {
+        let steps = 4000;
+        let dt = time / f64::from(steps);
+        let rates = |inner: &[(String, f64)], travel: f64| -> Vec<f64> {
+            let state = |name: &str| match name {
+                // Rebound stretches the damper.
+                "z_wheel" => -travel,
+                "vz_wheel" => -speed,
+                _ => inner
+                    .iter()
+                    .find(|(own, _)| own == name)
+                    .map_or(0.0, |(_, value)| *value),
+            };
+            let all = running.rates(&state, false);
+            let of = |name: &str| all.iter().find(|(own, _)| own == name).unwrap().1;
+            inner.iter().map(|(name, _)| of(name)).collect()
+        };
+        let moved = |inner: &[(String, f64)], rate: &[f64], h: f64| -> Vec<(String, f64)> {
+            inner
+                .iter()
+                .zip(rate)
+                .map(|((name, x), r)| (name.clone(), x + h * r))
+                .collect()
+        };
+        for _ in 0..steps {
+            let a = rates(&inner, travel);
+            let b = rates(&moved(&inner, &a, dt / 2.0), travel + speed * dt / 2.0);
+            let c = rates(&moved(&inner, &b, dt / 2.0), travel + speed * dt / 2.0);
+            let d = rates(&moved(&inner, &c, dt), travel + speed * dt);
+            let mean: Vec<f64> = (0..a.len())
+                .map(|k| (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]) / 6.0)
+                .collect();
+            inner = moved(&inner, &mean, dt);
+            travel += speed * dt;
+        }
+    }
+    inner
+}
+
+/// The resisting force at the wheel of a law that has these inner states, all else at rest.
+fn of_states(running: &Running, inner: &[(String, f64)]) -> f64 {
+    let state = |name: &str| {
+        inner
+            .iter()
+            .find(|(own, _)| own == name)
+            .map_or(0.0, |(_, value)| *value)
+    };
+    -BODY * running.rate("vz_body", &state)
+}
+
+/// Virgin loading of a rounded Jenkins element is F tanh(k x / F), its unloading straight down to no force.
+#[test]
+fn an_elasto_slip_stack_loads_as_its_elements_do_and_unloads_along_its_stiffness() {
+    let model = in_form(&model("axle_b_rigid_tm"), "elasto_slip_friction", "stack", "damper");
+    let (f_slip, k, spread) = (900.0, 6e5, 0.9);
+    let running = Running::new(&model, &[("f_slip", f_slip), ("k_stick", k), ("spread", spread)]);
+    let elements = [1.0 - 2.0 / 3.0 * spread, 1.0, 1.0 + 2.0 / 3.0 * spread].map(|level| level * f_slip / 3.0);
+    let (there, back) = (2e-3, 0.2e-3);
+    let loaded = elements.map(|level| level * (k / 3.0 * there / level).tanh());
+    let found = of_states(&running, &driven(&running, &[(0.1, there / 0.1)]));
+    let wanted: f64 = loaded.iter().sum();
+    assert!((found / wanted - 1.0).abs() < 1e-6, "{found}, not {wanted}");
+    // The weakest element is past zero by then and loads the other way.
+    let unloaded = elements.iter().zip(loaded).map(|(level, from)| {
+        let left = from - k / 3.0 * back;
+        if left > 0.0 {
+            left
+        } else {
+            level * (left / level).tanh()
+        }
+    });
+    let wanted: f64 = unloaded.sum();
+    let found = of_states(&running, &driven(&running, &[(0.1, there / 0.1), (-0.1, back / 0.1)]));
+    assert!((found / wanted - 1.0).abs() < 1e-5, "{found}, not {wanted}");
+}
+
+#[test]
+fn backlash_holds_nothing_for_its_gap_after_each_turn() {
+    let model = in_form(
+        &model("axle_b_rigid_tm"),
+        "elasto_slip_friction",
+        "with_backlash",
+        "damper",
+    );
+    let (f_slip, k, gap) = (900.0, 6e6, 4e-3);
+    let running = Running::new(
+        &model,
+        &[("f_slip", f_slip), ("k_stick", k), ("spread", 0.0), ("gap", gap)],
+    );
+    // So fast that the creep in the gap is nothing.
+    let after = |legs: &[f64]| {
+        let legs: Vec<(f64, f64)> = legs.iter().map(|&s| (s.signum() * 10.0, s.abs() / 10.0)).collect();
+        of_states(&running, &driven(&running, &legs))
+    };
+    let wanted = f_slip * (k * 1e-4 / f_slip).tanh();
+    let found = after(&[gap / 2.0 + 1e-4]);
+    assert!((found / wanted - 1.0).abs() < 1e-3, "{found}, not {wanted}");
+    let elastic = f_slip / k;
+    assert!(after(&[8e-3, -elastic - 0.5 * gap]).abs() < 1e-3 * f_slip);
+    let other_way = after(&[8e-3, -elastic - gap - 1e-3]);
+    assert!((other_way / f_slip + 1.0).abs() < 1e-2, "{other_way}");
+}
+
+/// A spring in series with c0 v/(1 + v/v0): at constant speed the valves' force, for small forces Maxwell's element.
+#[test]
+fn a_compliant_digressive_damper_is_its_valves_when_slow_and_its_spring_when_fast() {
+    let model = patched(&model("axle_b_rigid_tm"), "compliant_digressive_damper", "damper");
+    let (c0, v0, k) = (3000.0, 0.5, 4e5);
+    let running = Running::new(&model, &[("c0", c0), ("v0", v0), ("k_series", k)]);
+    for speed in [0.05, 0.5, 2.0] {
+        let wanted = c0 * speed / (1.0 + speed / v0);
+        let found = of_states(&running, &driven(&running, &[(speed, 0.5)]));
+        assert!((found / wanted - 1.0).abs() < 1e-6, "{found} at {speed} m/s");
+    }
+    let (speed, time) = (1e-4, 5e-3);
+    let wanted = c0 * speed * (1.0 - (-k / c0 * time).exp());
+    let found = of_states(&running, &driven(&running, &[(speed, time)]));
+    assert!((found / wanted - 1.0).abs() < 1e-3, "{found}, not {wanted}");
+}
+
+#[test]
+fn a_part_that_slides_is_held_by_friction_and_by_drag() {
+    let model = patched(&model("axle_c"), "sliding_friction", "wheel");
+    let running = Running::new(&model, &[("f_slide", 30.0), ("c_slide", 70.0), ("k_stick", 1e5)]);
+    let without = Running::new(&model, &[("f_slide", 30.0), ("c_slide", 0.0), ("k_stick", 1e5)]);
+    let sliding = |force: f64| {
+        move |name: &str| match name {
+            "vz_wheel" => 0.4,
+            "z_sliding_f_dry" => force,
+            _ => 0.0,
+        }
+    };
+    assert!(running.rate("z_sliding_f_dry", &sliding(30.0)).abs() < 1e-6);
+    let on_wheel = 42.0 * (running.rate("vz_wheel", &sliding(30.0)) - without.rate("vz_wheel", &sliding(0.0)));
+    assert!((on_wheel + 30.0 + 70.0 * 0.4).abs() < 1e-9, "{on_wheel}");
+}
+
+#[test]
+fn an_offset_force_pushes_along_the_direction() {
+    let model = patched(&model("one_mass"), "offset_force", "body");
+    let running = Running::new(&model, &[("f_unbalanced", 6.0)]);
+    assert!((running.rate("vz_body", &|_| 0.0) - 3.0).abs() < 1e-12);
+}
+
+/// Tread and sidewalls in series, loaded slowly, are the tyre that was measured: on the rig its stiffness, rolling its
+/// load at the static deflection, and the slope there.
+#[test]
+fn a_belt_leaves_the_static_curve_of_the_tyre() {
+    let base = model("axle_c");
+    let whole = Running::new(&base, &[]);
+    let sidewalls = 9e5;
+    let own = [("m_belt", 7.0), ("k_sidewall", sidewalls), ("c_sidewall", 200.0)];
+    for form in ["in_plane", "vertical"] {
+        let tread = Running::new(&in_form(&base, "tire_belt", form, "tire"), &own);
+        let force = |of: &Running, s: f64| of.rates(&|name| if name == "s" { s } else { 0.0 }, true)[0].1;
+        // The deflection of the tread under the static load, by bisection.
+        let (mut low, mut high) = (0.0, 0.019);
+        for _ in 0..60 {
+            let middle = (low + high) / 2.0;
+            if -force(&tread, -middle) > 4300.0 {
+                high = middle
+            } else {
+                low = middle
+            }
+        }
+        let deflection = low + 4300.0 / sidewalls;
+        assert!((deflection - 0.019).abs() < 1e-9, "{form}: {deflection}");
+        let in_series = 1.0 / (1.0 / slope(|s| force(&tread, s), -low) + 1.0 / sidewalls);
+        let wanted = slope(|s| force(&whole, s), -0.019);
+        assert!(
+            (in_series / wanted - 1.0).abs() < 1e-6,
+            "{form}: {in_series}, not {wanted}"
+        );
+        let on_belt = |z: f64| 7.0 * tread.rate("vz_belt", &|name| if name == "z_pad" { z } else { 0.0 });
+        let standing = slope(on_belt, 0.0);
+        let in_series = 1.0 / (1.0 / standing + 1.0 / sidewalls);
+        assert!((in_series / 230e3 - 1.0).abs() < 1e-6, "{form}: {in_series}");
+    }
 }

@@ -140,3 +140,139 @@ fn forms_of_one_name_are_refused() {
         "{report}"
     );
 }
+
+/// The model with other names of what moves and of its links; those of laws and parameters stay.
+fn renamed(model: &Checked) -> Checked {
+    let points = [
+        ("body", "cabin"),
+        ("wheel", "hub"),
+        ("tm", "dome"),
+        ("sf", "cradle"),
+        ("pwt", "engine"),
+        ("pad", "shaker"),
+    ];
+    let links = [
+        ("tire", "pneumatic"),
+        ("spring", "coil"),
+        ("damper", "shock"),
+        ("top_mount", "dome_rubber"),
+        ("subframe_mount", "cradle_rubber"),
+        ("powertrain_mount", "engine_rubber"),
+        ("wheel_bushing_x", "arm_rubber"),
+        ("powertrain_mount_x", "engine_rubber_x"),
+    ];
+    let mut text = String::new();
+    let mut words = model
+        .text()
+        .split_inclusive(|c: char| !(c.is_alphanumeric() || c == '_'))
+        .peekable();
+    let mut before = String::new();
+    while let Some(piece) = words.next() {
+        let word = piece.trim_end_matches(|c: char| !(c.is_alphanumeric() || c == '_'));
+        let is_link = before == "link";
+        let other = |all: &[(&str, &'static str)]| all.iter().find(|(own, _)| *own == word).map(|(_, other)| *other);
+        let new = if is_link { other(&links) } else { other(&points) };
+        text += new.unwrap_or(word);
+        text += &piece[word.len()..];
+        if !word.is_empty() {
+            before = word.to_string();
+        }
+    }
+    let name = "renamed.axle".into();
+    check_text(Source { name, text }, &load).unwrap_or_else(|report| panic!("{report}"))
+}
+
+/// Effects, forms and how often each applies.
+fn applied(model: &Checked) -> Vec<(String, Option<String>)> {
+    let all = effects();
+    let candidates = all.iter().flat_map(|effect| effect.candidates(model, &|_| None));
+    candidates.map(|patched| (patched.effect, patched.form)).collect()
+}
+
+#[test]
+fn effects_go_by_what_the_parts_do_not_by_what_they_are_called() {
+    for name in ["axle_a", "axle_c", "axle_d", "quarter_car"] {
+        let model = model(name);
+        let mut found = applied(&renamed(&model));
+        for own in applied(&model) {
+            let place = found.iter().position(|other| *other == own);
+            found.remove(place.unwrap_or_else(|| panic!("{name} loses {own:?}")));
+        }
+        // What an effect adds is refused only where the model has something of that name.
+        found.retain(|(effect, _)| effect != "suspended_mass" && effect != "subframe");
+        assert!(found.is_empty(), "{name}: {found:?}");
+    }
+}
+
+#[test]
+fn a_belt_leaves_the_wheel_what_it_was() {
+    let with_belt = patched(&effect("tire_belt"), &model("axle_c"), "tire").model;
+    assert_eq!(effect("digressive_damper").places(&with_belt), ["damper"]);
+    assert_eq!(effect("secondary_resonator").places(&with_belt), ["wheel"]);
+    assert_eq!(effect("drag_to_ground").places(&with_belt), ["body", "wheel"]);
+}
+
+#[test]
+fn ranges_are_measured_by_the_motion_of_the_place() {
+    let friction = effect("coulomb_friction");
+    let big = |name: &str| match name {
+        "z.damper.force_scale" => Some(30e3),
+        "z.damper.travel_scale" => Some(0.2),
+        _ => None,
+    };
+    let start = |values| {
+        let patched = friction.apply(&model("linear_damper"), "damper", values).unwrap();
+        let own = patched.parameters[0].clone();
+        (own.start, own.range)
+    };
+    assert_eq!(start(&big), (1800.0, (30.0, 300e3)));
+    assert_eq!(start(&|_| None), (60.0, (1.0, 10e3)));
+}
+
+#[test]
+fn the_friction_of_an_arm_is_measured_at_the_wheel() {
+    let ratio = |name: &str| match name {
+        "mr_damper" => Some(0.5),
+        "z.damper.force_scale" => Some(2e3),
+        _ => None,
+    };
+    let patched = effect("coulomb_friction")
+        .apply(&model("axle_b"), "damper", &ratio)
+        .unwrap();
+    assert_eq!(patched.parameters[0].start, 0.06 * 0.5 * 2e3);
+}
+
+#[test]
+fn a_sub_frame_may_carry_the_powertrain_that_hung_on_the_body() {
+    let forms = |name: &str| -> Vec<Option<String>> {
+        let candidates = effect("subframe").candidates(&model(name), &|_| None);
+        candidates.into_iter().map(|patched| patched.form).collect()
+    };
+    let [bare, carrying] = ["bare", "with_powertrain"].map(|form| Some(form.to_string()));
+    assert_eq!(forms("axle_a"), [bare.clone(), carrying]);
+    assert_eq!(forms("axle_c"), [bare]);
+    let patched = effect("subframe").in_form("with_powertrain").unwrap();
+    let text = patched
+        .apply(&model("axle_a"), "body", &|_| None)
+        .unwrap()
+        .model
+        .text()
+        .to_string();
+    for link in ["link powertrain_mount: pwt - sf ", "link powertrain_mount_x: pwt - sf "] {
+        assert!(text.contains(link), "{text}");
+    }
+}
+
+#[test]
+fn any_law_of_a_damper_may_stand_on_a_compliant_end() {
+    let forms = |name: &str| -> Vec<String> {
+        let candidates = effect("series_compliance").candidates(&model(name), &|_| None);
+        candidates.into_iter().filter_map(|patched| patched.form).collect()
+    };
+    assert_eq!(forms("axle_c"), ["linear"]);
+    assert_eq!(forms("damper_dyno"), ["any_law"]);
+    let digressive = patched(&effect("digressive_damper"), &model("axle_b"), "damper").model;
+    let candidates = effect("series_compliance").candidates(&digressive, &|_| None);
+    assert_eq!(candidates.len(), 1);
+    assert_eq!(candidates[0].form.as_deref(), Some("any_law"));
+}

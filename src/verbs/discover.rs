@@ -127,6 +127,7 @@ pub(crate) fn answer(
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let bench = bench.measured(&evidence);
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
         News::Doing(what) => showing.tell(format!("{}: {what}", campaign.name)),

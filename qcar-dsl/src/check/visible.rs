@@ -9,7 +9,7 @@ use super::response::{Seen, sensitivities};
 use super::sample::{Kind, Point};
 use crate::diagnostic::{Diagnostic, visibility};
 use crate::expr::{Expr, Symbol};
-use crate::model::{Model, Term};
+use crate::model::{Model, Quantity, Signal, Term};
 
 /// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
 struct Set {
@@ -37,7 +37,8 @@ pub fn parameters_are_seen(scratch: &Scratch) -> Vec<Diagnostic> {
 }
 
 /// The parameters that a measurement is to tell: not the known ones, and not those that the law or the states of a
-/// rolling tyre contain, since rolling over a profile shows more than the responses here do.
+/// rolling tyre contain, since rolling over a profile shows more than the responses here do, nor those of a constant force
+/// where a position or a force is an output: its mean shows them.
 fn estimated(scratch: &Scratch) -> Vec<u16> {
     let model = scratch.model;
     let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
@@ -48,11 +49,31 @@ fn estimated(scratch: &Scratch) -> Vec<u16> {
     };
     let expressions: Vec<Expr> = rolling.map(value).chain(rates).collect();
     let rolls: BTreeSet<Symbol> = scratch.graph.symbols(expressions);
+    let constant = constant_forces(scratch);
     let counts = |index: &u16| {
         let known = model.parameters[usize::from(*index)].known;
-        !known && !rolls.contains(&Symbol::Parameter(*index))
+        !known && !rolls.contains(&Symbol::Parameter(*index)) && !constant.contains(&Symbol::Parameter(*index))
     };
     (0..model.parameters.len() as u16).filter(counts).collect()
+}
+
+/// The parameters that stand in forces which nothing changes, where an output shows a mean.
+fn constant_forces(scratch: &Scratch) -> BTreeSet<Symbol> {
+    let shows_mean = |signal: &Signal| match signal {
+        Signal::Motion(_, quantity) => *quantity == Quantity::Position,
+        Signal::LinkForce(_) | Signal::LinkStretch(_) => true,
+    };
+    let model = scratch.model;
+    if !model.outputs.iter().any(|output| shows_mean(&output.signal)) {
+        return BTreeSet::new();
+    }
+    let terms = model.links.iter().flat_map(|link| &link.law.terms);
+    let contents = terms.filter_map(|term| match *term {
+        Term::Force(force) => Some(scratch.graph.symbols([force])),
+        _ => None,
+    });
+    let is_constant = |symbols: &BTreeSet<Symbol>| symbols.iter().all(|symbol| matches!(symbol, Symbol::Parameter(_)));
+    contents.filter(is_constant).flatten().collect()
 }
 
 fn set(scratch: &Scratch, point: Point, estimated: &[u16]) -> Set {

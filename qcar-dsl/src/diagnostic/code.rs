@@ -224,6 +224,8 @@ codes! {
     EffectNotDescribed = "effect_not_described",
     /// A kind of linear term that the language does not have.
     UnknownTerm = "unknown_term",
+    /// A role of a place.
+    UnknownRole = "unknown_role",
     /// An effect of a sensor that changes the model.
     SensorChangesModel = "sensor_changes_model",
     /// A place that the pattern of an effect does not fit.

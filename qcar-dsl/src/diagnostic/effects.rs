@@ -31,6 +31,16 @@ pub fn unknown_term(span: Span, term: &str, known: &[&str]) -> Diagnostic {
         })
 }
 
+/// A role that no part of a model has.
+pub fn unknown_role(span: Span, role: &str, known: &[&str]) -> Diagnostic {
+    Diagnostic::error(Code::UnknownRole, format!("`{role}` is no role of such a place"))
+        .label(span, "unknown")
+        .hint(match nearest(role, known) {
+            Some(near) => format!("write `{near}`"),
+            None => format!("write {}", one_of(known)),
+        })
+}
+
 /// An effect of a sensor that changes the model.
 pub fn sensor_changes_model(span: Span) -> Diagnostic {
     Diagnostic::error(

@@ -65,10 +65,14 @@ fn form(tokens: &mut Tokens) -> Parsed<Form> {
     const EXAMPLE: &str = "form across_strut { \"what it acts on\" … }";
     tokens.any_word();
     let name = tokens.new_name("the name of a form", EXAMPLE)?;
+    let terms = match tokens.peek().as_deref() {
+        Some("with") => terms(tokens)?,
+        _ => vec![],
+    };
     let mut inside = tokens.block(EXAMPLE)?;
     let doc = inside.sentence();
     let body = inside.each(change);
-    Ok(Form { name, doc, body })
+    Ok(Form { name, doc, terms, body })
 }
 
 /// A sentence behind its word.
@@ -89,6 +93,8 @@ fn pattern(tokens: &mut Tokens) -> Parsed<Pattern> {
         variable: tokens.new_name("what the effect calls its place", HEAD)?,
         direction: None,
         names: vec![],
+        roles: vec![],
+        on: None,
         terms: vec![],
         given: vec![],
         seen_from: None,
@@ -96,8 +102,12 @@ fn pattern(tokens: &mut Tokens) -> Parsed<Pattern> {
     loop {
         match tokens.peek().as_deref() {
             Some("in") => pattern.direction = Some(after(tokens, "a direction", "at mass m in z")?),
-            Some("named") => pattern.names = place_names(tokens)?,
-            Some("with") => pattern.terms = list(tokens, "`spring`, `damper` or `inerter`", "with spring, damper")?,
+            Some("named") => {
+                pattern.names = called(tokens, "the name of a place", "named body | sf as subframe")?;
+            }
+            Some("role") => pattern.roles = called(tokens, "a role", "role body | pivot as subframe")?,
+            Some("on") => pattern.on = Some(after(tokens, "a point", "at link l role suspension on body")?),
+            Some("with") => pattern.terms = terms(tokens)?,
             Some("given") => pattern.given = list(tokens, "a parameter or point", "given m_corner, pivot")?,
             Some("seen") => {
                 tokens.any_word();
@@ -139,15 +149,22 @@ fn list(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<Name>> {
     Ok(names)
 }
 
+fn terms(tokens: &mut Tokens) -> Parsed<Vec<Name>> {
+    list(
+        tokens,
+        "`spring`, `damper`, `inerter`, `damping` or `law`",
+        "with spring, damper",
+    )
+}
+
 /// `named body | sf as subframe`
-fn place_names(tokens: &mut Tokens) -> Parsed<Vec<(Name, Option<Name>)>> {
-    const EXAMPLE: &str = "named body | sf as subframe";
+fn called(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<(Name, Option<Name>)>> {
     tokens.any_word();
     let mut names = Vec::new();
     loop {
-        let name = tokens.name("the name of a place", EXAMPLE)?;
+        let name = tokens.name(what, example)?;
         let called = match tokens.peek().as_deref() {
-            Some("as") => Some(after(tokens, "what the catalogue calls it", EXAMPLE)?),
+            Some("as") => Some(after(tokens, "what the catalogue calls it", example)?),
             _ => None,
         };
         names.push((name, called));
@@ -261,8 +278,16 @@ fn replace(tokens: &mut Tokens) -> Parsed<Change> {
     };
     if tokens.take_word("by") {
         let by = expression(tokens)?;
+        let rolling = if tokens.take_word("rolling") {
+            Some(expression(tokens)?)
+        } else {
+            None
+        };
         tokens.expect(";", POINT)?;
-        return Ok(Change::ReplacePoint { point: what, of, by });
+        return Ok(match of {
+            Some(of) if what.to_string() == "s" => Change::ReplaceStretch { of, by, rolling },
+            of => Change::ReplacePoint { point: what, of, by },
+        });
     }
     match (what.names.as_slice(), of) {
         ([term], Some(link)) => Ok(Change::ReplaceTerm(term.clone(), link, law_block(tokens, TERM)?)),

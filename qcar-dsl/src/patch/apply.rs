@@ -2,8 +2,8 @@
 
 use super::base::{Base, rolling};
 use super::bind::Bindings;
-use super::place::is_term;
 use super::rewrite::{self, binary};
+use super::terms::is_term;
 use super::{Made, Signal, SignalChange, refused};
 use crate::diagnostic::effects;
 use crate::source::Span;
@@ -88,6 +88,9 @@ impl<'a> Patching<'a> {
             Change::Add(link, law) => return self.add(direction, link, law),
             Change::ReplaceTerm(term, link, law) => return self.replace_term(direction, (term, link), law),
             Change::ReplacePoint { point, of, by } => return self.replace_point(direction, point, of.as_ref(), by),
+            Change::ReplaceStretch { of, by, rolling } => {
+                return self.replace_stretch(direction, of, by, rolling.as_ref());
+            }
             Change::Remove(link) => return self.remove(direction, link),
             Change::Delay(place, by) => self.sense(place, Signal::Delay, by),
             Change::Scale(place, by) => self.sense(place, Signal::Gain, by),
@@ -243,8 +246,8 @@ impl<'a> Patching<'a> {
 
     /// The link that a name means, with its direction: the place's own where it is the variable.
     fn meant_link(&self, direction: &str, name: &Name) -> Made<(String, String)> {
-        let link = self.bindings.name(name);
-        let home = if link == self.bindings.place.name {
+        let link = &self.bindings.name_along(name, direction);
+        let home = if *link == self.bindings.place.name {
             &self.bindings.place.direction
         } else {
             direction
@@ -285,6 +288,40 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
+    /// Linear terms have no `s` of their own, so that they stay as they are.
+    fn replace_stretch(
+        &mut self,
+        direction: &str,
+        of: &Name,
+        by: &Expression,
+        rolling: Option<&Expression>,
+    ) -> Made<()> {
+        let (home, link) = self.meant_link(direction, of)?;
+        let by = self.bindings.expression(by, &home)?;
+        let rolling = rolling.map(|by| self.bindings.expression(by, &home)).transpose()?;
+        let Some(link) = self.tree.link_mut(&home, &link) else {
+            return Ok(());
+        };
+        if link
+            .body
+            .iter()
+            .any(|statement| matches!(statement, LawStatement::Use(_)))
+        {
+            let said = "a law without elements";
+            return Err(refused(effects::place_lacks(of.span, said, &link.name.text)));
+        }
+        for statement in &mut link.body {
+            let by = match statement {
+                LawStatement::Rolling(..) => rolling.as_ref(),
+                _ => Some(&by),
+            };
+            if let Some(by) = by {
+                *statement = in_other_stretch(statement, by);
+            }
+        }
+        Ok(())
+    }
+
     fn remove(&mut self, direction: &str, name: &Name) -> Made<()> {
         let (home, link) = self.meant_link(direction, name)?;
         if let Some(home) = self.tree.direction_mut(&home) {
@@ -319,6 +356,17 @@ fn with_point(stretch: &Expression, old: &str, new: &Expression, once: bool) -> 
     };
     let Ok(changed) = rewrite::expression(stretch, &mut rename);
     changed
+}
+
+/// A statement of a law with something else for its stretch.
+fn in_other_stretch(statement: &LawStatement, by: &Expression) -> LawStatement {
+    let mut rename = |name: &Dotted| {
+        let found = name.to_string() == "s";
+        Ok::<_, std::convert::Infallible>(found.then(|| by.clone()))
+    };
+    let one = std::slice::from_ref(statement);
+    let Ok(mut changed) = rewrite::law(one, &mut |e| rewrite::expression(e, &mut rename));
+    changed.pop().unwrap_or_else(|| statement.clone())
 }
 
 /// Adds statements to a law; while a tyre rolls, the forces that they say for rolling, or else the same.

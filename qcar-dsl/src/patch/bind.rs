@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use super::base::Base;
-use super::place::{Place, is_term};
+use super::base::{Base, links};
+use super::place::Place;
 use super::rewrite::{self, binary, named};
+use super::roles::Roles;
+use super::scale::Scale;
 use super::stretch::{lever, lower, upper};
+use super::terms::is_term;
 use super::{Made, refused};
 use crate::diagnostic::effects;
 use crate::syntax::{
@@ -13,12 +16,27 @@ use crate::syntax::{
 };
 
 /// What a name may ask of a link or mass behind a dot.
-const FIELDS: [&str; 7] = ["upper", "lower", "stretch", "spring", "damper", "inerter", "mass"];
+const FIELDS: [&str; 12] = [
+    "upper",
+    "lower",
+    "stretch",
+    "strut",
+    "spring",
+    "damper",
+    "inerter",
+    "mass",
+    "force_scale",
+    "travel_scale",
+    "speed_scale",
+    "acceleration_scale",
+];
 
 /// An effect at a place of a model, before anything is changed.
 pub struct Bindings<'a> {
     /// The model.
     pub base: &'a Base,
+    /// What its parts do.
+    pub roles: &'a Roles,
     /// The effect.
     pub effect: &'a Effect,
     /// The place.
@@ -30,12 +48,13 @@ pub struct Bindings<'a> {
 
 impl<'a> Bindings<'a> {
     /// Binds the names of an effect at a place.
-    pub fn new(base: &'a Base, effect: &'a Effect, place: &'a Place) -> Bindings<'a> {
+    pub fn new(base: &'a Base, roles: &'a Roles, effect: &'a Effect, place: &'a Place) -> Bindings<'a> {
         let link = base.link(&place.direction, &place.name);
         let lever = link.zip(effect.pattern.seen_from.as_ref());
-        let lever = lever.and_then(|(link, point)| lever_of(base, place, link, &point.text));
+        let lever = lever.and_then(|(link, point)| lever_of(base, roles, place, link, &point.text));
         Bindings {
             base,
+            roles,
             effect,
             place,
             renamed: BTreeMap::new(),
@@ -52,6 +71,13 @@ impl<'a> Bindings<'a> {
         }
     }
 
+    /// The same along a direction: a role that no part of the model has for its name is the part that does it.
+    pub fn name_along(&self, name: &Name, direction: &str) -> String {
+        let own = self.name(name);
+        let meant = self.roles.meant(self.base, direction, own);
+        meant.filter(|_| own == name.text).unwrap_or(own.to_string())
+    }
+
     /// An expression in the names of the model.
     pub fn expression(&self, e: &Expression, direction: &str) -> Made<Expression> {
         rewrite::expression(e, &mut |name| self.meaning(name, direction))
@@ -60,8 +86,9 @@ impl<'a> Bindings<'a> {
     fn meaning(&self, name: &Dotted, direction: &str) -> Made<Option<Expression>> {
         match name.names.as_slice() {
             [own] => {
-                let new = self.renamed.get(&own.text).map_or(self.name(own), String::as_str);
-                Ok((new != own.text).then(|| named(new)))
+                let renamed = self.renamed.get(&own.text).cloned();
+                let new = renamed.unwrap_or_else(|| self.name_along(own, direction));
+                Ok((new != own.text).then(|| named(&new)))
             }
             [owner, field] if FIELDS.contains(&field.text.as_str()) => Ok(Some(self.field(owner, field, direction)?)),
             _ => Ok(None),
@@ -78,13 +105,16 @@ impl<'a> Bindings<'a> {
     }
 
     fn field(&self, owner: &Name, field: &Name, direction: &str) -> Made<Expression> {
-        let name = self.name(owner);
+        let name = &self.name_along(owner, direction);
         // What the place is, it is in its own direction: other directions have points of the same names.
-        let home = if name == self.place.name {
+        let home = if *name == self.place.name {
             &self.place.direction
         } else {
             direction
         };
+        if let Some(scale) = Scale::written(&field.text) {
+            return Ok(self.scale(home, name, scale));
+        }
         let found = match field.text.as_str() {
             "mass" => self.mass(direction, name),
             "upper" => self
@@ -94,6 +124,7 @@ impl<'a> Bindings<'a> {
                 .link(home, name)
                 .and_then(|link| Some(named(&lower(self.base, home, link)?))),
             "stretch" => self.link(home, name).map(|link| link.stretch.clone()),
+            "strut" => self.link(home, name).and_then(|link| self.strut(home, link)),
             kind => self.link(home, name).and_then(|link| self.coefficient(link, kind)),
         };
         found.ok_or_else(|| {
@@ -102,6 +133,36 @@ impl<'a> Bindings<'a> {
             };
             refused(effects::place_lacks(said.span(), &said.to_string(), name))
         })
+    }
+
+    /// A reference value: of the place, as it is seen from the point of the pattern; the force of a mass is its inertia's.
+    fn scale(&self, direction: &str, name: &str, scale: Scale) -> Expression {
+        if let (Scale::Force, Some(mass)) = (scale, self.mass(direction, name)) {
+            return binary(
+                Operator::Multiply,
+                mass,
+                named(&Scale::Acceleration.name(direction, name)),
+            );
+        }
+        let own = named(&scale.name(direction, name));
+        let lever = self.lever.as_ref().filter(|_| name == self.place.name);
+        match (lever, scale) {
+            (None, _) => own,
+            (Some(lever), Scale::Force) => binary(Operator::Multiply, own, lever.clone()),
+            (Some(lever), _) => binary(Operator::Divide, own, lever.clone()),
+        }
+    }
+
+    /// The stretch of a link and of the mount that its upper end stands on.
+    fn strut(&self, direction: &str, link: &Link) -> Option<Expression> {
+        let end = |end: Option<String>| end.map(|end| self.base.pointed_at(direction, &end));
+        let top = end(upper(self.base, direction, link))?;
+        let mut mounts = links(self.base.direction(direction)?).filter(|mount| {
+            self.roles.is_link(direction, &mount.name.text, "mount")
+                && end(lower(self.base, direction, mount)).as_ref() == Some(&top)
+        });
+        let mount = mounts.next()?;
+        Some(binary(Operator::Add, link.stretch.clone(), mount.stretch.clone()))
     }
 
     fn link(&self, direction: &str, name: &str) -> Option<&Link> {
@@ -136,7 +197,7 @@ impl<'a> Bindings<'a> {
         let mut found = false;
         rewrite::names_in(stretch, &mut |name| {
             let [owner, field] = name.names.as_slice() else { return };
-            found |= field.text == "stretch" && self.name(owner) == self.place.name;
+            found |= ["stretch", "strut"].contains(&field.text.as_str()) && self.name(owner) == self.place.name;
         });
         found
     }
@@ -151,8 +212,9 @@ impl<'a> Bindings<'a> {
     }
 }
 
-fn lever_of(base: &Base, place: &Place, link: &Link, point: &str) -> Option<Expression> {
-    lever(base, &place.direction, link, point)
+fn lever_of(base: &Base, roles: &Roles, place: &Place, link: &Link, point: &str) -> Option<Expression> {
+    let meant = roles.meant(base, &place.direction, point);
+    lever(base, &place.direction, link, meant.as_deref().unwrap_or(point))
 }
 
 impl Bindings<'_> {

@@ -1,7 +1,10 @@
 //! The places of a model that an effect's pattern fits.
 
 use super::base::{Base, coordinates, links};
-use crate::syntax::{Coordinate, CoordinateKind, Direction, LawStatement, Link, Pattern, PlaceKind};
+use super::roles::Roles;
+use super::stretch::upper;
+use super::terms::has_terms;
+use crate::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind};
 
 /// A place of a model where an effect may apply.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -15,7 +18,7 @@ pub struct Place {
 }
 
 /// Every place that a pattern fits, in the order of the text.
-pub fn fitting(base: &Base, pattern: &Pattern) -> Vec<Place> {
+pub fn fitting(base: &Base, roles: &Roles, pattern: &Pattern) -> Vec<Place> {
     let mut places: Vec<Place> = Vec::new();
     for direction in base.directions() {
         let along = &direction.name.text;
@@ -23,21 +26,26 @@ pub fn fitting(base: &Base, pattern: &Pattern) -> Vec<Place> {
             continue;
         }
         for name in candidates(direction, pattern) {
-            let Some(called) = called(pattern, &name) else { continue };
+            let Some(called) = called(roles, along, pattern, &name) else {
+                continue;
+            };
+            if !is_on(base, roles, along, pattern, &name) {
+                continue;
+            }
             let known = places.iter().any(|place| place.label == called);
             let label = if known { format!("{along}.{called}") } else { called };
             let direction = along.clone();
             places.push(Place { label, direction, name });
         }
     }
-    places.retain(|place| pattern.given.iter().all(|given| has(base, place, &given.text)));
+    places.retain(|place| pattern.given.iter().all(|given| has(base, roles, place, &given.text)));
     places
 }
 
 fn candidates(direction: &Direction, pattern: &Pattern) -> Vec<String> {
     match pattern.kind {
         PlaceKind::Link => links(direction)
-            .filter(|link| has_terms(link, pattern))
+            .filter(|link| has_terms(&link.body, &pattern.terms))
             .map(|link| link.name.text.clone())
             .collect(),
         PlaceKind::Mass => named(direction, |kind| {
@@ -52,32 +60,35 @@ fn named(direction: &Direction, fits: fn(&CoordinateKind) -> bool) -> Vec<String
     fitting.map(|coordinate| coordinate.name.text.clone()).collect()
 }
 
-fn has_terms(link: &Link, pattern: &Pattern) -> bool {
-    pattern
-        .terms
-        .iter()
-        .all(|term| link.body.iter().any(|statement| is_term(statement, &term.text)))
-}
-
-/// Whether a statement of a law is a linear term of a kind.
-pub fn is_term(statement: &LawStatement, kind: &str) -> bool {
-    match statement {
-        LawStatement::Spring(_) => kind == "spring",
-        LawStatement::Damper(_) => kind == "damper",
-        LawStatement::Inerter(_) => kind == "inerter",
-        _ => false,
-    }
-}
-
 /// What the catalogue calls a place of this name, if it may be one.
-fn called(pattern: &Pattern, name: &str) -> Option<String> {
-    if pattern.names.is_empty() {
-        return Some(name.to_string());
-    }
-    let (_, called) = pattern.names.iter().find(|(own, _)| own.text == name)?;
-    Some(called.as_ref().map_or(name, |called| called.text.as_str()).to_string())
+fn called(roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> Option<String> {
+    let has_role = |role: &str| match pattern.kind {
+        PlaceKind::Link => roles.is_link(along, name, role),
+        PlaceKind::Mass | PlaceKind::Sensor => roles.is_mass(along, name, role),
+    };
+    let by_name = matching(&pattern.names, |own| own == name)?;
+    let by_role = matching(&pattern.roles, has_role)?;
+    Some(by_name.or(by_role).unwrap_or(name).to_string())
 }
 
-fn has(base: &Base, place: &Place, name: &str) -> bool {
-    base.global(name).is_some() || base.declares(&place.direction, name)
+/// What the first of the alternatives that fit calls a place; `None` where none fits.
+fn matching(all: &[(Name, Option<Name>)], fits: impl Fn(&str) -> bool) -> Option<Option<&str>> {
+    if all.is_empty() {
+        return Some(None);
+    }
+    let (_, called) = all.iter().find(|(own, _)| fits(&own.text))?;
+    Some(called.as_ref().map(|called| called.text.as_str()))
+}
+
+/// Whether the upper end of a link is where the pattern wants it.
+fn is_on(base: &Base, roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> bool {
+    let Some(wanted) = &pattern.on else { return true };
+    let end = base.link(along, name).and_then(|link| upper(base, along, link));
+    let wanted = roles.meant(base, along, &wanted.text).unwrap_or(wanted.text.clone());
+    end.is_some_and(|end| base.pointed_at(along, &end) == base.pointed_at(along, &wanted))
+}
+
+fn has(base: &Base, roles: &Roles, place: &Place, name: &str) -> bool {
+    let along = &place.direction;
+    base.global(name).is_some() || base.declares(along, name) || roles.meant(base, along, name).is_some()
 }

@@ -1,6 +1,8 @@
 //! What an effect's file must say, whatever the model.
 
 use super::Made;
+use super::roles::{OF_LINKS, OF_MASSES};
+use super::terms::{LINEAR, WORDS};
 use crate::diagnostic::{Diagnostic, Severity, effects, names, reading};
 use crate::parse::parse_text;
 use crate::source::{Source, Span};
@@ -38,14 +40,18 @@ fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     found.extend(forms_are_told_apart(effect));
     found.extend(second_strengths(effect));
     let pattern = &effect.pattern;
-    pattern.terms.iter().for_each(|term| found.extend(no_term(term)));
+    let of_forms = effect.forms.iter().flat_map(|form| &form.terms);
+    for term in pattern.terms.iter().chain(of_forms) {
+        found.extend(no_term(term, &WORDS));
+    }
+    found.extend(pattern.roles.iter().filter_map(|(role, _)| no_role(role, pattern.kind)));
     for change in effect
         .body
         .iter()
         .chain(effect.forms.iter().flat_map(|form| &form.body))
     {
         match change {
-            Change::ReplaceTerm(term, ..) => found.extend(no_term(term)),
+            Change::ReplaceTerm(term, ..) => found.extend(no_term(term, &LINEAR)),
             Change::Delay(place, _) | Change::Scale(place, _) if pattern.kind != PlaceKind::Sensor => {
                 found.push(reading::misplaced_statement(
                     place.span,
@@ -122,7 +128,14 @@ fn undescribed(effect: &Effect) -> Vec<Diagnostic> {
         .collect()
 }
 
-fn no_term(term: &Name) -> Option<Diagnostic> {
-    let known = ["spring", "damper", "inerter"];
-    (!known.contains(&term.text.as_str())).then(|| effects::unknown_term(term.span, &term.text, &known))
+fn no_term(term: &Name, known: &[&str]) -> Option<Diagnostic> {
+    (!known.contains(&term.text.as_str())).then(|| effects::unknown_term(term.span, &term.text, known))
+}
+
+fn no_role(role: &Name, kind: PlaceKind) -> Option<Diagnostic> {
+    let known: &[&str] = match kind {
+        PlaceKind::Link => &OF_LINKS,
+        PlaceKind::Mass | PlaceKind::Sensor => &OF_MASSES,
+    };
+    (!known.contains(&role.text.as_str())).then(|| effects::unknown_role(role.span, &role.text, known))
 }

@@ -3,21 +3,17 @@
 
 use std::collections::BTreeMap;
 
+use super::ask::{Values, question, value, with_questions};
 use super::base::Base;
+use super::rewrite::names_in;
+use super::scale::Scale;
 use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
-use crate::expr::Symbol;
-use crate::model::{Default, Model};
-use crate::resolve::options::take;
-use crate::resolve::resolve;
+use crate::model::Model;
 use crate::syntax::{
-    EffectParameter, Expression, ExpressionKind, Let, Name, Number, Parameter, ParameterDefault, Role, Statement,
-    VanishesAt,
+    EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role, Statement, VanishesAt,
 };
 use crate::units::Unit;
-
-/// The values of the model's parameters, as far as somebody knows them.
-pub type Values<'a> = &'a dyn Fn(&str) -> Option<f64>;
 
 /// What a parameter is to its effect, in numbers.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -61,7 +57,7 @@ const ROLES: [&str; 4] = ["start of ", "low end of ", "high end of ", "vanishing
 /// # Errors
 /// Expressions that mean nothing, are of another unit than the parameter, or have no value.
 pub fn evaluate(base: &Base, asked: &[Asked], values: Values) -> Result<Vec<(NewParameter, Parameter)>, Refused> {
-    let (model, found) = with_questions(base, asked);
+    let (model, found) = with_expressions(base, asked);
     if !found.is_empty() {
         return Err(found);
     }
@@ -86,66 +82,40 @@ pub fn evaluate(base: &Base, asked: &[Asked], values: Values) -> Result<Vec<(New
     if found.is_empty() { Ok(all) } else { Err(found) }
 }
 
-/// The model with each expression as a derived quantity, and the parameters themselves for their units.
-fn with_questions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
-    let mut axle = base.axle.clone();
+/// The model with each expression as a question, and the parameters themselves for their units.
+fn with_expressions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
+    let mut questions: Vec<Statement> = scales(asked).into_iter().map(Statement::Parameter).collect();
     for one in asked {
-        let parameter = Parameter {
+        questions.push(Statement::Parameter(Parameter {
             known: false,
             name: Name::new(unit_of(one)),
             unit: one.declared.unit.clone(),
             default: None,
             range: None,
             doc: String::new(),
-        };
-        axle.body.push(Statement::Parameter(parameter));
-        for (role, expression) in ROLES.iter().zip(&one.expressions) {
-            let name = Name::new(format!("{role}{}", one.name));
-            let (value, doc) = (expression.clone(), String::new());
-            axle.body.push(Statement::Let(Let { name, value, doc }));
-        }
+        }));
+        let expressions = ROLES.iter().zip(&one.expressions);
+        questions.extend(expressions.map(|(role, e)| question(&format!("{role}{}", one.name), e)));
     }
-    let mut found = Vec::new();
-    let taken = take(&axle, None, &mut found);
-    let (model, more) = resolve(&axle, &taken, &base.elements());
-    found.extend(more);
-    // The questions themselves are used by nothing.
-    found.retain(|diagnostic| !effects::is_about_use(diagnostic));
-    (model, found)
+    with_questions(base, questions)
+}
+
+/// The reference values that expressions use.
+fn scales(asked: &[Asked]) -> Vec<Parameter> {
+    let mut found: Vec<Parameter> = Vec::new();
+    for e in asked.iter().flat_map(|one| &one.expressions) {
+        names_in(e, &mut |name| {
+            let [name] = name.names.as_slice() else { return };
+            let scale = name.text.rsplit_once('.').and_then(|(_, word)| Scale::written(word));
+            let known = found.iter().any(|own| own.name.text == name.text);
+            found.extend(scale.filter(|_| !known).map(|scale| scale.declaration(&name.text)));
+        });
+    }
+    found
 }
 
 fn unit_of(one: &Asked) -> String {
     format!("unit of {}", one.name)
-}
-
-fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
-    let leaf = |symbol| match symbol {
-        Symbol::Parameter(index) => known(model, index, values),
-        _ => f64::NAN,
-    };
-    model.graph.evaluate(e, &leaf)
-}
-
-/// The value of a parameter: what somebody knows, its default, or the middle of its range.
-fn known(model: &Model, index: u16, values: Values) -> f64 {
-    let parameter = &model.parameters[usize::from(index)];
-    let default = match parameter.default {
-        Default::Value(value) => Some(value),
-        Default::Same(other) => Some(known(model, other, values)),
-        Default::None => None,
-    };
-    values(&parameter.name)
-        .or(default)
-        .or(parameter.range.map(middle))
-        .unwrap_or(f64::NAN)
-}
-
-fn middle((low, high): (f64, f64)) -> f64 {
-    if low > 0.0 {
-        (low * high).sqrt()
-    } else {
-        (low + high) / 2.0
-    }
 }
 
 /// The numbers of a parameter, in SI.

@@ -38,6 +38,13 @@ pub fn lever(base: &Base, direction: &str, link: &Link, point: &str) -> Option<E
     own.next().and_then(|part| part.factor)
 }
 
+/// The points that stand with a factor in a stretch: those that levers turn with, and about.
+pub fn levered(base: &Base, direction: &str, link: &Link) -> Vec<String> {
+    let parts = parts(base, direction, &link.stretch).into_iter();
+    let levered = parts.filter(|part| part.factor.is_some());
+    levered.map(|part| base.pointed_at(direction, &part.point)).collect()
+}
+
 fn parts(base: &Base, direction: &str, stretch: &Expression) -> Vec<Part> {
     match &stretch.kind {
         ExpressionKind::Name(name) => vec![Part {

@@ -16,7 +16,8 @@ pub fn effect_lines(effect: &Effect) -> Vec<String> {
 
 fn form_lines(form: &Form) -> Vec<String> {
     let body = form.body.iter().flat_map(change_lines).collect();
-    block(&format!("form {}", form.name.text), &form.doc, body)
+    let terms = worded(" with ", &texts(&form.terms), ", ");
+    block(&format!("form {}{terms}", form.name.text), &form.doc, body)
 }
 
 fn pattern(pattern: &Pattern) -> String {
@@ -26,6 +27,11 @@ fn pattern(pattern: &Pattern) -> String {
     }
     let names: Vec<String> = pattern.names.iter().map(place_name).collect();
     text += &worded(" named ", &names, " | ");
+    let roles: Vec<String> = pattern.roles.iter().map(place_name).collect();
+    text += &worded(" role ", &roles, " | ");
+    if let Some(point) = &pattern.on {
+        text += &format!(" on {}", point.text);
+    }
     text += &worded(" with ", &texts(&pattern.terms), ", ");
     text += &worded(" given ", &texts(&pattern.given), ", ");
     if let Some(point) = &pattern.seen_from {
@@ -64,6 +70,10 @@ fn change_lines(change: &Change) -> Vec<String> {
         Change::ReplacePoint { point, of, by } => {
             let of = of.as_ref().map_or(String::new(), |link| format!(" of {}", link.text));
             vec![format!("replace {point}{of} by {by};")]
+        }
+        Change::ReplaceStretch { of, by, rolling } => {
+            let rolling = rolling.as_ref().map_or(String::new(), |by| format!(" rolling {by}"));
+            vec![format!("replace s of {} by {by}{rolling};", of.text)]
         }
         Change::Remove(link) => vec![format!("remove {};", link.text)],
         Change::Direction { name, without, body } => {

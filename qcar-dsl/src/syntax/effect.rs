@@ -42,6 +42,8 @@ pub struct Form {
     pub name: Name,
     /// The sentence.
     pub doc: String,
+    /// `with law`: terms that the link must have for this form.
+    pub terms: Vec<Name>,
     /// In the order of the text.
     pub body: Vec<Change>,
 }
@@ -74,7 +76,12 @@ pub struct Pattern {
     /// `named damper` or `named sf as subframe`: the names that a place may have, with what the catalogue calls it.
     /// Any name where there is none.
     pub names: Vec<(Name, Option<Name>)>,
-    /// `with spring, damper`: linear terms that the link must have.
+    /// `role suspension` or `role body | pivot as subframe`: what the place does, with what the catalogue calls it.
+    /// Anything where there is none.
+    pub roles: Vec<(Name, Option<Name>)>,
+    /// `on body`: the point that is the upper end of the link.
+    pub on: Option<Name>,
+    /// `with spring, damper`: linear terms that the link must have, `damping` of any law, or a `law` beside linear terms.
     pub terms: Vec<Name>,
     /// `given m_corner, pivot`: what the model must declare.
     pub given: Vec<Name>,
@@ -129,6 +136,15 @@ pub enum Change {
         of: Option<Name>,
         /// What stands there instead.
         by: Expression,
+    },
+    /// `replace s of l by 1.2 * s rolling 1.3 * s;`: what the law of a link takes for its stretch.
+    ReplaceStretch {
+        /// The link.
+        of: Name,
+        /// What stands for `s`.
+        by: Expression,
+        /// The same while a tyre rolls; nothing changes there where there is none.
+        rolling: Option<Expression>,
     },
     /// `remove l;`
     Remove(Name),

@@ -1,0 +1,300 @@
+//! What the parts of a model are to each other, read from its structure, whatever they are called.
+//!
+//! The tyre joins a mass to a road; that direction is the axle's own. A model without a road has one axle in every
+//! direction, and no wheel. Weights are the model's own expressions at the values that somebody knows.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::ask::{Values, numbers};
+use super::base::{Base, coordinates, links};
+use super::rewrite::names_in;
+use super::stretch::{levered, lower, upper};
+use crate::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
+
+/// The words for links, as `role tire` has them.
+pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];
+
+/// The words for masses.
+pub const OF_MASSES: [&str; 3] = ["body", "wheel", "pivot"];
+
+/// The parts of a model by what they do.
+#[derive(Clone, Debug, Default)]
+pub struct Roles {
+    /// The direction of the tyre.
+    along: Option<String>,
+    /// The mass on the tyre; with a belt of its own between, the heavier one that alone holds it.
+    wheel: Option<String>,
+    /// The heaviest mass of each direction but the wheel; along others the one of the same name, where there is one.
+    body: BTreeMap<String, String>,
+    /// The mass other than the body that levers of the suspension turn about.
+    pivot: Option<String>,
+    /// Each link of the axle's own directions with its role.
+    links: BTreeMap<(String, String), &'static str>,
+    /// What hangs on the rest by one mount alone.
+    hanging: BTreeSet<String>,
+}
+
+impl Roles {
+    /// Finds them.
+    pub fn of(base: &Base, values: Values) -> Roles {
+        let mut roles = Roles::default();
+        let tyre = base.directions().find_map(|direction| {
+            let tyre = links(direction).find(|link| is_tyre(direction, link))?;
+            Some((direction, tyre))
+        });
+        let masses = Masses::of(base, values);
+        if let Some((direction, tyre)) = tyre {
+            let along = direction.name.text.clone();
+            let on_tyre = upper(base, &along, tyre).map(|name| base.pointed_at(&along, &name));
+            roles.along = Some(along.clone());
+            roles.body.extend(
+                masses
+                    .heaviest(&along, on_tyre.as_deref())
+                    .map(|body| (along.clone(), body)),
+            );
+            roles.wheel = on_tyre.map(|mass| carried(base, direction, mass, &masses, roles.body.get(&along)));
+        }
+        for direction in base.directions() {
+            let name = &direction.name.text;
+            let own = roles.along.as_ref().and_then(|along| roles.body.get(along));
+            let same = own.filter(|own| base.coordinate(name, own).is_some()).cloned();
+            let body = same.or_else(|| masses.heaviest(name, roles.wheel.as_deref()));
+            roles.body.extend(body.map(|body| (name.clone(), body)));
+        }
+        roles.pivot = roles.found_pivot(base);
+        for direction in base.directions() {
+            roles.sort_links(base, direction);
+        }
+        roles
+    }
+
+    /// The name of the part that a word stands for along a direction.
+    pub fn meant(&self, base: &Base, direction: &str, word: &str) -> Option<String> {
+        let moves = |name: &&String| base.coordinate(direction, name).is_some();
+        match word {
+            "body" => self.body.get(direction).cloned(),
+            "wheel" => self.wheel.as_ref().filter(moves).cloned(),
+            "hanger" => {
+                let mut own = links(base.direction(direction)?).filter(|link| {
+                    let held = held(base, direction, link);
+                    held.len() == 2 && held.iter().any(|end| self.hanging.contains(end))
+                });
+                own.next().map(|link| link.name.text.clone())
+            }
+            "wheel_bushing" => {
+                let mut own = links(base.direction(direction)?).map(|link| &link.name.text);
+                own.find(|link| self.is_link(direction, link, word)).cloned()
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether a link has a role.
+    pub fn is_link(&self, direction: &str, link: &str, role: &str) -> bool {
+        let own = self.links.get(&(direction.to_string(), link.to_string()));
+        // A hanger, and what carries the pivot, is a mount.
+        own.is_some_and(|own| *own == role || role == "mount" && ["hanger", "pivot_mount"].contains(own))
+    }
+
+    /// Whether a mass has a role: along the axle's own direction.
+    pub fn is_mass(&self, direction: &str, mass: &str, role: &str) -> bool {
+        let own = match role {
+            "body" => self.body.get(direction),
+            "wheel" => self.wheel.as_ref(),
+            _ => self.pivot.as_ref(),
+        };
+        self.is_own(direction) && own.is_some_and(|own| own == mass)
+    }
+
+    fn is_own(&self, direction: &str) -> bool {
+        self.along.as_ref().is_none_or(|along| along == direction)
+    }
+
+    /// What levers of the suspension turn about, where that is a mass of its own.
+    fn found_pivot(&self, base: &Base) -> Option<String> {
+        let along = self.along.as_ref()?;
+        let (wheel, body) = (self.wheel.as_ref()?, self.body.get(along));
+        let suspending = links(base.direction(along)?).filter(|link| held(base, along, link).contains(wheel));
+        let mut points = suspending.flat_map(|link| levered(base, along, link));
+        points.find(|point| point != wheel && Some(point) != body && is_mass(base, along, point))
+    }
+
+    fn sort_links(&mut self, base: &Base, direction: &Direction) {
+        let along = &direction.name.text;
+        for link in links(direction) {
+            let role = match (self.is_own(along), &self.wheel) {
+                (true, _) => self.role_along(base, direction, link),
+                (false, Some(wheel)) => held(base, along, link).contains(wheel).then_some("wheel_bushing"),
+                (false, None) => None,
+            };
+            if let Some(role) = role {
+                self.links.insert((along.clone(), link.name.text.clone()), role);
+            }
+        }
+    }
+
+    fn role_along(&mut self, base: &Base, direction: &Direction, link: &Link) -> Option<&'static str> {
+        let along = &direction.name.text;
+        let Some(wheel) = self.wheel.clone() else {
+            return Some("suspension");
+        };
+        let body = self.body.get(along)?.clone();
+        let ends = held(base, along, link);
+        if is_tyre(direction, link) {
+            return Some("tire");
+        }
+        if ends.contains(&wheel) {
+            let reached = reached(base, direction, &body, &|_, held| held.contains(&wheel));
+            return ends
+                .iter()
+                .any(|end| *end != wheel && reached.contains(end))
+                .then_some("suspension");
+        }
+        if ends.len() < 2 {
+            return None;
+        }
+        let without = reached(base, direction, &body, &|other, _| other.name.text == link.name.text);
+        if let Some(loose) = ends.iter().find(|end| !without.contains(*end)) {
+            self.hanging.insert(loose.clone());
+            return Some("hanger");
+        }
+        let carries = lower(base, along, link).map(|name| base.pointed_at(along, &name)) == self.pivot;
+        Some(if carries && self.pivot.is_some() {
+            "pivot_mount"
+        } else {
+            "mount"
+        })
+    }
+}
+
+/// The masses of every direction with what they weigh.
+struct Masses(Vec<(String, String, f64)>);
+
+impl Masses {
+    fn of(base: &Base, values: Values) -> Masses {
+        let mut all = Vec::new();
+        for direction in base.directions() {
+            for coordinate in coordinates(direction) {
+                if let CoordinateKind::Mass(mass) = &coordinate.kind {
+                    all.push((direction.name.text.clone(), coordinate.name.text.clone(), mass.clone()));
+                }
+            }
+        }
+        let expressions: Vec<Expression> = all.iter().map(|(.., mass)| mass.clone()).collect();
+        let weights = numbers(base, &expressions, values);
+        let weighed = all.into_iter().zip(weights);
+        Masses(
+            weighed
+                .map(|((direction, name, _), weight)| (direction, name, weight))
+                .collect(),
+        )
+    }
+
+    fn weight(&self, direction: &str, name: &str) -> Option<f64> {
+        let own = self
+            .0
+            .iter()
+            .find(|(along, own, _)| along == direction && own == name)?;
+        Some(own.2)
+    }
+
+    /// The heaviest mass of a direction but one; of equal ones, and of those that nobody knows, the first.
+    fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
+        let others = self
+            .0
+            .iter()
+            .filter(|(along, name, _)| along == direction && Some(name.as_str()) != but);
+        let heavier = |best: Option<&'_ (String, String, f64)>, own: &(String, String, f64)| {
+            best.is_none_or(|best| own.2 > best.2 || best.2.is_nan() && !own.2.is_nan())
+        };
+        let mut best = None;
+        for own in others {
+            if heavier(best, own) {
+                best = Some(own);
+            }
+        }
+        best.map(|(_, name, _)| name.clone())
+    }
+}
+
+/// From the mass on the tyre to the wheel: a belt hangs on a heavier mass alone.
+fn carried(base: &Base, direction: &Direction, mass: String, masses: &Masses, body: Option<&String>) -> String {
+    let along = &direction.name.text;
+    let mut others = BTreeSet::new();
+    for link in links(direction).filter(|link| !is_tyre(direction, link)) {
+        let held = held(base, along, link);
+        if held.contains(&mass) {
+            others.extend(held.into_iter().filter(|end| *end != mass));
+        }
+    }
+    let [only] = others.iter().collect::<Vec<_>>()[..] else {
+        return mass;
+    };
+    let heavier = masses.weight(along, only) > masses.weight(along, &mass);
+    if heavier && Some(only) != body {
+        only.clone()
+    } else {
+        mass
+    }
+}
+
+fn is_mass(base: &Base, direction: &str, point: &str) -> bool {
+    let own = base.coordinate(direction, point);
+    own.is_some_and(|own| matches!(own.kind, CoordinateKind::Mass(_)))
+}
+
+/// What is connected to a point by links but some.
+fn reached(
+    base: &Base,
+    direction: &Direction,
+    from: &str,
+    but: &dyn Fn(&Link, &BTreeSet<String>) -> bool,
+) -> BTreeSet<String> {
+    let along = &direction.name.text;
+    let joined: Vec<BTreeSet<String>> = links(direction)
+        .map(|link| (link, held(base, along, link)))
+        .filter(|(link, held)| !is_tyre(direction, link) && !but(link, held))
+        .map(|(_, held)| held)
+        .collect();
+    let mut found = BTreeSet::from([from.to_string()]);
+    loop {
+        let before = found.len();
+        for held in &joined {
+            if !found.is_disjoint(held) {
+                found.extend(held.iter().cloned());
+            }
+        }
+        if found.len() == before {
+            return found;
+        }
+    }
+}
+
+/// What a link holds of its own direction.
+fn held(base: &Base, direction: &str, link: &Link) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    names_in(&link.stretch, &mut |name| {
+        found.extend(own_point(base, direction, name));
+    });
+    found
+}
+
+fn own_point(base: &Base, direction: &str, name: &Dotted) -> Option<String> {
+    let point = match name.names.as_slice() {
+        [point] => point,
+        [home, point] if home.text == direction => point,
+        _ => return None,
+    };
+    let meant = base.pointed_at(direction, &point.text);
+    base.coordinate(direction, &meant).map(|_| meant)
+}
+
+fn is_tyre(direction: &Direction, link: &Link) -> bool {
+    let mut found = false;
+    names_in(&link.stretch, &mut |name| {
+        let Some(last) = name.names.last() else { return };
+        found |=
+            coordinates(direction).any(|own| own.name.text == last.text && matches!(own.kind, CoordinateKind::Road));
+    });
+    found
+}

@@ -1,0 +1,72 @@
+//! How far, how fast and how hard a place is moved in a campaign: what the range of an effect may be measured by.
+
+use crate::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
+
+/// A reference value of a place: its largest amplitude in the runs of a campaign.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// `l.force_scale`, N.
+    Force,
+    /// `l.travel_scale`, m: the stretch of a link, the motion of a mass.
+    Travel,
+    /// `l.speed_scale`, m/s.
+    Speed,
+    /// `m.acceleration_scale`, m/s².
+    Acceleration,
+}
+
+impl Scale {
+    /// Every one.
+    pub const ALL: [Scale; 4] = [Scale::Force, Scale::Travel, Scale::Speed, Scale::Acceleration];
+
+    /// As written behind the dot.
+    pub fn word(self) -> &'static str {
+        match self {
+            Scale::Force => "force_scale",
+            Scale::Travel => "travel_scale",
+            Scale::Speed => "speed_scale",
+            Scale::Acceleration => "acceleration_scale",
+        }
+    }
+
+    /// The one that is written so.
+    pub fn written(word: &str) -> Option<Scale> {
+        Scale::ALL.into_iter().find(|scale| scale.word() == word)
+    }
+
+    /// The name by which the value of a link or mass is looked up: `z.damper.force_scale`.
+    pub fn name(self, direction: &str, place: &str) -> String {
+        format!("{direction}.{place}.{}", self.word())
+    }
+
+    /// The value of an axle on a rig, which stands where nobody has measured, and the unit.
+    fn usual(self) -> (f64, &'static [(&'static str, i32)]) {
+        match self {
+            Scale::Force => (1e3, &[("N", 1)]),
+            Scale::Travel => (20e-3, &[("m", 1)]),
+            Scale::Speed => (0.5, &[("m", 1), ("s", -1)]),
+            Scale::Acceleration => (10.0, &[("m", 1), ("s", -2)]),
+        }
+    }
+
+    /// The reference value of a place as a parameter of the model, for expressions that use it.
+    pub fn declaration(self, name: &str) -> Parameter {
+        let (value, factors) = self.usual();
+        let factor = |&(symbol, numerator): &(&str, i32)| UnitFactor {
+            symbol: Name::new(symbol),
+            numerator,
+            denominator: 1,
+        };
+        Parameter {
+            known: true,
+            name: Name::new(name),
+            unit: UnitText {
+                factors: factors.iter().map(factor).collect(),
+                ..UnitText::default()
+            },
+            default: Some(ParameterDefault::Number(Number::new(value))),
+            range: None,
+            doc: String::new(),
+        }
+    }
+}

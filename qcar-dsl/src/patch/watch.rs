@@ -1,0 +1,43 @@
+//! A model that shows what all its parts do.
+
+use super::base::{Base, coordinates, links};
+use crate::check::Checked;
+use crate::diagnostic::Report;
+use crate::front::check_text;
+use crate::source::Source;
+use crate::syntax::{CoordinateKind, Direction, Dotted, Name, Statement};
+
+/// The model with the stretch and the force of every link and the acceleration of every mass among its outputs.
+///
+/// # Errors
+/// None, but for a mistake of this function: what stands in a model can be shown.
+pub fn watched(model: &Checked) -> Result<Checked, Report> {
+    let mut tree = Base::of(model);
+    for statement in &mut tree.axle.body {
+        if let Statement::Direction(direction) = statement {
+            let shown: Vec<Statement> = shown(direction);
+            direction.body.extend(shown);
+        }
+    }
+    let source = Source {
+        name: format!("{}.axle", model.name),
+        text: tree.file().to_string(),
+    };
+    check_text(source, &|_, path| Err(format!("{path} is not part of a plain model")))
+}
+
+fn shown(direction: &Direction) -> Vec<Statement> {
+    let of_links = links(direction).flat_map(|link| ["stretch", "force"].map(|what| (&link.name, what)));
+    let masses = coordinates(direction).filter(|own| matches!(own.kind, CoordinateKind::Mass(_)));
+    let of_masses = masses.map(|mass| (&mass.name, "acceleration"));
+    let all = of_links.chain(of_masses);
+    all.map(|(place, what)| output(&direction.name, place, what)).collect()
+}
+
+fn output(direction: &Name, place: &Name, what: &str) -> Statement {
+    let name = format!("watched_{}_{}_{what}", direction.text, place.text);
+    let signal = Dotted {
+        names: vec![Name::new(&place.text), Name::new(what)],
+    };
+    Statement::Output(Some(Name::new(name)), signal)
+}

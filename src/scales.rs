@@ -1,0 +1,197 @@
+//! How far, how fast and how hard the parts of a model are moved in a campaign, as the model without any effect has it:
+//! what the ranges of effects are measured by.
+//!
+//! Sweeps count by their measured amplitude, line by line, other records by the RMS value of what drove them, and both
+//! by the linear response of the model at rest. A force that was measured on a link stands for itself.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use qcar_dsl::check::Checked;
+use qcar_dsl::compile::derive;
+use qcar_dsl::patch::{Scale, watched};
+use qcar_runtime::campaign::{Quantity as Measured, Role};
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::evidence::{Kind, Run, Stimulus, signal_of};
+use qcar_runtime::model::{About, Excitation, Model, Quantity, Signal, SignalKind};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::spectrum::transform;
+use qcar_runtime::transmissibility::Point;
+
+use crate::evaluated::Evaluated;
+
+/// Frequencies at which a record is looked at: thirds of an octave are coarse for a resonance, but a scale is no more than
+/// an order of magnitude.
+const BANDS_PER_OCTAVE: f64 = 3.0;
+
+/// What drove a run, as amplitudes of a sensor at frequencies (Hz).
+struct Driven<'a> {
+    reference: &'a Point,
+    frequency: Vec<f64>,
+    amplitude: Vec<f64>,
+    /// True where the amplitudes act at once, false where they do one after the other.
+    at_once: bool,
+}
+
+/// The largest amplitude of each part in the runs that are fitted, by the name of its reference value. Parts that do not
+/// move, and all parts where the model lacks a value, have none.
+pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Evidence) -> BTreeMap<String, f64> {
+    let Ok(shown) = watched(model) else {
+        return BTreeMap::new();
+    };
+    let shown = Evaluated::new(&derive(shown));
+    let Ok(values) = Values::resolve(shown.about(), &BTreeMap::new(), values) else {
+        return BTreeMap::new();
+    };
+    let mut found = BTreeMap::new();
+    let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
+    for driven in fitted.flat_map(driven) {
+        for signal in parts(shown.about()) {
+            for (name, amplitude) in amplitudes(&shown, &values, &driven, &signal) {
+                raise(&mut found, name, amplitude);
+            }
+        }
+    }
+    found.extend(measured(shown.about(), evidence));
+    found
+}
+
+/// Keeps the larger of two amplitudes.
+fn raise(found: &mut BTreeMap<String, f64>, name: String, amplitude: f64) {
+    if amplitude.is_finite() && amplitude > 0.0 {
+        let known = found.entry(name).or_insert(amplitude);
+        *known = known.max(amplitude);
+    }
+}
+
+fn driven(run: &Run) -> Vec<Driven<'_>> {
+    match &run.stimulus {
+        Stimulus::Sweep {
+            reference,
+            frequency,
+            amplitude,
+            ..
+        } => vec![Driven {
+            reference,
+            frequency: frequency.clone(),
+            amplitude: amplitude.clone(),
+            at_once: false,
+        }],
+        Stimulus::History { inputs, rate, .. } => {
+            let signals = inputs.signals.iter();
+            signals
+                .map(|(point, samples)| recorded(point, samples, *rate))
+                .collect()
+        }
+        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => vec![],
+    }
+}
+
+/// The amplitude that a record has in each band of frequency.
+fn recorded<'a>(reference: &'a Point, samples: &[f64], rate: f64) -> Driven<'a> {
+    let lines = transform(samples);
+    let (length, spacing) = (samples.len() as f64, rate / samples.len() as f64);
+    let mut bands: BTreeMap<i64, f64> = BTreeMap::new();
+    for (k, line) in lines.iter().enumerate().skip(1) {
+        let band = ((k as f64 * spacing).log2() * BANDS_PER_OCTAVE).round() as i64;
+        *bands.entry(band).or_default() += (2.0 * line.norm() / length).powi(2);
+    }
+    Driven {
+        reference,
+        frequency: bands
+            .keys()
+            .map(|band| (*band as f64 / BANDS_PER_OCTAVE).exp2())
+            .collect(),
+        amplitude: bands.values().map(|square| square.sqrt()).collect(),
+        at_once: true,
+    }
+}
+
+/// Every signal of which a part has reference values.
+fn parts(about: &About) -> Vec<Signal> {
+    let shown = about.outputs.iter().map(|output| output.signal.clone());
+    let mut parts: Vec<Signal> = Vec::new();
+    for signal in shown {
+        let counts = matches!(
+            signal.kind,
+            SignalKind::Force | SignalKind::Stretch | SignalKind::Motion(Quantity::Acceleration)
+        );
+        if counts && !parts.contains(&signal) {
+            parts.push(signal);
+        }
+    }
+    parts
+}
+
+/// The reference values that a signal shows, each as often differentiated or integrated as it needs.
+fn orders(kind: SignalKind) -> &'static [(Scale, i32)] {
+    match kind {
+        SignalKind::Force => &[(Scale::Force, 0)],
+        SignalKind::Stretch => &[(Scale::Travel, 0), (Scale::Speed, 1)],
+        SignalKind::Motion(_) => &[(Scale::Travel, -2), (Scale::Speed, -1), (Scale::Acceleration, 0)],
+    }
+}
+
+fn amplitudes(model: &Evaluated, values: &Values, driven: &Driven, signal: &Signal) -> Vec<(String, f64)> {
+    let about = model.about();
+    let Some(excitation) = excitation(about, driven.reference) else {
+        return vec![];
+    };
+    let below = signal_of(about, driven.reference);
+    let Ok(ratio) = ratio(model, values, excitation, signal, &below, &driven.frequency) else {
+        return vec![];
+    };
+    let lines = ratio.value.iter().zip(&driven.amplitude).zip(&driven.frequency);
+    let lines: Vec<(f64, f64)> = lines.map(|((h, a), f)| (h.norm() * a, TAU * f)).collect();
+    let of_order = |&(scale, order): &(Scale, i32)| {
+        let all = lines.iter().map(|(amplitude, omega)| amplitude * omega.powi(order));
+        let all = all.filter(|amplitude| amplitude.is_finite());
+        let whole = if driven.at_once {
+            all.map(|amplitude| amplitude * amplitude).sum::<f64>().sqrt()
+        } else {
+            all.fold(0.0, f64::max)
+        };
+        (scale.name(&signal.axis, &signal.location), whole)
+    };
+    orders(signal.kind).iter().map(of_order).collect()
+}
+
+/// What a sensor shows of the inputs: the one that it stands on, or the only one along its axis.
+fn excitation(about: &About, reference: &Point) -> Option<usize> {
+    let along = |own: &Excitation| own.axis == reference.axis.name();
+    let own = about
+        .excitations
+        .iter()
+        .position(|own| along(own) && own.name == reference.location);
+    let mut others = about.excitations.iter().enumerate().filter(|(_, own)| along(own));
+    own.or_else(|| {
+        others
+            .next()
+            .filter(|_| others.next().is_none())
+            .map(|(place, _)| place)
+    })
+}
+
+/// Forces that sensors read on links.
+fn measured(about: &About, evidence: &Evidence) -> BTreeMap<String, f64> {
+    let mut found = BTreeMap::new();
+    for (_, series) in evidence.of_role(Role::Fit) {
+        let Point { location, axis, .. } = &series.sensor;
+        let is_link = about
+            .links
+            .iter()
+            .any(|link| link.name == *location && link.axis == axis.name());
+        if is_link && series.kind == Kind::Time && series.sensor.quantity == Measured::Force {
+            let count = series.value.len() as f64;
+            let mean = series.value.iter().map(|value| value.re).sum::<f64>() / count;
+            let square = series.value.iter().map(|value| (value.re - mean).powi(2)).sum::<f64>() / count;
+            raise(
+                &mut found,
+                Scale::Force.name(axis.name(), location),
+                (2.0 * square).sqrt(),
+            );
+        }
+    }
+    found
+}
