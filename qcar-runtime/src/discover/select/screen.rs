@@ -36,10 +36,12 @@ impl Prospect {
 
 /// Starts of a candidate that are fitted.
 const STARTS: usize = 3;
-/// How far towards the ends of their ranges one shape is tried,
-const SHAPES: [f64; 9] = [0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
-/// each of several,
-const FEW_SHAPES: [f64; 5] = [0.0, -0.35, 0.35, -0.7, 0.7];
+/// How far towards the ends of their ranges a single shape is tried,
+const SHAPES: &[f64] = &[0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
+/// each of two or more of a linear model, which costs little,
+const SHAPES_OF_LINEAR: &[f64] = &[0.0, -0.35, 0.35, -0.7, 0.7];
+/// each of two of any other, and each of more, one after the other,
+const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 /// and anything else.
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
@@ -272,10 +274,12 @@ fn coefficient(form: Form, value: f64) -> f64 {
 fn grid(candidate: &Candidate) -> Vec<Point> {
     let parameters = candidate.parameters();
     let is_shape = |own: &&Added| own.role == ParameterRole::Shape && !own.known;
-    let of_shape: &[f64] = if parameters.iter().filter(is_shape).count() > 1 {
-        &FEW_SHAPES
-    } else {
-        &SHAPES
+    let is_linear = matches!(&candidate.change, Change::Model { model, .. } if model.about().linear);
+    let (of_shape, together) = match (parameters.iter().filter(is_shape).count(), is_linear) {
+        (0 | 1, _) => (SHAPES, true),
+        (_, true) => (SHAPES_OF_LINEAR, true),
+        (2, false) => (FEW_SHAPES, true),
+        (_, false) => (FEW_SHAPES, false),
     };
     let start = vec![0.0; parameters.len()];
     let mut points = vec![start.clone()];
@@ -295,7 +299,7 @@ fn grid(candidate: &Candidate) -> Vec<Point> {
         };
         // Shapes go with everything; anything else moves alone.
         let more: Vec<Vec<f64>> = match own.role {
-            ParameterRole::Shape => points.iter().flat_map(moved).collect(),
+            ParameterRole::Shape if together => points.iter().flat_map(moved).collect(),
             _ => moved(&start).collect(),
         };
         points.extend(more);

@@ -260,7 +260,8 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
     probable
 }
 
-/// The set itself, or the part of it that predicts the runs that judge better: what does not predict is withdrawn.
+/// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
+/// what does not predict, and what changes next to nothing, is withdrawn.
 fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return best;
@@ -270,7 +271,12 @@ fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
         let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
         let part = (0..sets.len()).filter(is_less).max_by(order);
-        match part.filter(|&part| log_score(&sets[part], evidence) >= log_score(&sets[best], evidence)) {
+        let withdrawn = |&part: &usize| {
+            let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
+            let predicts = log_score(&sets[best], evidence) > log_score(&sets[part], evidence);
+            !predicts || part != 0 && closes < EXPLAINED
+        };
+        match part.filter(withdrawn) {
             Some(part) => best = part,
             None => return best,
         }
