@@ -17,6 +17,8 @@ pub mod spelling;
 pub mod progress;
 // The measurement as it lies on disk.
 pub mod campaign;
+// Which part of a model is the wheel, its road and its body.
+pub mod roles;
 // From time histories to transmissibilities.
 pub mod spectrum;
 // Sweeps to transmissibilities, with their uncertainty.

@@ -108,9 +108,14 @@ impl<'a> Section<'a> {
         self.typed(key, value.as_str().map(str::to_string), value, "a text in quotes")
     }
 
+    /// A text, `None` where the key is left out.
+    pub fn optional_text(&self, key: &'static str) -> Option<String> {
+        self.optional(key).and_then(|_| self.text(key))
+    }
+
     /// A text, empty where the key is left out.
     pub fn remark(&self, key: &'static str) -> String {
-        self.optional(key).and_then(|_| self.text(key)).unwrap_or_default()
+        self.optional_text(key).unwrap_or_default()
     }
 
     /// A finite number.

@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, Campaign, Channel, Parameter, Quantity, Road, Role, Run, Side, Spacing, Sweep, Test};
+use super::contents::{
+    Axis, Campaign, Channel, Parameter, Quantity, Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test,
+};
 use super::fields::{Document, Section};
 use super::{table, unit};
 use crate::error::{InputError, Place, Problem};
@@ -40,6 +42,7 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         .section("vehicle")
         .map(|section| section.numbers())
         .unwrap_or_default();
+    let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
     let parameters = top
         .section("parameters")
         .map_or(Some(Vec::new()), |section| parameters(&section));
@@ -63,6 +66,7 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         description,
         model,
         vehicle,
+        roles,
         parameters,
         channels,
         runs,
@@ -107,6 +111,12 @@ fn each<'a, T>(
         members.push(member);
     }
     members.into_iter().collect()
+}
+
+fn roles(section: &Section<'_>) -> RoleNames {
+    let (wheel, body) = (section.optional_text("wheel"), section.optional_text("body"));
+    section.finish();
+    RoleNames { wheel, body }
 }
 
 fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {

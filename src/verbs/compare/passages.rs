@@ -1,9 +1,10 @@
 //! Both sides over the same cleats, and what was measured there: peaks, after-shakes and traces.
 
-use qcar_runtime::campaign::{Campaign, Quantity, Role};
+use qcar_runtime::campaign::{Campaign, Quantity, Role, RoleNames};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, SignalKind};
 use qcar_runtime::progress::Told;
+use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
 
 use super::records::{Compared, Key, Record, compared};
@@ -157,7 +158,8 @@ fn passage(sides: &[Side; 2], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passa
     let cleats = run.measured();
     let measured: Vec<Record> = cleats.iter().map(|cleat| recorded(cleat)).collect();
     let rate = run.drive().sample_rate;
-    let compared = compared(&simulated, &measured, rate).map_err(|error| refused(run, &error.to_string()))?;
+    let compared =
+        compared(&simulated, &measured, &feeling(sides), rate).map_err(|error| refused(run, &error.to_string()))?;
     let role = |cleat: &&Cleat| if cleat.run.role == Role::Fit { "fit" } else { "held_out" };
     Ok(Passage {
         name: run.name(),
@@ -166,6 +168,15 @@ fn passage(sides: &[Side; 2], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passa
         role: cleats.first().map(role),
         compared,
     })
+}
+
+/// The masses of both sides in the order in which they feel a cleat: from the tyre on.
+fn feeling(sides: &[Side; 2]) -> Vec<Key> {
+    let roles = sides
+        .iter()
+        .filter_map(|side| Roles::of(side.model.about(), &RoleNames::default()).ok());
+    let masses = roles.flat_map(|Roles { masses, axis, .. }| masses.into_iter().map(move |mass| (mass, axis.clone())));
+    masses.collect()
 }
 
 /// The accelerations of a ride.

@@ -66,7 +66,8 @@ pub(super) fn text(of: &Compared, guessed: &[String]) -> String {
         let cells = [size.peak, size.after_shake].into_iter().flat_map(median_and_worst);
         sizes.row(std::iter::once(name.clone()).chain(cells).collect());
     }
-    format!("{}\n{}{}", runs.text(), sizes.text(), note(guessed))
+    let notices: String = of.notices.iter().map(|notice| format!("\nnote: {notice}\n")).collect();
+    format!("{}\n{}{notices}{}", runs.text(), sizes.text(), note(guessed))
 }
 
 fn note(guessed: &[String]) -> String {

@@ -136,7 +136,7 @@ struct Aligned {
 impl Aligned {
     fn new(about: &About, cleat: &Cleat, ride: &Ride) -> Option<Self> {
         let pairs = pairs(about, cleat, ride);
-        let alignment = alignment(&pairs).ok()??;
+        let alignment = alignment(about, &pairs).ok()??;
         let (rate, windows) = (cleat.measured.sample_rate, Windows::default());
         let samples = |seconds: f64| (seconds * rate).round() as usize;
         let from = alignment.onset.saturating_sub(samples(RUN_IN));
