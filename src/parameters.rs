@@ -177,17 +177,18 @@ pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
     open.filter_map(parameter).collect()
 }
 
-/// What is computed from parameter values is a number.
+/// What is computed from parameter values of the model called `model` is a number.
 ///
 /// # Errors
 /// Where it is not.
-pub fn require_finite<'a>(mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
+pub fn require_finite<'a>(model: &str, mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
     match computed.find(|value| !value.is_finite()) {
         None => Ok(()),
         Some(value) => {
             let (place, found) = (Place::Name("parameters".into()), format!("a result that is {value}"));
             let remedy = "correct the values, of which one is too large or makes the model divide by zero";
-            Err(Problem::new("command line", place, found, "values that give finite numbers", remedy).into())
+            let expected = "parameter values that give finite numbers";
+            Err(Problem::new(format!("model {model}"), place, found, expected, remedy).into())
         }
     }
 }

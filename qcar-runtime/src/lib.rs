@@ -13,6 +13,8 @@ pub mod generated;
 pub mod error;
 // What a misspelt name was meant to be.
 pub mod spelling;
+// Files that are read no further than a limit.
+pub mod bounded;
 // How far long work is.
 pub mod progress;
 // The measurement as it lies on disk.

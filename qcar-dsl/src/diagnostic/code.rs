@@ -142,6 +142,8 @@ codes! {
     ArgumentHasUnit = "argument_has_unit",
     /// A power of a quantity with a unit to something that is no number.
     ExponentNotConstant = "exponent_not_constant",
+    /// A constant expression without a finite value.
+    NotFinite = "not_finite",
     /// A literal zero below a fraction bar.
     DivisionByZero = "division_by_zero",
     /// Parts of a stretch that move, multiplied or put into a function.

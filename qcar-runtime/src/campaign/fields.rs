@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 use crate::spelling;
 
@@ -30,7 +31,7 @@ pub(super) struct Section<'a> {
 impl Document {
     /// Reads a text file, which is TOML if [`Document::parse`] says so.
     pub fn read(file: &Path) -> Result<Document, InputError> {
-        match std::fs::read_to_string(file) {
+        match bounded::text(file) {
             Ok(text) => Ok(Document {
                 file: file.into(),
                 text,
