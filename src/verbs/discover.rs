@@ -22,7 +22,7 @@ use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
 use crate::parameters::{check_vehicle, own};
 use crate::progress::Showing;
-use crate::verbs::Format;
+use crate::verbs::{Format, kc};
 use crate::workshop::Bench;
 
 // Where something would explain the gap.
@@ -106,6 +106,10 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
+    if kc::has_curves(campaign) {
+        // A curve in a wrong unit would be evidence of an effect that is not there.
+        kc::gradients(campaign)?;
+    }
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(campaign, bench.model().about())?;

@@ -13,4 +13,6 @@ mod json_reference;
 mod newcomer;
 mod readme;
 mod rides;
+mod trials;
 mod tutorial;
+mod unending;

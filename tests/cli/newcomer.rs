@@ -76,6 +76,20 @@ fn a_new_campaign_says_what_to_put_where_and_fits_once_it_is_there() {
     let to = folder.path().join("data/rig/rig");
     fs::write(to.join("sweep_025.csv"), sweep(0.025, header)).unwrap();
     fs::write(to.join("sweep_100.csv"), sweep(0.1, header)).unwrap();
+    // What is known of the vehicle has no value that anybody could take for known.
+    let unknown = in_folder(folder.path(), "fit data/rig --starts 2");
+    assert!(
+        unknown.status == 2 && unknown.stderr.contains("m_corner"),
+        "{}",
+        unknown.stderr
+    );
+    let manifest = folder.path().join("data/rig/campaign.toml");
+    let mut text = fs::read_to_string(&manifest).unwrap();
+    for (name, value) in [("m_corner", 315), ("m_half_vehicle", 700), ("m_wheel_other_axle", 40)] {
+        assert!(text.contains(&format!("# {name} =")), "{text}");
+        text = text.replace(&format!("# {name} ="), &format!("{name} = {value}"));
+    }
+    fs::write(&manifest, text).unwrap();
     let fitted = well(folder.path(), "fit data/rig --starts 2");
     assert!(fitted.contains("city_car fitted to rig: converged"), "{fitted}");
     let again = in_folder(folder.path(), "new campaign rig --dir data");
