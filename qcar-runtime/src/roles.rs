@@ -167,8 +167,10 @@ fn outwards(about: &About, first: &str, axis: &str) -> Vec<String> {
 fn body(about: &About, wheel: &str, on_tyre: &str, axis: &str) -> Result<String, RoleError> {
     let of_wheel = masses_along(about, axis).find(|mass| mass.location == wheel);
     let of_wheel: &[u16] = of_wheel.map_or(&[], |mass| &mass.parameters);
-    let others: Vec<&Mass> = masses_along(about, axis)
-        .filter(|mass| ![wheel, on_tyre].contains(&&*mass.location))
+    let others = outwards(about, on_tyre, axis).into_iter();
+    let others = others.filter(|name| ![wheel, on_tyre].contains(&name.as_str()));
+    let others: Vec<&Mass> = others
+        .filter_map(|name| masses_along(about, axis).find(|mass| mass.location == name))
         .collect();
     let is_rest = |mass: &&Mass| mass.parameters.iter().any(|parameter| of_wheel.contains(parameter));
     let rest: Vec<&Mass> = others.iter().copied().filter(is_rest).collect();

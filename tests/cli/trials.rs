@@ -199,7 +199,10 @@ fn check_refuses_what_every_use_would() {
     }
     // What only some values make is a matter of these, not of a flag that nobody gave.
     let text = fs::read_to_string(folder.path().join("hub.axle")).unwrap();
-    let text = text.replace("spring k; damper c;", "force = sqrt(k - 30000 N/m)*s*sqrt(k);");
+    let text = text.replace(
+        "spring k; damper c;",
+        "damper c; force = sqrt(k - 30000 N/m)*s*sqrt(k);",
+    );
     fs::write(folder.path().join("some.axle"), text).unwrap();
     let ran = run_line(folder.path(), "matrices some.axle");
     assert!(
