@@ -19,7 +19,7 @@ use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 use crate::inertias::Inertias;
-use crate::parameters::check_vehicle;
+use crate::parameters::check_campaign;
 
 /// A model that can run.
 pub struct Loaded {
@@ -101,7 +101,7 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// that nobody knows.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
     let model = load(&named_by(campaign, wanted)?)?;
-    check_vehicle(model.about(), campaign)?;
+    check_campaign(model.about(), campaign)?;
     Ok(model)
 }
 
@@ -187,8 +187,9 @@ fn compile_shipped(shipped: &Shipped) -> Result<Compiled, Report> {
     })
 }
 
-fn looks_like_a_path(model: &str) -> bool {
-    model.contains(['/', '\\', '.'])
+/// True for what can be no shipped name.
+pub fn looks_like_a_path(name: &str) -> bool {
+    name.contains(['/', '\\', '.'])
 }
 
 fn unknown(model: &str) -> Problem {

@@ -13,6 +13,7 @@ use qcar_runtime::campaign::{self, Campaign, FACTS, dimension};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
+use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::spelling;
 
 use file::{ParameterFile, numbers};
@@ -63,13 +64,21 @@ fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<
     InputError::unless_empty(problems, values.ok())
 }
 
-/// What a campaign knows of the vehicle is of use to somebody.
+/// What a campaign knows of the vehicle is of use to somebody, and the masses that it names are those of the model.
 ///
 /// # Errors
-/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model.
-pub fn check_vehicle(about: &About, campaign: &Campaign) -> Result<(), InputError> {
+/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, and a name in its `[roles]`
+/// that is no mass on the tyre's axis.
+pub fn check_campaign(about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
-    InputError::unless_empty(unknown_facts(about, &file), Some(()))
+    let mut problems = unknown_facts(about, &file);
+    if let Err(RoleError::NoSuchMass { name, axis, masses, .. }) = Roles::of(about, &campaign.roles) {
+        let (place, found) = (Place::Name("roles".into()), format!("`{name}`"));
+        let expected = format!("a mass of model `{}` along {axis}", about.name);
+        let remedy = format!("write one of {}", masses.join(", "));
+        problems.push(Problem::new(campaign.manifest(), place, found, expected, remedy));
+    }
+    InputError::unless_empty(problems, Some(()))
 }
 
 /// The same for two models, of which each takes what it has: a name is wrong that neither of them knows.
@@ -175,6 +184,39 @@ pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
         Default::None | Default::Same(_) => None,
     };
     open.filter_map(parameter).collect()
+}
+
+/// Gives every parameter that is to be fitted and has no range that of the model.
+///
+/// # Errors
+/// Where the model has none either, or one that does not hold the start value: an estimate needs bounds, and what the
+/// campaign wants fitted must not stay where it is without a word.
+pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &Campaign) -> Result<(), InputError> {
+    let file = ParameterFile::read(&campaign.manifest())?;
+    let mut problems = Vec::new();
+    for own in parameters.iter_mut().filter(|own| own.fit && own.range.is_none()) {
+        let Some(of_model) = about.parameters.iter().find(|p| p.name == own.name) else {
+            continue;
+        };
+        let expected = match of_model.range {
+            None => "`range = [lower, upper]`, since the model gives it none".into(),
+            Some((low, high)) if !(low..=high).contains(&own.value) => {
+                format!("`range = [lower, upper]`, or a value from {low} to {high}, the range of the model")
+            }
+            Some(range) => {
+                own.range = Some(range);
+                continue;
+            }
+        };
+        let place = file
+            .parameters
+            .get(&own.name)
+            .map_or(Place::File, |own| own.place.clone());
+        let found = format!("`fit = true` without a range, from {} {} on", own.value, own.unit);
+        let remedy = format!("add the range to [parameters.{}], or write `fit = false`", own.name);
+        problems.push(Problem::new(campaign.manifest(), place, found, expected, remedy));
+    }
+    InputError::unless_empty(problems, Some(()))
 }
 
 /// What is computed from parameter values of the model called `model` is a number.

@@ -24,7 +24,7 @@ mod rules;
 
 pub(crate) use base::Base;
 use bind::Bindings;
-pub use start::Values;
+pub use start::{ParameterRole, Values};
 
 use crate::check::Checked;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
@@ -85,6 +85,8 @@ pub struct NewParameter {
     pub known: bool,
     /// The sentence.
     pub doc: String,
+    /// What it is to its effect.
+    pub role: ParameterRole,
     /// False for a shared one that the model had already.
     pub is_new: bool,
 }
@@ -223,12 +225,11 @@ impl Patch {
         let mut patching = apply::apply(Bindings::new(base, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
-            let [start, low, high] =
-                [&declared.start, &declared.range.0, &declared.range.1].map(|e| patching.meaning(e));
+            let expressions = start::expressions(declared).map(|e| patching.meaning(e));
             asked.push(start::Asked {
                 declared,
                 name: name.clone(),
-                expressions: [start?, low?, high?],
+                expressions: expressions.collect::<Made<_>>()?,
             });
         }
         let (parameters, declared) = start::evaluate(base, &asked, values)?.into_iter().unzip();

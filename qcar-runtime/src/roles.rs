@@ -96,6 +96,13 @@ impl Roles {
         })
     }
 
+    /// The masses along that axis in the order in which they feel a cleat: the wheel, then all others from the tyre on. The
+    /// first that was measured aligns a record.
+    pub fn feeling(&self) -> impl Iterator<Item = &str> {
+        let others = self.masses.iter().filter(|mass| **mass != self.wheel);
+        std::iter::once(&self.wheel).chain(others).map(String::as_str)
+    }
+
     /// What a K&C rig moves and holds.
     ///
     /// # Errors

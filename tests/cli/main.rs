@@ -12,6 +12,7 @@ mod interruption;
 mod json_reference;
 mod newcomer;
 mod readme;
+mod records;
 mod rides;
 mod trials;
 mod tutorial;

@@ -151,7 +151,7 @@ fn a_campaign_may_name_the_body() {
     edit(folder.path(), |text| text.replace("body = \"cab\"", "body = \"trunk\""));
     let said = run_line(folder.path(), "kc .").stdout;
     assert!(
-        said.contains("`trunk` in `[roles]`") && said.contains("wheel, frame, cab"),
+        said.contains("`roles`: found `trunk`") && said.contains("wheel, frame, cab"),
         "{said}"
     );
 }

@@ -13,6 +13,8 @@ pub mod options;
 // Then values and their units.
 mod quantity;
 mod value;
+// Curves through points.
+mod table;
 // What names mean.
 mod names;
 // Then what is made of them, in the order in which it is resolved.
@@ -121,8 +123,11 @@ impl<'a> Resolver<'a> {
         }
     }
 
+    /// Adds a mistake; that of an element once, however often it is written out.
     fn report(&mut self, mistake: Diagnostic) -> Reported {
-        self.found.push(mistake);
+        if !self.found.iter().any(|known| known.repeats(&mistake)) {
+            self.found.push(mistake);
+        }
         Reported
     }
 

@@ -55,10 +55,15 @@ pub struct Sizes {
     pub after_shake: Option<Summary>,
 }
 
-pub(super) fn compare(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Result<Compared, InputError> {
+pub(super) fn compare(
+    about: &About,
+    named: &RoleNames,
+    cleats: &[Cleat],
+    rides: &[Ride],
+) -> Result<Compared, InputError> {
     let mut runs = Vec::new();
     for (cleat, ride) in cleats.iter().zip(rides) {
-        let of_run = differences(about, cleat, ride).map_err(|error| incomparable(cleat, &error))?;
+        let of_run = differences(about, named, cleat, ride).map_err(|error| incomparable(cleat, &error))?;
         if of_run.is_empty() {
             return Err(nothing_in_common(about, cleat).into());
         }
@@ -142,9 +147,9 @@ fn incomparable(cleat: &Cleat, error: &CompareError) -> Problem {
     )
 }
 
-fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Difference>, CompareError> {
+fn differences(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> Result<Vec<Difference>, CompareError> {
     let pairs = pairs(about, cleat, ride);
-    let Some(alignment) = alignment(about, &pairs)? else {
+    let Some(alignment) = alignment(about, named, &pairs)? else {
         return Ok(Vec::new());
     };
     let difference = |pair: &Pair| {
@@ -167,20 +172,18 @@ fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Differen
 }
 
 /// How the two records of a run lie to each other: by the peaks (thesis section 3.6.2) of the wheel or, where that was not
-/// measured and simulated, of the mass next to it. `None` where no mass on the tyre's axis was.
+/// measured and simulated, of the mass nearest to the tyre. `None` where no mass on the tyre's axis was.
 ///
 /// # Errors
 /// A mass that does not feel an obstacle.
-pub(crate) fn alignment(about: &About, pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
-    let roles = Roles::of(about, &RoleNames::default()).ok();
-    let nearest = roles.and_then(|roles| {
+pub(crate) fn alignment(about: &About, named: &RoleNames, pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
+    let roles = Roles::of(about, named).ok();
+    let first = roles.and_then(|roles| {
         let is = |pair: &&Pair, mass: &str| pair.mass == mass && pair.axis.name() == roles.axis;
-        roles
-            .masses
-            .iter()
-            .find_map(|mass| pairs.iter().find(|pair| is(pair, mass)))
+        let mut feeling = roles.feeling();
+        feeling.find_map(|mass| pairs.iter().find(|pair| is(pair, mass)))
     });
-    nearest
+    first
         .map(|wheel| Alignment::at_peak(wheel.measured, wheel.simulated))
         .transpose()
 }

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use nalgebra::Complex;
 
-use super::{Evidence, Kind, Run, Series, Stimulus, is_motion};
+use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus, is_motion};
 use crate::campaign::{Campaign, Sweep};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
@@ -41,8 +41,9 @@ impl Evidence {
     ) -> Result<(), InputError> {
         let history = campaign.history(run)?;
         let (pads, others): (Vec<_>, Vec<_>) = points(&history).into_iter().partition(|point| is_motion(about, point));
+        let is_one = |pads: &[Point]| pads.iter().all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis));
         let reference = match &pads[..] {
-            [reference] => reference.clone(),
+            [reference, ..] if is_one(&pads) => reference.clone(),
             _ => return Err(not_one(about, &pads, history.file).into()),
         };
         let sensors = self.known(about, &run.file, others);
@@ -169,6 +170,12 @@ fn series(run: usize, sensor: &Point, order: usize, (at, lines): (Vec<f64>, Vec<
         run,
         sensor: sensor.clone(),
         kind: Kind::Harmonic(order),
+        noise: noise
+            .iter()
+            .zip(&value)
+            .map(|(noise, value)| noise.sqrt().hypot(LEAST_NOISE * value.norm()).max(f64::MIN_POSITIVE))
+            .collect(),
+        least_discrepancy: FLOOR,
         sigma: noise
             .iter()
             .zip(&value)

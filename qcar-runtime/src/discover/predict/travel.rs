@@ -62,6 +62,7 @@ pub(super) fn travel(
             value,
             delay: None,
             louder: None,
+            begun: Vec::new(),
         }
     };
     Ok(series.iter().map(predict).collect())
