@@ -156,6 +156,44 @@ fn a_campaign_may_name_the_body() {
     );
 }
 
+/// A tyre whose belt is a mass of its own. What is called the belt's record is that of the body, which peaks later.
+#[test]
+fn the_wheel_that_a_campaign_names_aligns_the_records() {
+    let folder = trial("belt.axle", "hub");
+    let belt = "axle belted {\n    direction z {\n        road pad;\n        mass body = 355 kg;\n        mass hub = 35 kg;\n        \
+                mass belt = 10 kg;\n        link tire: belt - pad { spring 400 N/mm; damper 100 N s/m; }\n        \
+                link carcass: hub - belt { spring 800 N/mm; damper 400 N s/m; }\n        \
+                link strut: body - hub { spring 25 N/mm; damper 1500 N s/m; }\n    }\n}\n";
+    fs::write(folder.path().join("belt.axle"), belt).unwrap();
+    let of_hub = |location: &str, wheel: Option<&str>| {
+        edit(folder.path(), |text| {
+            let roles = wheel.map(|wheel| format!("\n[roles]\nwheel = \"{wheel}\"\n"));
+            let text = text.split("\n[roles]").next().unwrap().to_string();
+            let (head, tail) = text.split_once("location = \"").unwrap();
+            let (_, tail) = tail.split_once('"').unwrap();
+            format!("{head}location = \"{location}\"{tail}{}", roles.unwrap_or_default())
+        });
+        let found = json(folder.path(), "simulate .");
+        let runs = found["runs"].as_array().unwrap();
+        let own = runs.iter().find(|run| run["mass"] == "hub").unwrap();
+        own["simulated_after_shake"].as_f64().unwrap()
+    };
+    let alone = of_hub("cab", None);
+    assert_eq!(of_hub("belt", Some("hub")), alone);
+    assert_ne!(of_hub("belt", Some("belt")), alone);
+    // The mass nearest to the tyre is the wheel of a campaign that says nothing.
+    assert_eq!(of_hub("belt", None), of_hub("belt", Some("belt")));
+    edit(folder.path(), |text| {
+        text.replace("wheel = \"belt\"", "wheel = \"rim\"")
+    });
+    for line in ["simulate .", "fit .", "study . --out o", "discover ."] {
+        refused(
+            &run_line(folder.path(), line),
+            &["`roles`: found `rim`", "write one of belt, hub, body"],
+        );
+    }
+}
+
 #[test]
 fn a_curve_without_slope_or_in_another_unit_is_refused() {
     let folder = trial("hub.axle", "hub");
@@ -236,6 +274,8 @@ fn what_outputs_cannot_tell_apart_stops_a_fit_alone() {
         "{}",
         checked.stdout
     );
+    let simulated = json(folder.path(), "simulate .");
+    assert_eq!(simulated["runs"][0]["mass"], "body", "{simulated}");
     refused(
         &run_line(folder.path(), "fit ."),
         &["`m`, `k`, `c`, of which its outputs see 2", "--fix"],

@@ -111,6 +111,8 @@ fn pipes_and_devices_are_no_files() {
     for line in [
         "check /dev/zero",
         "check ./pipe.csv",
+        "inspect /dev/zero",
+        "inspect pipe.csv",
         "matrices quarter_car --params /dev/zero",
     ] {
         let ran = run_line(folder.path(), line);

@@ -187,7 +187,9 @@ impl Resolver<'_> {
             mistakes::used_before_declared(span, *declared, &text)
         } else {
             let place = if locals.closed { "the element" } else { "the model" };
-            self.names.unknown.insert(in_model);
+            if !locals.closed {
+                self.names.unknown.insert(in_model);
+            }
             mistakes::unknown_name(span, &text, place, &self.values_in_sight(locals))
         };
         self.report(mistake)

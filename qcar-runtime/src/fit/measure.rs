@@ -85,7 +85,7 @@ fn level(
     })
 }
 
-/// A road moves if its root mean square is this share of that of the road that moves most.
+/// A road moves if its mean square is this share of that of the road that moves most: a tenth of its amplitude.
 const MOVES: f64 = 0.01;
 
 /// # Errors
@@ -95,7 +95,7 @@ fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     let recorded = roads.filter_map(|road| {
         let mut own = history.signals.iter();
         let (_, values) = own.find(|(sensor, _)| road.name == *sensor.location && road.axis == *sensor.axis.name())?;
-        Some((&*road.name, rms(values)))
+        Some((&*road.name, values.iter().map(|value| value * value).sum()))
     });
     let recorded: Vec<(&str, f64)> = recorded.collect();
     let most = recorded.iter().fold(0.0, |most: f64, (_, size)| most.max(*size));
@@ -111,10 +111,6 @@ fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     let expected = format!("one moving road of model `{}` in a run", about.name);
     let remedy = "drive one at a time, or take a model with one tyre";
     Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
-}
-
-fn rms(of: &[f64]) -> f64 {
-    (of.iter().map(|value| value * value).sum::<f64>() / of.len().max(1) as f64).sqrt()
 }
 
 /// The excitation of the model that a run records, and the point where it does.

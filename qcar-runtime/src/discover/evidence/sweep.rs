@@ -41,7 +41,10 @@ impl Evidence {
     ) -> Result<(), InputError> {
         let history = campaign.history(run)?;
         let (pads, others): (Vec<_>, Vec<_>) = points(&history).into_iter().partition(|point| is_motion(about, point));
-        let is_one = |pads: &[Point]| pads.iter().all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis));
+        let is_one = |pads: &[Point]| {
+            pads.iter()
+                .all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis))
+        };
         let reference = match &pads[..] {
             [reference, ..] if is_one(&pads) => reference.clone(),
             _ => return Err(not_one(about, &pads, history.file).into()),
