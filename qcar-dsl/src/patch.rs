@@ -42,7 +42,7 @@ pub use start::ParameterRole;
 pub use watch::watched;
 
 use crate::check::Checked;
-use crate::diagnostic::{Diagnostic, Report, effects};
+use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::check_text;
 use crate::source::Source;
 use crate::syntax::{Effect, Name};
@@ -194,8 +194,8 @@ impl Patch {
     /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
     ///
     /// # Errors
-    /// A place where the effect does not apply, names that the model has already, and every rule of the compiler that
-    /// the patched model breaks.
+    /// A place where the effect does not apply, names that the model has already, every rule of the compiler that the
+    /// patched model breaks, and parameters that no output of it can tell apart, since effects are there to be found.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
@@ -223,7 +223,16 @@ impl Patch {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
         };
+        let seen_before = model.unseen();
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+        if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
+            let mut report = model.warnings().clone();
+            report
+                .diagnostics
+                .iter_mut()
+                .for_each(|found| found.severity = Severity::Error);
+            return Err(report);
+        }
         Ok(Patched {
             effect: self.effect.name.text.clone(),
             place: place.label.clone(),

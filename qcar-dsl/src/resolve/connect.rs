@@ -80,7 +80,14 @@ impl Resolver<'_> {
         let stretch = self.stretch(link, direction);
         // A law is read even where the stretch is mistaken, as that of a length.
         let unit = stretch.as_ref().map_or(Unit::METER, |(_, unit)| *unit);
+        let before = self.found.len();
         let law = self.law(&link.body, id, unit);
+        if stretch.is_err() {
+            // Its unit is a guess, so that no unit in the law is known to be wrong.
+            let of_law = self.found.split_off(before);
+            self.found
+                .extend(of_law.into_iter().filter(|mistake| !mistake.code.is_of_units()));
+        }
         let ((stretch, unit), (law, rolling)) = (stretch?, law?);
         if law.terms.is_empty() {
             return Err(self.report(mistakes::empty_law(link.name.span, &link.name.text)));

@@ -77,6 +77,7 @@ impl Lever {
             excitations: vec![pad].into(),
             channels: Vec::new().into(),
             links: Vec::new().into(),
+            masses: Vec::new().into(),
             contact: None,
             constants: 2,
             linear: true,
