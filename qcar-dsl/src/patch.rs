@@ -184,7 +184,7 @@ impl Patch {
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
         let at = |place: &Place| -> Vec<Patched> {
-            let made = forms.iter().map(|form| form.made(&base, &roles, place, values));
+            let made = forms.iter().map(|form| form.made(model, &base, &roles, place, values));
             made.filter_map(Result::ok).collect()
         };
         places.iter().flat_map(at).collect()
@@ -206,7 +206,7 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(&base, &roles, place, values)
+        self.made(model, &base, &roles, place, values)
     }
 
     fn report(&self, diagnostics: Refused) -> Report {
@@ -216,14 +216,21 @@ impl Patch {
         }
     }
 
-    fn made(&self, base: &Base, roles: &Roles, place: &Place, values: Values) -> Result<Patched, Report> {
+    fn made(
+        &self,
+        before: &Checked,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Result<Patched, Report> {
         let made = self.tree(base, roles, place, values);
         let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
         let text = Source {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
         };
-        let seen_before = model.unseen();
+        let seen_before = before.unseen();
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
         if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
             let mut report = model.warnings().clone();
