@@ -52,7 +52,7 @@ fn a_full_answer_is_read() {
     assert_eq!(outcome.left, ["body_z/sweep:1.50"]);
     assert_eq!(outcome.learned, Some(("damper".to_owned(), 0.9)));
     assert_eq!(row(&outcome, "separable single effects named and placed"), "1 (100 %)");
-    assert_eq!(row(&outcome, "0.95 to 0.99"), "1");
+    assert_eq!(row(&outcome, "0.95 to 0.99"), "1 (100 %)");
 }
 
 #[test]
