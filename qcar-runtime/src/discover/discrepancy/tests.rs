@@ -44,11 +44,7 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
     group.set(0.4);
     let covariance = DMatrix::from_fn(30, 30, |i, j| {
         let r: f64 = (places[i] - places[j]).abs();
-        let k = if r < 1.0 {
-            (1.0 - r).powi(2)
-        } else {
-            0.0
-        };
+        let k = if r < 1.0 { (1.0 - r).powi(2) } else { 0.0 };
         0.16 * 9.0 * k + if i == j { 1.0 } else { 0.0 }
     });
     let residual = DVector::from_fn(30, |k, _| (1.7 * k as f64).sin());
