@@ -267,7 +267,12 @@ fn one_mistake_is_told_once() {
     let cases = [
         ("known param k: N/m", "known param k: N/mx", UnknownUnit),
         ("known param k: N/m", "known param kk: N/m", UnknownName),
-        ("known param k: N/m", "known param c: N/m", DuplicateName),
+        (
+            "known param tau: s",
+            "known param k: N/m = 2; known param tau: s",
+            DuplicateName,
+        ),
+        ("mass b = m;", "mass b = m; inertia b = j;", DuplicateName),
         ("known param k:", "known parm k:", UnknownStatement),
         ("let twice = 2*k;", "let twice = 2 + k;", UnitsDiffer),
         ("let twice = 2*k;", "let twice = sqrt(-1)*k;", NotFinite),

@@ -100,9 +100,10 @@ impl Names {
 }
 
 impl Resolver<'_> {
-    /// Declares a parameter or derived quantity.
+    /// Declares a parameter or derived quantity. Which of two of a name its uses mean is not known.
     pub fn declare_global(&mut self, name: &Name, global: Global) {
-        if let Some((first, _)) = self.names.globals.get(&name.text) {
+        if let Some((first, known)) = self.names.globals.get_mut(&name.text) {
+            *known = Global::Broken;
             let mistake = mistakes::duplicate_name(name.span, *first, &name.text, "the model");
             self.report(mistake);
             return;
@@ -137,7 +138,10 @@ impl Resolver<'_> {
         }
         let home = self.names.directions.iter_mut().find(|(known, _)| known == direction);
         if let Some((_, names)) = home {
-            names.entry(name.text.clone()).or_insert((name.span, thing));
+            let known = names.entry(name.text.clone()).or_insert((name.span, thing));
+            if own.is_some() {
+                known.1 = Thing::Broken;
+            }
         }
     }
 
