@@ -223,7 +223,7 @@ pub fn discover(
 }
 
 /// The gap of the runs that judge, in words.
-fn told(of: &Explanation) -> String {
+pub(super) fn told(of: &Explanation) -> String {
     let gap = if of.gap.held_out.is_finite() {
         of.gap.held_out
     } else {

@@ -25,7 +25,7 @@ use super::evidence::{Evidence, Stimulus};
 use super::explain::Setting;
 use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
-use super::search::{Discovery, News, Progress, Verdict};
+use super::search::{Discovery, News, Progress, Verdict, told};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -44,7 +44,8 @@ pub fn discover(
     progress(News::Doing("fitting the base model"));
     let assembly = Assembly::base(Arc::from(workshop), setting, evidence)?;
     let base = base(assembly, evidence)?;
-    progress(News::Known("the model alone is fitted", &[], &base.explanation));
+    let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
+    progress(News::Known(&alone, &[], &base.explanation));
     let mut sets = vec![base];
     // The most probable set is extended until nothing that could be added is worth it.
     let mut next = Some(0);
@@ -82,7 +83,7 @@ fn tell(set: &Set, progress: Progress<'_>) {
         .map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
-        let words = format!("with {}", names.join(" and "));
+        let words = format!("with {} it leaves {}", names.join(" and "), told(&set.explanation));
         progress(News::Known(&words, &set.findings(), &set.explanation));
     }
 }
@@ -102,6 +103,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
             named: setting_spread(&assembly, spread),
             sides: Default::default(),
             errors: Vec::new(),
+            begun: Vec::new(),
             discrepancy: Discrepancy::of(&looks.coarse, Role::Fit),
         };
         hypothesis.fit(&from, &looks.coarse, BASE[0])

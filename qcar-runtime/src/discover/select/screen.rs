@@ -63,7 +63,9 @@ pub fn screen(
         let tried = grid(candidate).into_par_iter().filter_map(|point| {
             let from = point.at(&here, &hypothesis, candidate);
             let values = hypothesis.values(&from.named).ok()?;
-            let there = refit.residuals_of(hypothesis.model(), &values, &from.errors, assembly.model(), evidence)?;
+            let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
+            let nuisance = (nuisance, coefficients.as_slice());
+            let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
             let step = tangent.step(&there, point.scales(candidate))?;
             let scaled = Point {
                 scale: step.scale,

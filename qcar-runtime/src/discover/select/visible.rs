@@ -25,7 +25,9 @@ pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<V
         let hypothesis = assembly.hypothesis_with(candidate)?;
         let from = Point::usual(candidate).at(&here, &hypothesis, candidate);
         let values = hypothesis.values(&from.named).ok()?;
-        let there = refit.residuals_of(hypothesis.model(), &values, &from.errors, assembly.model(), evidence)?;
+        let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
+        let nuisance = (nuisance, coefficients.as_slice());
+        let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
         let gain = tangent.trace(&there)? / 2.0;
         let times = (gain / needed(candidate, &candidates, gain)).sqrt();
         times.is_finite().then(|| Visible {
