@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use crate::files::read_text;
 
 /// What may stand beside `[parameters]`: the keys of campaigns and of their answers.
-const NEIGHBOURS: [&str; 9] = [
+const NEIGHBOURS: [&str; 10] = [
     "format",
     "name",
     "description",
@@ -20,6 +20,7 @@ const NEIGHBOURS: [&str; 9] = [
     "channel",
     "run",
     "road",
+    "roles",
     "generator",
     "effects",
 ];

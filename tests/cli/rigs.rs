@@ -154,8 +154,8 @@ fn a_fit_that_ends_at_all_bounds_is_a_finding() {
 fn results_of_another_fit_are_not_written_over() {
     let folder = sound();
     ended(&run_line(folder.path(), "fit . --starts 1 --out results"), 0, &[]);
-    let kept = fs::read(folder.path().join("results/fit.json")).unwrap();
     ended(&run_line(folder.path(), "fit . --starts 1 --out results"), 0, &[]);
+    let kept = fs::read(folder.path().join("results/fit.json")).unwrap();
     let manifest = folder.path().join("campaign.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     fs::write(&manifest, text.replace("one_tyre", "another")).unwrap();

@@ -131,7 +131,13 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
         let (low, high) = given.range?;
         let shift = if k.is_multiple_of(2) { spread } else { -spread };
         let end = if shift < 0.0 { low } else { high };
-        Some((given.name.clone(), given.value + (end - given.value) * shift.abs()))
+        let share = shift.abs();
+        let moved = if low > 0.0 && given.value > 0.0 {
+            given.value * (end / given.value).powf(share)
+        } else {
+            given.value + (end - given.value) * share
+        };
+        Some((given.name.clone(), moved))
     };
     assembly.given().iter().enumerate().filter_map(moved).collect()
 }
