@@ -186,7 +186,7 @@ fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
 fn answer(asked: &Asked, case: &Case) -> Result<Outcome, String> {
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
     let keep = asked.keep.as_deref().unwrap_or(passing.path());
-    let folder = keep.join(case.name.replace([' ', '/'], "_"));
+    let folder = keep.join(case.name.replace([' ', '/', ':'], "_"));
     let strength = campaign(case, &folder)?;
     let mut command = Command::new(&asked.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
