@@ -24,7 +24,7 @@ const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
   --part K/N      every N-th of them, from the K-th on
   --jobs N        so many searches at once, each with one thread
   --out FILE      adds a line for each case
-  --resume        leaves out the cases that FILE has
+  --resume        leaves out the cases that FILE has, unless their search failed
   --keep FOLDER   leaves the campaigns there, and takes those that are there";
 
 /// The file in which a kept campaign has its strength.
@@ -66,6 +66,7 @@ fn run() -> Result<(), String> {
         Some(out) if asked.resume && out.exists() => read(out)?,
         _ => Vec::new(),
     };
+    outcomes.retain(|outcome| outcome.verdict != "failed");
     let is_new = |case: &Case| !outcomes.iter().any(|outcome| outcome.case == case.name);
     let cases: Vec<Case> = wanted(&asked).into_iter().filter(is_new).collect();
     outcomes.extend(answer_all(&asked, &cases)?);
@@ -130,11 +131,17 @@ fn beside_this() -> Result<PathBuf, String> {
     Ok(this.with_file_name("qcar"))
 }
 
+/// The lines of a file; of several for one case the last counts.
 fn read(path: &Path) -> Result<Vec<Outcome>, String> {
     let text = fs::read_to_string(path).map_err(|e| at(path, e))?;
     let lines = text.lines().filter(|line| *line != HEADER);
-    let outcomes = lines.map(Outcome::parse).collect::<Result<_, _>>();
-    outcomes.map_err(|e| at(path, e))
+    let mut outcomes: Vec<Outcome> = Vec::new();
+    for line in lines {
+        let outcome = Outcome::parse(line).map_err(|e| at(path, e))?;
+        outcomes.retain(|earlier| earlier.case != outcome.case);
+        outcomes.push(outcome);
+    }
+    Ok(outcomes)
 }
 
 fn at(path: &Path, error: impl std::fmt::Display) -> String {
@@ -186,7 +193,7 @@ fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
 fn answer(asked: &Asked, case: &Case) -> Result<Outcome, String> {
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
     let keep = asked.keep.as_deref().unwrap_or(passing.path());
-    let folder = keep.join(case.name.replace([' ', '/'], "_"));
+    let folder = keep.join(case.name.replace([' ', '/', ':'], "_"));
     let strength = campaign(case, &folder)?;
     let mut command = Command::new(&asked.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
@@ -196,7 +203,8 @@ fn answer(asked: &Asked, case: &Case) -> Result<Outcome, String> {
     let output = command.output();
     let output = output.map_err(|e| format!("{}; build it first: cargo build --release", at(&asked.qcar, e)))?;
     if !output.status.success() {
-        eprintln!("{}: {}", case.name, String::from_utf8_lossy(&output.stderr));
+        let words = String::from_utf8_lossy(&output.stderr);
+        eprintln!("{}: {}: {words}", case.name, output.status);
         return Ok(Outcome::failed(case, strength));
     }
     let answer = serde_json::from_slice(&output.stdout).map_err(|e| format!("{}: {e}", case.name))?;
