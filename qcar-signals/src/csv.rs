@@ -79,7 +79,12 @@ fn rows(text: &str, delimiter: u8) -> impl Iterator<Item = Read<Numbered>> {
             let line = error.position().map_or(0, |position| position.line());
             Fault::damaged(Place::Line(line), error.to_string(), "a row of cells")
         })?;
-        let line = row.position().map_or(0, |position| position.line());
+        let line = row.position().map_or(0, |position| {
+            // The position is that of the empty lines before the row, and of the line feed behind a carriage return.
+            let before = text.as_bytes()[position.byte() as usize..].iter();
+            let ends = before.take_while(|byte| matches!(byte, b'\r' | b'\n'));
+            position.line() + ends.filter(|byte| **byte == b'\n').count() as u64
+        });
         let row = match delimiter {
             b' ' => row.iter().filter(|cell| !cell.is_empty()).collect(),
             _ => row,
