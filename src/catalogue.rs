@@ -177,8 +177,9 @@ fn compile_shipped(shipped: &Shipped) -> Result<Compiled, Report> {
     })
 }
 
-fn looks_like_a_path(model: &str) -> bool {
-    model.contains(['/', '\\', '.'])
+/// True for what can be no shipped name.
+pub fn looks_like_a_path(name: &str) -> bool {
+    name.contains(['/', '\\', '.'])
 }
 
 fn unknown(model: &str) -> Problem {

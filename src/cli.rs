@@ -4,8 +4,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
 use crate::verbs::{
-    check, compare, completions, diff, discover, effects, fit, frf, kc, matrices, new, patch, score, show, simulate,
-    study,
+    check, compare, completions, diff, discover, effects, fit, frf, inspect, kc, matrices, new, patch, score, show,
+    simulate, study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -24,6 +24,7 @@ pub struct Cli {
 #[derive(Subcommand)]
 enum Verb {
     New(new::Arguments),
+    Inspect(inspect::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
     Matrices(matrices::Arguments),
@@ -46,6 +47,7 @@ impl Cli {
     pub fn run(self) -> Result<String, Failure> {
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
+            Verb::Inspect(arguments) => inspect::run(&arguments),
             Verb::Check(arguments) => check::run(&arguments),
             Verb::Show(arguments) => show::run(&arguments),
             Verb::Matrices(arguments) => matrices::run(&arguments),

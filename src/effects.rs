@@ -2,9 +2,12 @@
 
 use std::path::Path;
 
+use qcar_dsl::parse::parse_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
+use qcar_dsl::syntax::Item;
 
+use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 
@@ -37,11 +40,32 @@ pub fn find(effect: &str, form: Option<&str>) -> Result<Patch, Failure> {
     })
 }
 
+/// The effect of a name or of a file that holds one; `None` where the name means anything else.
+///
+/// # Errors
+/// A file that the compiler refuses.
+pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
+    if let Some(shipped) = shipped(name) {
+        return Some(read(shipped.file, shipped.text));
+    }
+    let text = read_text(Path::new(name)).ok().filter(|_| looks_like_a_path(name))?;
+    holds_effect(name, &text).then(|| read(name, &text))
+}
+
+fn shipped(name: &str) -> Option<&'static models::ShippedEffect> {
+    models::effects().iter().find(|shipped| shipped.name == name)
+}
+
+fn holds_effect(name: &str, text: &str) -> bool {
+    let items = parse_text(&source(name, text), 0).file.items;
+    items.iter().any(|item| matches!(item, Item::Effect(_)))
+}
+
 fn named(effect: &str) -> Result<Patch, Failure> {
-    if let Some(shipped) = models::effects().iter().find(|shipped| shipped.name == effect) {
+    if let Some(shipped) = shipped(effect) {
         return read(shipped.file, shipped.text);
     }
-    if effect.contains(['/', '\\', '.']) {
+    if looks_like_a_path(effect) {
         return read(effect, &read_text(Path::new(effect))?);
     }
     let names: Vec<String> = models::effects()
@@ -59,9 +83,12 @@ fn named(effect: &str) -> Result<Patch, Failure> {
 }
 
 fn read(name: &str, text: &str) -> Result<Patch, Failure> {
-    let source = Source {
+    Patch::read(source(name, text)).map_err(|report| Failure::Input(report.to_string()))
+}
+
+fn source(name: &str, text: &str) -> Source {
+    Source {
         name: name.into(),
         text: text.into(),
-    };
-    Patch::read(source).map_err(|report| Failure::Input(report.to_string()))
+    }
 }

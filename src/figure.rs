@@ -1,4 +1,4 @@
-//! Curves over frequency as an SVG drawing that needs nothing else to be shown.
+//! Curves over frequency or time as an SVG drawing that needs nothing else to be shown.
 
 use std::fmt::Write;
 
@@ -6,11 +6,22 @@ use std::fmt::Write;
 pub struct Figure {
     /// What all panels show.
     pub title: String,
+    /// What stands on the horizontal axes.
+    pub across: Across,
     /// From left to right, then down.
     pub panels: Vec<Panel>,
 }
 
-/// A diagram with a logarithmic frequency axis.
+/// A horizontal axis.
+#[derive(Clone, Copy)]
+pub enum Across {
+    /// Hz, logarithmic.
+    Frequency,
+    /// s.
+    Time,
+}
+
+/// A diagram.
 pub struct Panel {
     /// Above the diagram.
     pub title: String,
@@ -20,13 +31,13 @@ pub struct Panel {
     pub curves: Vec<Curve>,
 }
 
-/// A line through points of ascending frequency.
+/// A line through points of ascending frequency or time.
 pub struct Curve {
     /// In the legend.
     pub label: &'static str,
     /// How it is drawn.
     pub style: Style,
-    /// Frequency in Hz and value; what is not finite is left out.
+    /// Frequency in Hz or time in s, and value; what is not finite is left out.
     pub points: Vec<(f64, f64)>,
 }
 
@@ -73,7 +84,7 @@ impl Figure {
         for (at, panel) in self.panels.iter().enumerate() {
             let (left, top) = (WIDTH * (at % COLUMNS) as f64, MARGIN + HEIGHT * (at / COLUMNS) as f64);
             let _ = writeln!(out, "<g transform=\"translate({left} {top})\">");
-            panel.draw(&mut out);
+            panel.draw(&mut out, self.across);
             out.push_str("</g>\n");
         }
         self.legend(&mut out, height - 10.0);
@@ -108,8 +119,8 @@ impl Style {
 }
 
 impl Panel {
-    fn draw(&self, out: &mut String) {
-        let Some(scale) = Scale::over(self) else { return };
+    fn draw(&self, out: &mut String, across: Across) {
+        let Some(scale) = Scale::over(self, across) else { return };
         text(
             out,
             LEFT,
@@ -118,8 +129,8 @@ impl Panel {
             "",
             &format!("{}, {}", self.title, self.vertical),
         );
-        for (frequency, label) in frequency_ticks(scale.x.0, scale.x.1) {
-            let x = scale.x(frequency);
+        for (at, label) in across.ticks(scale.x.0, scale.x.1) {
+            let x = scale.x(at);
             let _ = writeln!(out, "<path class=\"grid\" d=\"M{x:.1} {TOP}V{:.1}\"/>", HEIGHT - BOTTOM);
             text(out, x, HEIGHT - BOTTOM + 16.0, "middle", "", &label);
         }
@@ -135,7 +146,7 @@ impl Panel {
             HEIGHT - BOTTOM + 34.0,
             "middle",
             "",
-            "frequency, Hz",
+            across.title(),
         );
         for curve in &self.curves {
             let _ = writeln!(
@@ -153,15 +164,32 @@ impl Panel {
     }
 }
 
-/// From frequencies and values to places on the page.
+impl Across {
+    fn title(self) -> &'static str {
+        match self {
+            Across::Frequency => "frequency, Hz",
+            Across::Time => "time, s",
+        }
+    }
+
+    fn ticks(self, from: f64, to: f64) -> Vec<(f64, String)> {
+        match self {
+            Across::Frequency => frequency_ticks(from, to),
+            Across::Time => ticks(from, to).into_iter().map(|t| (t, format!("{t}"))).collect(),
+        }
+    }
+}
+
+/// From places on the axes to places on the page.
 struct Scale {
+    across: Across,
     x: (f64, f64),
     y: (f64, f64),
 }
 
 impl Scale {
     /// Around all points of a panel; `None` where there are none.
-    fn over(panel: &Panel) -> Option<Scale> {
+    fn over(panel: &Panel, across: Across) -> Option<Scale> {
         let points = || {
             panel
                 .curves
@@ -176,15 +204,25 @@ impl Scale {
         };
         let x = span(&mut points().map(|p| p.0));
         let (low, high) = span(&mut points().map(|p| p.1));
-        let margin = (0.06 * (high - low)).max(0.5);
+        let least = match across {
+            // Decibels.
+            Across::Frequency => 0.5,
+            Across::Time => f64::MIN_POSITIVE,
+        };
+        let margin = (0.06 * (high - low)).max(least);
         (x.0 < x.1).then_some(Scale {
+            across,
             x,
             y: (low - margin, high + margin),
         })
     }
 
-    fn x(&self, frequency: f64) -> f64 {
-        let share = (frequency / self.x.0).ln() / (self.x.1 / self.x.0).ln();
+    fn x(&self, at: f64) -> f64 {
+        let (first, last) = self.x;
+        let share = match self.across {
+            Across::Frequency => (at / first).ln() / (last / first).ln(),
+            Across::Time => (at - first) / (last - first),
+        };
         LEFT + share * (WIDTH - LEFT - RIGHT)
     }
 
@@ -195,9 +233,9 @@ impl Scale {
 
     fn path(&self, points: &[(f64, f64)]) -> String {
         let mut path = String::new();
-        for (frequency, value) in points.iter().filter(|(_, value)| value.is_finite()) {
+        for (at, value) in points.iter().filter(|(_, value)| value.is_finite()) {
             let step = if path.is_empty() { 'M' } else { 'L' };
-            let _ = write!(path, "{step}{:.1} {:.1}", self.x(*frequency), self.y(*value));
+            let _ = write!(path, "{step}{:.1} {:.1}", self.x(*at), self.y(*value));
         }
         path
     }

@@ -177,6 +177,39 @@ pub fn own(about: &About, campaign: &Campaign) -> Vec<campaign::Parameter> {
     open.filter_map(parameter).collect()
 }
 
+/// Gives every parameter that is to be fitted and has no range that of the model.
+///
+/// # Errors
+/// Where the model has none either, or one that does not hold the start value: an estimate needs bounds, and what the
+/// campaign wants fitted must not stay where it is without a word.
+pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &Campaign) -> Result<(), InputError> {
+    let file = ParameterFile::read(&campaign.manifest())?;
+    let mut problems = Vec::new();
+    for own in parameters.iter_mut().filter(|own| own.fit && own.range.is_none()) {
+        let Some(of_model) = about.parameters.iter().find(|p| p.name == own.name) else {
+            continue;
+        };
+        let expected = match of_model.range {
+            None => "`range = [lower, upper]`, since the model gives it none".into(),
+            Some((low, high)) if !(low..=high).contains(&own.value) => {
+                format!("`range = [lower, upper]`, or a value from {low} to {high}, the range of the model")
+            }
+            Some(range) => {
+                own.range = Some(range);
+                continue;
+            }
+        };
+        let place = file
+            .parameters
+            .get(&own.name)
+            .map_or(Place::File, |own| own.place.clone());
+        let found = format!("`fit = true` without a range, from {} {} on", own.value, own.unit);
+        let remedy = format!("add the range to [parameters.{}], or write `fit = false`", own.name);
+        problems.push(Problem::new(campaign.manifest(), place, found, expected, remedy));
+    }
+    InputError::unless_empty(problems, Some(()))
+}
+
 /// What is computed from parameter values is a number.
 ///
 /// # Errors

@@ -6,10 +6,10 @@ use std::sync::Arc;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
 use qcar_dsl::difference::difference;
-use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
+use qcar_dsl::patch::{self, NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::Axis;
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
+use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::nuisance::Form;
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
@@ -156,5 +156,10 @@ fn added(parameter: &NewParameter) -> Added {
         start: parameter.start,
         range: parameter.range,
         known: parameter.known,
+        role: match parameter.role {
+            patch::ParameterRole::Strength { vanishes_at } => ParameterRole::Strength { vanishes_at },
+            patch::ParameterRole::Shape => ParameterRole::Shape,
+            patch::ParameterRole::Other => ParameterRole::Other,
+        },
     }
 }

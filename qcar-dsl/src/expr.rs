@@ -3,6 +3,8 @@
 //! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
 //! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.
 
+// Curves through points.
+mod curve;
 // Leaves found, and replaced.
 mod rewrite;
 // Values and derivatives.
@@ -11,6 +13,7 @@ mod calculus;
 use crate::hash::HashMap;
 
 pub use calculus::Differential;
+pub use curve::Curve;
 pub use rewrite::{Leaves, Substitution};
 
 /// A mass, node, road or prescribed motion of the model: an index into `Model::coordinates`.
@@ -98,7 +101,13 @@ pub enum Node {
     Call(Function, Expr),
     /// The second where the first is above zero, else the third.
     Select(Expr, Expr, Expr),
+    /// The derivative of an order of a curve, at an abscissa.
+    Table(u8, Expr, CurveId),
 }
+
+/// A name for a curve of a [`Graph`].
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
+pub struct CurveId(u32);
 
 /// A name for a node of a [`Graph`].
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -109,6 +118,8 @@ pub struct Expr(u32);
 pub struct Graph {
     nodes: Vec<Node>,
     names: HashMap<Node, Expr>,
+    curves: Vec<Curve<Expr>>,
+    curve_names: HashMap<Curve<Expr>, CurveId>,
 }
 
 impl Graph {
@@ -296,6 +307,28 @@ impl Graph {
             Some(x) => self.constant(f.value(x)),
             None => self.intern(Node::Call(f, a)),
         }
+    }
+
+    /// The curve behind a name.
+    pub fn curve(&self, id: CurveId) -> &Curve<Expr> {
+        &self.curves[id.0 as usize]
+    }
+
+    /// The derivative of an order of a curve, at `x`: its value for order 0.
+    pub fn table(&mut self, order: u8, x: Expr, curve: Curve<Expr>) -> Expr {
+        if order > 3 || curve.entries().all(|&entry| self.is(entry, 0.0)) {
+            return self.constant(0.0);
+        }
+        let numbers = curve.entries().all(|&entry| self.as_constant(entry).is_some());
+        if let (Some(x), true) = (self.as_constant(x), numbers) {
+            let value = curve.at(order, x, |&entry| self.as_constant(entry).unwrap_or_default());
+            return self.constant(value);
+        }
+        let id = *self.curve_names.entry(curve).or_insert_with_key(|curve| {
+            self.curves.push(curve.clone());
+            CurveId(self.curves.len() as u32 - 1)
+        });
+        self.intern(Node::Table(order, x, id))
     }
 
     /// `positive` where `test` is above zero, else `otherwise`.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use crate::expr::{CoordinateId, Expr, Function, Graph, LinkId, Node, Symbol};
+use crate::expr::{CoordinateId, Curve, Expr, Function, Graph, LinkId, Node, Symbol};
 use crate::model::Model;
 
 /// A way of writing mathematics.
@@ -124,6 +124,23 @@ impl<'a> Writer<'a> {
             Node::Call(Function::Abs, a) => self.magnitude(a),
             Node::Call(f, a) => self.function(function_name(f), &[a]),
             Node::Select(test, positive, otherwise) => self.select(test, positive, otherwise),
+            Node::Table(order, x, curve) => self.table(order, x, self.graph.curve(curve)),
+        }
+    }
+
+    /// A derivative of a curve, with a prime for each order; with its slopes where the ordinates do not give them.
+    fn table(&self, order: u8, x: Expr, curve: &Curve<Expr>) -> String {
+        let list = |entries: Vec<String>| format!("[{}]", entries.join(", "));
+        let knots = list(curve.knots().map(|knot| number(knot, self.notation)).collect());
+        let entries = |entries: &[Expr]| list(entries.iter().map(|&entry| self.write(entry)).collect());
+        let mut arguments = vec![self.write(x), knots, entries(&curve.values)];
+        if !curve.monotone {
+            arguments.push(entries(&curve.slopes));
+        }
+        let (arguments, primes) = (arguments.join(", "), "'".repeat(order.into()));
+        match self.notation {
+            Notation::Latex => format!(r"\operatorname{{table}}{primes}{}", self.parentheses(&arguments)),
+            Notation::Text => format!("table{primes}({arguments})"),
         }
     }
 

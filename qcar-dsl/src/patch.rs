@@ -38,6 +38,7 @@ use bind::Bindings;
 use place::Place;
 use roles::Roles;
 pub use scale::Scale;
+pub use start::ParameterRole;
 pub use watch::watched;
 
 use crate::check::Checked;
@@ -99,6 +100,8 @@ pub struct NewParameter {
     pub known: bool,
     /// The sentence.
     pub doc: String,
+    /// What it is to its effect.
+    pub role: ParameterRole,
     /// False for a shared one that the model had already.
     pub is_new: bool,
 }
@@ -243,12 +246,11 @@ impl Patch {
         let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
         let mut asked = Vec::new();
         for (declared, name) in &patching.parameters {
-            let [start, low, high] =
-                [&declared.start, &declared.range.0, &declared.range.1].map(|e| patching.meaning(e));
+            let expressions = start::expressions(declared).map(|e| patching.meaning(e));
             asked.push(start::Asked {
                 declared,
                 name: name.clone(),
-                expressions: [start?, low?, high?],
+                expressions: expressions.collect::<Made<_>>()?,
             });
         }
         let (parameters, declared): (Vec<NewParameter>, Vec<_>) =

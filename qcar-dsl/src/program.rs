@@ -4,7 +4,7 @@
 //! The same program is printed as Rust and interpreted at run time, operation by operation, so that both
 //! give the same bits. Whole powers are products already, and a divisor that serves twice is a reciprocal.
 
-use crate::expr::{Function, Symbol};
+use crate::expr::{Curve, Function, Symbol};
 
 /// A value of a program: an input, a constant or the result of an operation, by its place.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
@@ -29,27 +29,36 @@ pub enum Op {
     Max(Value, Value),
     Call(Function, Value),
     Select(Value, Value, Value),
+    /// Its curve by the place in [`Program::curves`].
+    Table(u8, Value, u32),
 }
 
-impl Op {
-    /// The values that it is computed from, in order; none for a leaf.
-    pub fn arguments(self) -> impl Iterator<Item = Value> {
-        let three = match self {
+impl Program {
+    /// The values that an operation is computed from, in order; none for a leaf.
+    pub fn arguments(&self, op: Op) -> impl Iterator<Item = Value> {
+        let three = match op {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => [None; 3],
-            Op::Neg(a) | Op::Call(_, a) => [Some(a), None, None],
+            Op::Neg(a) | Op::Call(_, a) | Op::Table(_, a, _) => [Some(a), None, None],
             Op::Add(a, b) | Op::Sub(a, b) | Op::Mul(a, b) | Op::Div(a, b) => [Some(a), Some(b), None],
             Op::Pow(a, b) | Op::Min(a, b) | Op::Max(a, b) => [Some(a), Some(b), None],
             Op::Select(test, a, b) => [Some(test), Some(a), Some(b)],
         };
-        three.into_iter().flatten()
+        let curve = match op {
+            Op::Table(.., curve) => Some(&self.curves[curve as usize]),
+            _ => None,
+        };
+        let entries = curve.into_iter().flat_map(Curve::entries).copied();
+        three.into_iter().flatten().chain(entries)
     }
+}
 
+impl Op {
     /// True where nothing is computed: a number, or what the caller gives.
     pub fn is_leaf(self) -> bool {
         matches!(self, Op::Constant(_) | Op::Input(_) | Op::Prepared(_))
     }
 
-    /// The same operation on values of other numbers.
+    /// The same operation on values of other numbers; a curve keeps its points.
     pub fn renumbered(self, new: impl Fn(Value) -> Value) -> Op {
         match self {
             Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self,
@@ -63,6 +72,7 @@ impl Op {
             Op::Max(a, b) => Op::Max(new(a), new(b)),
             Op::Call(function, a) => Op::Call(function, new(a)),
             Op::Select(test, a, b) => Op::Select(new(test), new(a), new(b)),
+            Op::Table(order, x, curve) => Op::Table(order, new(x), curve),
         }
     }
 }
@@ -74,6 +84,8 @@ pub struct Program {
     pub ops: Vec<Op>,
     /// The results.
     pub outputs: Vec<Value>,
+    /// The curves of its tables.
+    pub curves: Vec<Curve<Value>>,
 }
 
 /// The programs of a model. [`crate::about::About`] says what their outputs are.

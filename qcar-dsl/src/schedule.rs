@@ -6,7 +6,7 @@
 use crate::about::About;
 use crate::check::Checked;
 use crate::complex::Complex;
-use crate::expr::{Expr, Graph, Node, Symbol};
+use crate::expr::{CurveId, Expr, Graph, Node, Symbol};
 use crate::hash::{HashMap, HashSet};
 use crate::linear::Linear;
 use crate::motion::{Motion, RollingTyre};
@@ -137,6 +137,7 @@ struct Writer<'a> {
     program: Program,
     values: HashMap<Expr, Value>,
     powers: HashMap<(Expr, i32), Value>,
+    curves: HashMap<CurveId, u32>,
     fixed: HashMap<Expr, bool>,
     /// Divisors that serve more than once, so that their reciprocal pays.
     shared_divisors: HashSet<Expr>,
@@ -150,6 +151,7 @@ impl<'a> Writer<'a> {
             program: Program::default(),
             values: HashMap::default(),
             powers: HashMap::default(),
+            curves: HashMap::default(),
             fixed: HashMap::default(),
             shared_divisors: HashSet::default(),
         }
@@ -180,7 +182,10 @@ impl<'a> Writer<'a> {
         }
         let fixed = match self.graph.node(e) {
             Node::Symbol(leaf) => matches!(leaf, Symbol::Parameter(_)),
-            node => node.arguments().all(|argument| self.is_fixed(argument)),
+            node => {
+                let arguments: Vec<Expr> = self.graph.arguments(node).collect();
+                arguments.into_iter().all(|argument| self.is_fixed(argument))
+            }
         };
         self.fixed.insert(e, fixed);
         fixed
@@ -201,7 +206,7 @@ impl<'a> Writer<'a> {
             {
                 self.shared_divisors.insert(divisor);
             }
-            waiting.extend(node.arguments());
+            waiting.extend(self.graph.arguments(node));
         }
     }
 
@@ -238,8 +243,21 @@ impl<'a> Writer<'a> {
             Node::Max(a, b) => Op::Max(self.value(a), self.value(b)),
             Node::Call(f, a) => Op::Call(f, self.value(a)),
             Node::Select(test, a, b) => Op::Select(self.value(test), self.value(a), self.value(b)),
+            Node::Table(order, x, curve) => Op::Table(order, self.value(x), self.curve(curve)),
         };
         self.push(op)
+    }
+
+    /// The place of a curve in the program.
+    fn curve(&mut self, id: CurveId) -> u32 {
+        if let Some(&known) = self.curves.get(&id) {
+            return known;
+        }
+        let curve = self.graph.curve(id).clone().map(|&entry| self.value(entry));
+        self.program.curves.push(curve);
+        let place = self.program.curves.len() as u32 - 1;
+        self.curves.insert(id, place);
+        place
     }
 
     fn quotient(&mut self, a: Expr, b: Expr) -> Value {

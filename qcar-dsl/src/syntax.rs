@@ -8,7 +8,7 @@ use crate::source::Span;
 // What changes a model.
 mod effect;
 
-pub use effect::{Change, Effect, EffectParameter, Form, Pattern, PlaceKind};
+pub use effect::{Change, Effect, EffectParameter, Form, Pattern, PlaceKind, Role, VanishesAt};
 
 /// A name, or a word that chooses something.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -433,8 +433,30 @@ pub enum ExpressionKind {
     Binary(Operator, Box<Expression>, Box<Expression>),
     /// `f(a, …)`
     Call(Name, Vec<Expression>),
+    /// `table(x, [x0, …], [y0, …])`
+    Table(Box<Table>),
     /// `if a < b { c } else { d }`
     If(Box<Logic<Comparison>>, Box<Expression>, Box<Expression>),
+}
+
+/// A curve through points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table {
+    /// Where on the curve.
+    pub x: Expression,
+    /// The abscissae of the points.
+    pub knots: List,
+    /// Their ordinates.
+    pub values: List,
+}
+
+/// `[a, b, …]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct List {
+    /// In the order of the text.
+    pub entries: Vec<Expression>,
+    /// With its brackets.
+    pub span: Span,
 }
 
 /// An operator between two expressions.

@@ -6,7 +6,7 @@ use common::{Builder, cases};
 use proptest::prelude::*;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::{Evaluator, Points};
-use qcar_dsl::expr::{Function, Symbol};
+use qcar_dsl::expr::{Curve, Function, Graph, Symbol};
 use qcar_dsl::model::{CoordinateKind, Term};
 use qcar_dsl::program::{Op, Program, Value};
 use qcar_dsl::schedule::Compiled;
@@ -36,6 +36,7 @@ fn program(symbols: &[Symbol], prepared: &[u32], numbers: &[f64], steps: &[Step]
     let mut ops: Vec<Op> = symbols.iter().copied().map(Op::Input).collect();
     ops.extend(prepared.iter().copied().map(Op::Prepared));
     ops.extend(numbers.iter().copied().map(Op::Constant));
+    let mut curves = Vec::new();
     for &(kind, places) in steps {
         let [a, b, c] = places.map(|place| Value(place.index(ops.len()) as u32));
         ops.push(match kind {
@@ -49,11 +50,24 @@ fn program(symbols: &[Symbol], prepared: &[u32], numbers: &[f64], steps: &[Step]
             7 => Op::Max(a, b),
             8 => Op::Call(Function::Abs, a),
             9 => Op::Call(Function::Tanh, a),
-            _ => Op::Select(a, b, c),
+            10 => Op::Select(a, b, c),
+            order => {
+                curves.push(curve([b, c, a, c, a, b]));
+                Op::Table(order - 11, a, curves.len() as u32 - 1)
+            }
         });
     }
     let outputs = (0..ops.len() as u32).rev().map(Value).collect();
-    Program { ops, outputs }
+    Program { ops, outputs, curves }
+}
+
+/// A curve through three points, by its ordinates and slopes.
+fn curve(entries: [Value; 6]) -> Curve<Value> {
+    let mut g = Graph::default();
+    let zero = g.constant(0.0);
+    let points = Curve::monotone(&mut g, &[-1.0, 0.2, 1.5], vec![zero; 3]);
+    let mut entries = entries.into_iter();
+    points.map(|_| entries.next().unwrap())
 }
 
 /// The program in its own order.
@@ -77,6 +91,7 @@ fn plainly(program: &Program, leaf: impl Fn(Op) -> f64) -> Vec<f64> {
             Op::Call(..) => panic!("{op:?} is not among the steps"),
             Op::Select(test, a, _) if of(test) > 0.0 => of(a),
             Op::Select(_, _, b) => of(b),
+            Op::Table(order, x, place) => program.curves[place as usize].at(order, of(x), |&entry| of(entry)),
         });
     }
     program.outputs.iter().map(|value| values[value.0 as usize]).collect()
@@ -94,7 +109,7 @@ proptest! {
     fn order_changes_no_bit(
         prepared in prop::collection::vec(0..PREPARED as u32, 1..8),
         numbers in prop::collection::vec(-3.0..3.0f64, 0..4),
-        steps in prop::collection::vec((0..11u8, any::<[prop::sample::Index; 3]>()), 1..900),
+        steps in prop::collection::vec((0..15u8, any::<[prop::sample::Index; 3]>()), 1..900),
         given in prop::collection::vec(-2.0..2.0f64, PREPARED + 5 * POINTS),
     ) {
         let mut compiled = car();

@@ -20,7 +20,9 @@ mod curve;
 // The answer that some campaigns are published with.
 mod truth;
 
-pub use contents::{Axis, Campaign, Channel, FACTS, Parameter, Quantity, Road, Role, Run, Side, Spacing, Sweep, Test};
+pub use contents::{
+    Axis, Campaign, Channel, FACTS, Parameter, Quantity, Recording, Road, Role, Run, Side, Spacing, Sweep, Test,
+};
 pub use curve::{Curve, DynamicCurve, RoadSamples};
 pub use history::History;
 pub use truth::{Effect, Truth};

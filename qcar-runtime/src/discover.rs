@@ -8,10 +8,16 @@
 pub mod evidence;
 // What a model says of the evidence.
 pub mod predict;
+// The numbers of the search that no data give.
+pub mod numbers;
+// What any model of this kind misses.
+pub mod discrepancy;
 // What sensors may be wrong by, in all runs alike.
 pub mod nuisance;
 // Parameters and sensor errors that explain the evidence best.
 pub mod refit;
+// Where records begin that only judge.
+pub mod beginning;
 // What is left, in units of uncertainty: how much, and where.
 pub mod gap;
 // What would have to be added, and at which place.
@@ -23,6 +29,8 @@ pub mod candidate;
 pub mod explain;
 // Which effect is missing.
 pub mod search;
+// The same by evidence.
+pub mod select;
 
 pub use evidence::Evidence;
 pub use gap::Gap;

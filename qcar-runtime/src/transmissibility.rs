@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use nalgebra::Complex;
 
-use crate::campaign::{Axis, Channel, History, Quantity, Test};
+use crate::campaign::{Axis, Channel, History, Quantity, Recording, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::spectrum::{Segments, Trend, Window};
 
@@ -207,9 +207,9 @@ pub fn responses(history: &History, points: &[Point], options: &Options) -> Resu
         Estimator::Local { lines, width } => local::lines(&signals, rate, &frequencies, lines, width),
         Estimator::Welch(segments) => averaged::lines(&signals, rate, &frequencies, &segments),
     };
-    if let Test::TimeHistory {
+    if let Test::TimeHistory(Recording {
         band_limited: false, ..
-    } = history.test
+    }) = history.test
     {
         lines
             .iter_mut()

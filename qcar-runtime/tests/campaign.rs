@@ -134,7 +134,7 @@ fn read_all(folder: &Path) -> Result<(), InputError> {
     let campaign = Campaign::open(folder)?;
     for run in &campaign.runs {
         match run.test {
-            Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory { .. } => drop(campaign.history(run)?),
+            Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => drop(campaign.history(run)?),
             Test::Bounce | Test::Longitudinal => drop(campaign.curve(run)?),
             Test::DynamicBounce { .. } => drop(campaign.dynamic_curve(run)?),
         }

@@ -89,6 +89,8 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
                 })
                 .collect();
             series.push(Series {
+                noise: vec![0.001; 1],
+                least_discrepancy: 0.0,
                 run,
                 sensor: point(location),
                 kind: Kind::Harmonic(1),

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::path::PathBuf;
 
 use nalgebra::Complex;
-use qcar_runtime::campaign::{Axis, Channel, History, Quantity, Side, Spacing, Sweep, Test};
+use qcar_runtime::campaign::{Axis, Channel, History, Quantity, Recording, Side, Spacing, Sweep, Test};
 use qcar_runtime::transmissibility::{
     Estimator, Options, Point, Transmissibility, logarithmic, points, signal, transmissibilities,
 };
@@ -337,10 +337,12 @@ fn held(band_limited: bool, rate: f64) -> (Modes, History) {
     let mut noise = Noise(4_101_842_887_655_102_017);
     let force: Vec<f64> = (0..20_000).map(|_| noise.normal()).collect();
     let response = modes.simulate(|t| force[(t * rate) as usize], force.len(), rate);
-    let test = Test::TimeHistory {
+    let test = Test::TimeHistory(Recording {
         sample_rate: rate,
         band_limited,
-    };
+        band: None,
+        periodic: false,
+    });
     (
         modes,
         history(
@@ -386,10 +388,12 @@ fn averages_over_random_excitation_are_right_and_know_their_variance() {
         tones.1 = (2.0 / 200f64).sqrt();
         let pad: Vec<f64> = (0..samples).map(|k| tones.at(k as f64 / rate)).collect();
         let clean: Vec<f64> = (0..samples).map(|k| tones.through(&modes, k as f64 / rate)).collect();
-        let test = Test::TimeHistory {
+        let test = Test::TimeHistory(Recording {
             sample_rate: rate,
             band_limited: true,
-        };
+            band: None,
+            periodic: false,
+        });
         let body = noise.added(&clean, 0.5);
         let history = history(
             test,

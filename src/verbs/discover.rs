@@ -12,15 +12,17 @@ use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
-use qcar_runtime::discover::search::{Discovery, Finding, News, Verdict, discover};
-use qcar_runtime::discover::{Evidence, Sweeps};
+use qcar_runtime::discover::predict::PredictError;
+use qcar_runtime::discover::search::{Discovery, Finding, News, Progress, Verdict, discover};
+use qcar_runtime::discover::{Evidence, Sweeps, select};
+use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{check_vehicle, own};
+use crate::parameters::{bound, check_vehicle, own};
 use crate::progress::Showing;
 use crate::verbs::Format;
 use crate::workshop::Bench;
@@ -50,6 +52,9 @@ pub struct Arguments {
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
+    /// Search by the rules of the first version, for comparison
+    #[arg(long, hide = true)]
+    by_rules: bool,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -75,6 +80,10 @@ pub(crate) struct Answer {
     pub seconds: f64,
 }
 
+/// A search for what is missing.
+pub(crate) type Search =
+    fn(Box<dyn Workshop>, &Setting, &Evidence, Progress<'_>) -> std::result::Result<Discovery, PredictError>;
+
 /// The model with the effects in it.
 pub(crate) struct Written {
     /// Its name.
@@ -88,7 +97,8 @@ pub(crate) struct Written {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref())?;
+    let search = if arguments.by_rules { discover } else { select::discover };
+    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), search)?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -102,13 +112,19 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 ///
 /// # Errors
 /// A campaign that says nothing of the model, or a model that the compiler refuses.
-pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path>) -> Result<Answer, Failure> {
+pub(crate) fn answer(
+    campaign: &Campaign,
+    model: Option<&str>,
+    out: Option<&Path>,
+    search: Search,
+) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
     check_vehicle(bench.model().about(), campaign)?;
+    let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
-    let evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
     let bench = bench.measured(&evidence);
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
@@ -123,16 +139,12 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
             }
         }
     };
-    let discovery = discover(
-        Box::new(bench.clone()),
-        &setting(campaign, bench.model().about()),
-        &evidence,
-        &told,
-    );
+    let discovery = search(Box::new(bench.clone()), &setting, &evidence, &told);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    evidence.notices.extend(offsets_of_the_model(&discovery));
     // A model that cannot be held against the sweeps has no places.
     let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
@@ -144,6 +156,14 @@ pub(crate) fn answer(campaign: &Campaign, model: Option<&str>, out: Option<&Path
         evidence,
         discovery,
         seconds: begun.elapsed().as_secs_f64(),
+    })
+}
+
+/// A sentence for each sensor of a record that is given no offset, since the model has it.
+fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
+    let without = &discovery.after.refit.nuisance.without_offset;
+    without.iter().map(|(sensor, own)| {
+        format!("{sensor}: `{own}` of the model stands for the offset of this sensor, which is given none")
     })
 }
 
@@ -166,17 +186,22 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
-fn setting(campaign: &Campaign, about: &About) -> Setting {
-    let given = campaign.parameters.iter().cloned().chain(own(about, campaign));
-    let given = given.map(|p| Given {
+///
+/// # Errors
+/// As [`bound`].
+fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
+    let mut given = campaign.parameters.clone();
+    given.extend(own(about, campaign));
+    bound(&mut given, about, campaign)?;
+    let given = given.into_iter().map(|p| Given {
         range: p.range.filter(|_| p.fit),
         name: p.name,
         value: p.value,
     });
-    Setting {
+    Ok(Setting {
         given: given.collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
-    }
+    })
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

@@ -1,47 +1,85 @@
 //! `qcar effects`: the catalogue of effects that a model may miss.
 
+mod described;
+
 use clap::Args;
+use serde::Serialize;
 
 use crate::catalogue;
 use crate::effects;
 use crate::failure::Failure;
+use crate::json;
 use crate::table::Table;
+use crate::verbs::Format;
+use described::Described;
 
 /// List the effects that may be missing in a model, and where each applies
 ///
-/// Without a model, the whole catalogue is described.
+/// Without a model, the whole catalogue is listed. An effect is described with its forms and parameters.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  qcar effects\n  qcar effects axle_c")]
+#[command(
+    after_help = "Examples:\n  qcar effects\n  qcar effects axle_c\n  qcar effects coulomb_friction --format json"
+)]
 pub struct Arguments {
-    /// Name of a shipped model, or path of a model file
-    model: Option<String>,
+    /// Name of a shipped model or effect, or path of a file of either
+    #[arg(value_name = "MODEL_OR_EFFECT")]
+    name: Option<String>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
 }
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    match &arguments.model {
-        Some(model) => places(model),
-        None => catalogue(),
+    let Some(name) = &arguments.name else {
+        return catalogue(arguments.format);
+    };
+    match effects::of_name(name) {
+        Some(effect) => {
+            let described = Described::of(&effect?);
+            Ok(match arguments.format {
+                Format::Text => described.text(),
+                Format::Json => json::line(&described),
+            })
+        }
+        None => places(name, arguments.format),
     }
 }
 
-fn catalogue() -> Result<String, Failure> {
+fn catalogue(format: Format) -> Result<String, Failure> {
+    let all = effects::all()?;
+    if let Format::Json = format {
+        return Ok(json::line(&all.iter().map(Described::of).collect::<Vec<_>>()));
+    }
     let mut table = Table::new(["effect", "what it is", "how it shows"]);
-    for patch in effects::all()? {
+    for patch in all {
         let effect = patch.effect();
         table.row(vec![effect.name.text.clone(), effect.doc.clone(), effect.shows.clone()]);
     }
     Ok(table.text())
 }
 
-fn places(model: &str) -> Result<String, Failure> {
+/// An effect with the places of a model where it applies.
+#[derive(Serialize)]
+struct Applies {
+    name: String,
+    places: Vec<String>,
+}
+
+fn places(model: &str, format: Format) -> Result<String, Failure> {
     let compiled = catalogue::compiled(model)?;
+    let all = effects::all()?;
+    let applies = all.iter().map(|patch| Applies {
+        name: patch.effect().name.text.clone(),
+        places: patch.places(&compiled.model),
+    });
+    let applies: Vec<Applies> = applies.filter(|own| !own.places.is_empty()).collect();
+    if let Format::Json = format {
+        return Ok(json::line(&applies));
+    }
     let mut table = Table::new(["effect", "places"]);
-    for patch in effects::all()? {
-        let places = patch.places(&compiled.model);
-        if !places.is_empty() {
-            table.row(vec![patch.effect().name.text.clone(), places.join(", ")]);
-        }
+    for own in applies {
+        table.row(vec![own.name, own.places.join(", ")]);
     }
     Ok(table.text())
 }

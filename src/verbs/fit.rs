@@ -18,7 +18,7 @@ use qcar_runtime::transmissibility::Options;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::files::folder_for_results;
-use crate::parameters::{out_of_range, own};
+use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
 use crate::verbs::Format;
 
@@ -167,7 +167,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     Ok(fitted)
 }
 
-/// The campaign's plan, with what the model has beside it and the user's choices.
+/// The campaign's plan, with what the model has beside it, the user's choices, and a range for all that is fitted.
 fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, InputError> {
     let mut plan = Plan::new(campaign);
     plan.parameters.extend(own(about, campaign));
@@ -189,5 +189,7 @@ fn plan(campaign: &Campaign, about: &About, choices: &Choices) -> Result<Plan, I
             }
         }
     }
-    InputError::unless_empty(problems, Some(plan))
+    InputError::unless_empty(problems, Some(()))?;
+    bound(&mut plan.parameters, about, campaign)?;
+    Ok(plan)
 }

@@ -1,9 +1,9 @@
-//! `qcar simulate`: the cleat runs of a campaign, simulated and compared with the measurement.
+//! `qcar simulate`: the cleat runs, sweeps and time histories of a campaign, simulated and compared with the measurement.
 
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
@@ -18,18 +18,25 @@ use crate::verbs::TableFormat;
 
 // Simulated beside measured.
 pub(crate) mod compared;
+// Sweeps and time histories, replayed.
+mod records;
+// The same drawn.
+mod figure;
 // The result as text, JSON and CSV.
 pub(crate) mod render;
 
 use compared::Compared;
 
-/// Simulate the cleat runs of a campaign and compare them with the measurement
+/// Simulate the runs of a campaign and compare them with the measurement
 ///
-/// The errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
+/// Sweeps and time histories are replayed: what was recorded of the inputs drives the model, from a state at the beginning
+/// that is estimated where a time history is. Their error is the root mean square of the difference over that of the
+/// measured signal without its mean (NRMS).
+/// Of cleat runs the errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
 /// square, after both records are aligned at the peak of the wheel.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv"
+    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
@@ -43,10 +50,10 @@ pub struct Arguments {
     /// One value, in place of that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
-    /// How much of the model is simulated
+    /// How much of the model is simulated over cleats
     #[arg(long, value_enum, default_value_t = VariantName::Complete)]
     variant: VariantName,
-    /// Write the time histories into this folder, a CSV for each run
+    /// Write the time histories into this folder, a CSV for each run; of a sweep or time history measured beside simulated, and an SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
@@ -71,17 +78,50 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let manifest = campaign.manifest();
     let files = std::iter::once(manifest.as_path()).chain(arguments.params.as_deref());
     let values = parameters::resolve(model.about(), files, &arguments.set)?;
-    let cleats = cleats(&campaign)?;
-    let driven = drive(&campaign, &model, &values, &cleats, arguments.variant.into())?;
+    let driven = over_cleats(&campaign, &model, &values, arguments)?;
+    let records = records::records(&campaign, &*model, &values)?;
+    if driven.is_none() && records.is_empty() {
+        let expected = "at least one run of kind cleat, sweep or time_history";
+        return Err(nothing_to_simulate(&campaign, expected).into());
+    }
+    if let Some(folder) = &arguments.out {
+        render::records(&records, folder)?;
+    }
+    let result = render::Result {
+        campaign: &campaign.name,
+        model: &model.about().name,
+        at_start: &guessed(&campaign, &model, &values),
+        cleats: driven.as_ref(),
+        records: &records,
+    };
+    Ok(match arguments.format {
+        TableFormat::Text => result.text(),
+        TableFormat::Json => result.json(),
+        TableFormat::Csv => result.csv(),
+    })
+}
+
+/// The runs over cleats, written where the user wants them; `None` without any.
+fn over_cleats(
+    campaign: &Campaign,
+    model: &Loaded,
+    values: &Values,
+    arguments: &Arguments,
+) -> Result<Option<Compared>, InputError> {
+    if !campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. })) {
+        return Ok(None);
+    }
+    let cleats = cleats(campaign)?;
+    let driven = drive(campaign, model, values, &cleats, arguments.variant.into())?;
     if let Some(folder) = &arguments.out {
         render::histories(model.about(), &cleats, &driven.rides, folder)?;
     }
-    let guessed = guessed(&campaign, &model, &values);
-    Ok(match arguments.format {
-        TableFormat::Text => render::text(&driven.compared, &guessed),
-        TableFormat::Json => render::json(&campaign, &model, &driven.compared, &guessed),
-        TableFormat::Csv => render::csv(&driven.compared),
-    })
+    Ok(Some(driven.compared))
+}
+
+fn nothing_to_simulate(campaign: &Campaign, expected: &str) -> Problem {
+    let (place, remedy) = (Place::Name("run".into()), "list such a run");
+    Problem::new(campaign.manifest(), place, "none that is simulated", expected, remedy)
 }
 
 /// The parameters that the campaign wants fitted and that still have its start values: no error is the model's before
@@ -158,14 +198,7 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
         }
     }
     if found.is_empty() && problems.is_empty() {
-        let (place, remedy) = (Place::Name("run".into()), "list runs of kind cleat");
-        problems.push(Problem::new(
-            campaign.manifest(),
-            place,
-            "no run over a cleat",
-            "at least one",
-            remedy,
-        ));
+        problems.push(nothing_to_simulate(campaign, "at least one run of kind cleat"));
     }
     InputError::unless_empty(problems, Some(found))
 }

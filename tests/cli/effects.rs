@@ -68,6 +68,26 @@ fn the_catalogue_says_where_each_effect_applies() {
 }
 
 #[test]
+fn an_effect_says_what_each_parameter_is_to_it() {
+    let play = succeeds(&["effects", "free_play"]);
+    let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
+    let rows: Vec<String> = play.lines().map(words).collect();
+    for begin in [
+        "gap centred strength, vanishes at 0 m 1 mm",
+        "gap lost_motion shape m",
+        "k_joint lost_motion N/m",
+    ] {
+        assert!(
+            rows.iter().any(|row| row.starts_with(begin)),
+            "{begin} is not in\n{play}"
+        );
+    }
+    let by_path = succeeds(&["effects", "models/effects/series_compliance.axle", "--format", "json"]);
+    let json: Value = serde_json::from_str(&by_path).unwrap();
+    assert_eq!(json["parameters"][0]["vanishes_at"], "infinity");
+}
+
+#[test]
 fn what_cannot_be_patched_says_what_to_write() {
     let cases = [
         (

@@ -37,9 +37,11 @@ fn result(line: &str) -> Value {
 
 #[test]
 fn verbs_print_the_keys_that_are_documented() {
+    agree("inspect", &result(&format!("inspect {AXLE}/rig/sweep_025.csv.gz")));
     agree("matrices", &result("matrices quarter_car"));
     agree("fit", &result(&format!("fit {AXLE} --starts 1")));
     agree("kc", &result(&format!("kc {AXLE}"))[0]);
+    agree("effects", &result("effects coulomb_friction"));
     agree("simulate", &result(&format!("simulate {AXLE}")));
     agree(
         "compare",

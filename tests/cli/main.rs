@@ -12,5 +12,6 @@ mod interruption;
 mod json_reference;
 mod newcomer;
 mod readme;
+mod records;
 mod rides;
 mod tutorial;

@@ -101,7 +101,8 @@ fn time_histories_are_written_run_by_run() {
     let columns = file.lines().next().unwrap().split(',').count();
     assert!(file.starts_with("time,z_body_acceleration,"));
     assert!(file.lines().all(|line| line.split(',').count() == columns));
-    assert_eq!(fs::read_dir(&out).unwrap().count(), 3);
+    // Of three sweeps a figure each too.
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 3 + 2 * 3);
 }
 
 #[test]
@@ -120,8 +121,6 @@ fn what_cannot_roll_is_refused() {
             ran.stderr
         );
     }
-    let ran = qcar(&["simulate", "models/campaigns/silverbox"]);
-    assert_eq!(ran.status, 2, "{}", ran.stdout);
 }
 
 /// A spring that pushes by 500 N and gives in by 100 N at most lifts the body off for good.

@@ -116,6 +116,7 @@ impl<'a> Values<'a> {
             Node::Max(a, b) => self.of(a).max(self.of(b)),
             Node::Call(f, a) => f.value(self.of(a)),
             Node::Select(test, a, b) => self.of(if self.of(test) > 0.0 { a } else { b }),
+            Node::Table(order, x, curve) => self.graph.curve(curve).at(order, self.of(x), |&entry| self.of(entry)),
         };
         self.known.borrow_mut().insert(e, value);
         value

@@ -142,6 +142,14 @@ codes! {
     ArgumentHasUnit = "argument_has_unit",
     /// A power of a quantity with a unit to something that is no number.
     ExponentNotConstant = "exponent_not_constant",
+    /// A table with more abscissae than ordinates, or fewer.
+    TableLengthsDiffer = "table_lengths_differ",
+    /// A table with fewer than two points, or too many.
+    TableSize = "table_size",
+    /// An abscissa of a table that is no number.
+    TableNotConstant = "table_not_constant",
+    /// Abscissae of a table out of order.
+    TableNotIncreasing = "table_not_increasing",
     /// A literal zero below a fraction bar.
     DivisionByZero = "division_by_zero",
     /// Parts of a stretch that move, multiplied or put into a function.
@@ -232,4 +240,8 @@ codes! {
     StartOfOtherUnit = "start_of_other_unit",
     /// A start that is not between its bounds.
     StartOutsideRange = "start_outside_range",
+    /// A second strength of a form.
+    SecondStrength = "second_strength",
+    /// A strength that vanishes where it never is.
+    VanishesOutsideRange = "vanishes_outside_range",
 }

@@ -112,6 +112,25 @@ pub fn start_outside_range(span: Span, name: &str, start: f64, low: f64, high: f
     .hint("write `= start in low..high` with low <= start <= high; a value that is not a number needs a default or range of the model's parameter")
 }
 
+/// A second strength of a form.
+pub fn second_strength(span: Span, first: Span, effect: &str, name: &str) -> Diagnostic {
+    let message = format!("effect `{effect}` has `{name}` as a second strength");
+    Diagnostic::error(Code::SecondStrength, message)
+        .label(span, "the effect would vanish with this too")
+        .label(first, "its strength")
+        .hint("write `strength` before the one parameter with which all of the effect vanishes; leave it out elsewhere")
+}
+
+/// A strength that vanishes where it never is.
+pub fn vanishes_outside_range(span: Span, name: &str, value: f64, low: f64, high: f64) -> Diagnostic {
+    let message = format!("`{name}` vanishes at {value:?}, which is not between {low:?} and {high:?}");
+    Diagnostic::error(Code::VanishesOutsideRange, message)
+        .label(span, "never reached")
+        .hint(
+            "write a range that holds the value, `vanishes at infinity`, or nothing for a strength that vanishes at 0",
+        )
+}
+
 /// Whether a mistake is that nothing uses a name.
 pub fn is_about_use(diagnostic: &Diagnostic) -> bool {
     matches!(

@@ -10,6 +10,8 @@ pub mod reading;
 pub mod names;
 // Units, stretches and laws.
 pub mod units;
+// Curves through points.
+pub mod tables;
 // What is held, what can be solved, what takes energy.
 pub mod structure;
 // What an output can see.

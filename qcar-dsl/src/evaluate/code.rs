@@ -8,6 +8,7 @@ use std::cell::{Cell, RefCell};
 use super::given::{self, Given, Part, Read};
 use super::order;
 use crate::about::About;
+use crate::expr::Curve;
 use crate::program::{Op, Program};
 
 /// Points that are computed together: enough to hide the interpretation of an operation, and few enough that the values
@@ -29,7 +30,7 @@ impl Run {
     fn new(run: &order::Run, program: &Program, registers: &[u32]) -> Self {
         let operations = run.places.iter().map(|&place| program.ops[place]);
         let arguments = operations.map(|op| {
-            let mut registers = op.arguments().map(|value| registers[value.0 as usize]);
+            let mut registers = program.arguments(op).map(|value| registers[value.0 as usize]);
             // No loop reads more of them than its operation has.
             std::array::from_fn(|_| registers.next().unwrap_or_default())
         });
@@ -49,6 +50,8 @@ pub struct Code {
     /// The register of the first number.
     first_number: usize,
     runs: Vec<Run>,
+    /// The curves of tables, by the registers of their entries.
+    curves: Vec<Curve<u32>>,
     /// How many registers there are.
     registers: usize,
     outputs: Vec<u32>,
@@ -75,7 +78,11 @@ impl Code {
             next += 1;
         }
         let outputs = program.outputs.iter().map(|value| registers[value.0 as usize]);
+        let curves = program.curves.iter();
         Code {
+            curves: curves
+                .map(|curve| curve.map(|value| registers[value.0 as usize]))
+                .collect(),
             runs: runs.iter().map(|run| Run::new(run, program, &registers)).collect(),
             outputs: outputs.collect(),
             reads,
@@ -150,6 +157,7 @@ impl Code {
             let work = Work {
                 arguments: &run.arguments,
                 registers,
+                curves: &self.curves,
                 results,
             };
             work.operate(run.kind);
@@ -162,6 +170,7 @@ impl Code {
 struct Work<'a, const N: usize> {
     arguments: &'a [[u32; 3]],
     registers: &'a [Cell<[f64; N]>],
+    curves: &'a [Curve<u32>],
     /// The registers from the first result.
     results: &'a [Cell<[f64; N]>],
 }
@@ -180,6 +189,16 @@ impl<const N: usize> Work<'_, N> {
             Op::Min(..) => self.two(f64::min),
             Op::Max(..) => self.two(f64::max),
             Op::Select(..) => self.three(|test, a, b| if test > 0.0 { a } else { b }),
+            Op::Table(order, _, curve) => self.table(order, &self.curves[curve as usize]),
+        }
+    }
+
+    fn table(&self, order: u8, curve: &Curve<u32>) {
+        for (result, &[x, ..]) in self.results.iter().zip(self.arguments) {
+            let x = self.register(x);
+            result.set(std::array::from_fn(|lane| {
+                curve.at(order, x[lane], |&entry| self.register(entry)[lane])
+            }));
         }
     }
 

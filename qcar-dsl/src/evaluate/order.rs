@@ -32,8 +32,8 @@ pub fn runs(program: &Program) -> Vec<Run> {
         while let Some(next) = waiting.iter().copied().rev().max_by_key(|&place| distances[place]) {
             let kind = kind(&program.ops[next]);
             let (places, others) = waiting.into_iter().partition(|&place| {
-                let op = &program.ops[place];
-                done[place] = self::kind(op) == kind && op.arguments().all(|value| done[value.0 as usize]);
+                let op = program.ops[place];
+                done[place] = self::kind(&op) == kind && program.arguments(op).all(|value| done[value.0 as usize]);
                 done[place]
             });
             runs.push(Run { kind, places });
@@ -47,7 +47,7 @@ pub fn runs(program: &Program) -> Vec<Run> {
 fn distances(program: &Program) -> Vec<usize> {
     let mut distances = vec![0; program.ops.len()];
     for (place, op) in program.ops.iter().enumerate().rev() {
-        for value in op.arguments() {
+        for value in program.arguments(*op) {
             let argument = value.0 as usize;
             let change = usize::from(kind(&program.ops[argument]) != kind(op));
             distances[argument] = distances[argument].max(distances[place] + change);
@@ -83,6 +83,7 @@ mod tests {
         let program = Program {
             ops,
             outputs: vec![sum],
+            ..Program::default()
         };
         let runs = runs(&program);
         let lengths: Vec<usize> = runs.iter().map(|run| run.places.len()).collect();

@@ -138,6 +138,16 @@ impl Differential {
                 let (da, db) = (self.of(g, a), self.of(g, b));
                 g.select(test, da, db)
             }
+            Node::Table(order, x, curve) => {
+                let curve = g.curve(curve).clone();
+                let dx = self.of(g, x);
+                let slope = g.table(order + 1, x, curve.clone());
+                let moved = g.mul(slope, dx);
+                let mut change = curve.map(|&entry| self.of(g, entry));
+                change.monotone = false;
+                let bent = g.table(order, x, change);
+                g.add(moved, bent)
+            }
         }
     }
 

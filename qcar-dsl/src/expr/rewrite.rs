@@ -2,27 +2,30 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use super::{Expr, Graph, Node, Symbol};
+use super::{Curve, Expr, Graph, Node, Symbol};
 use crate::hash::{HashMap, HashSet};
 
 /// Something for each of several leaves.
 pub type Leaves = BTreeMap<Symbol, Expr>;
 
-impl Node {
-    /// The arguments, in order.
-    pub fn arguments(self) -> impl Iterator<Item = Expr> {
-        let three = match self {
+impl Graph {
+    /// The arguments of a node, in order.
+    pub fn arguments(&self, node: Node) -> impl Iterator<Item = Expr> {
+        let three = match node {
             Node::Constant(_) | Node::Symbol(_) => [None; 3],
-            Node::Neg(a) | Node::Powi(a, _) | Node::Call(_, a) => [Some(a), None, None],
+            Node::Neg(a) | Node::Powi(a, _) | Node::Call(_, a) | Node::Table(_, a, _) => [Some(a), None, None],
             Node::Add(a, b) | Node::Sub(a, b) | Node::Mul(a, b) | Node::Div(a, b) => [Some(a), Some(b), None],
             Node::Pow(a, b) | Node::Min(a, b) | Node::Max(a, b) => [Some(a), Some(b), None],
             Node::Select(test, a, b) => [Some(test), Some(a), Some(b)],
         };
-        three.into_iter().flatten()
+        let curve = match node {
+            Node::Table(.., curve) => Some(self.curve(curve)),
+            _ => None,
+        };
+        let entries = curve.into_iter().flat_map(Curve::entries).copied();
+        three.into_iter().flatten().chain(entries)
     }
-}
 
-impl Graph {
     /// The expression of a node whose arguments exist, with the identities applied.
     pub fn rebuild(&mut self, node: Node) -> Expr {
         match node {
@@ -39,6 +42,7 @@ impl Graph {
             Node::Max(a, b) => self.max(a, b),
             Node::Call(f, a) => self.call(f, a),
             Node::Select(test, a, b) => self.select(test, a, b),
+            Node::Table(order, x, curve) => self.table(order, x, self.curve(curve).clone()),
         }
     }
 
@@ -54,7 +58,7 @@ impl Graph {
             if let Node::Symbol(leaf) = self.node(e) {
                 found.insert(leaf);
             }
-            waiting.extend(self.node(e).arguments());
+            waiting.extend(self.arguments(self.node(e)));
         }
         found
     }
@@ -76,6 +80,7 @@ impl Graph {
             Node::Max(a, b) => value(a).max(value(b)),
             Node::Call(f, a) => f.value(value(a)),
             Node::Select(test, a, b) => value(if value(test) > 0.0 { a } else { b }),
+            Node::Table(order, x, curve) => self.curve(curve).at(order, value(x), |&entry| value(entry)),
         }
     }
 }
@@ -114,6 +119,11 @@ impl Substitution {
         let node = graph.node(e);
         let result = match node {
             Node::Symbol(leaf) => self.leaves.get(&leaf).copied().unwrap_or(e),
+            Node::Table(order, x, curve) => {
+                let curve = graph.curve(curve).clone().map(|&entry| self.apply(graph, entry));
+                let x = self.apply(graph, x);
+                graph.table(order, x, curve)
+            }
             _ => {
                 let node = node.map(|a| self.apply(graph, a));
                 graph.rebuild(node)
@@ -125,10 +135,11 @@ impl Substitution {
 }
 
 impl Node {
-    /// The same operation with other arguments.
+    /// The same operation with other arguments; a curve keeps its points.
     pub fn map(self, mut f: impl FnMut(Expr) -> Expr) -> Node {
         match self {
             Node::Constant(_) | Node::Symbol(_) => self,
+            Node::Table(order, x, curve) => Node::Table(order, f(x), curve),
             Node::Neg(a) => Node::Neg(f(a)),
             Node::Add(a, b) => Node::Add(f(a), f(b)),
             Node::Sub(a, b) => Node::Sub(f(a), f(b)),

@@ -6,13 +6,15 @@ use super::statement::{Scope, statement};
 use super::tokens::{Parsed, Tokens};
 use super::unit::declared_unit;
 use crate::diagnostic::reading;
-use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern, PlaceKind};
+use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern, PlaceKind, Role, VanishesAt};
 
 const HEAD: &str = "effect name at link l named damper { … }";
 
 /// What a change can begin with.
-const WORDS: [&str; 18] = [
+const WORDS: [&str; 20] = [
     "param",
+    "strength",
+    "shape",
     "known",
     "shared",
     "source",
@@ -174,7 +176,7 @@ fn called(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<(Name, O
 
 fn change(tokens: &mut Tokens) -> Parsed<Change> {
     match tokens.peek().as_deref() {
-        Some("param" | "known" | "shared") => Ok(Change::Parameter(parameter(tokens)?)),
+        Some("param" | "strength" | "shape" | "known" | "shared") => Ok(Change::Parameter(parameter(tokens)?)),
         Some("take") => take(tokens),
         Some("add") => add(tokens),
         Some("replace") => replace(tokens),
@@ -197,7 +199,9 @@ fn declaration(tokens: &mut Tokens) -> Parsed<Change> {
 
 fn parameter(tokens: &mut Tokens) -> Parsed<EffectParameter> {
     const EXAMPLE: &str = "param k: N/m = 0.5*l.spring in 0.1*l.spring..2*l.spring \"what it is\";";
-    let (shared, known) = (tokens.take_word("shared"), tokens.take_word("known"));
+    let (strength, shape) = (tokens.take_word("strength"), tokens.take_word("shape"));
+    // What is given is no strength: nothing would be left to find.
+    let (shared, known) = (tokens.take_word("shared"), !strength && tokens.take_word("known"));
     word(tokens, "param", EXAMPLE)?;
     let name = tokens.new_name("the name of a parameter", EXAMPLE)?;
     tokens.expect(":", EXAMPLE)?;
@@ -208,17 +212,36 @@ fn parameter(tokens: &mut Tokens) -> Parsed<EffectParameter> {
     let low = expression(tokens)?;
     tokens.expect("..", EXAMPLE)?;
     let high = expression(tokens)?;
+    let role = match (strength, shape) {
+        (true, _) => Role::Strength(vanishes_at(tokens)?),
+        (false, true) => Role::Shape,
+        (false, false) => Role::Other,
+    };
     let (doc, _) = tokens.text("a sentence that says what it is", EXAMPLE)?;
     tokens.expect(";", EXAMPLE)?;
     Ok(EffectParameter {
         shared,
         known,
+        role,
         name,
         unit,
         start,
         range: (low, high),
         doc,
     })
+}
+
+/// `vanishes at infinity`, or nothing for a strength that vanishes at 0.
+fn vanishes_at(tokens: &mut Tokens) -> Parsed<VanishesAt> {
+    const EXAMPLE: &str = "strength param k: N/m = 500 N/mm in 10 N/mm..20 kN/mm vanishes at infinity \"what it is\";";
+    if !tokens.take_word("vanishes") {
+        return Ok(VanishesAt::Zero);
+    }
+    word(tokens, "at", EXAMPLE)?;
+    if tokens.take_word("infinity") {
+        return Ok(VanishesAt::Infinity);
+    }
+    expression(tokens).map(VanishesAt::Value)
 }
 
 fn take(tokens: &mut Tokens) -> Parsed<Change> {

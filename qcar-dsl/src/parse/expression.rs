@@ -5,7 +5,9 @@ use proc_macro2::Delimiter;
 use super::tokens::{Parsed, Tokens};
 use super::unit;
 use crate::diagnostic::reading;
-use crate::syntax::{Comparison, Dotted, Expression, ExpressionKind, Logic, Name, Operator, OptionTest, Order};
+use crate::syntax::{
+    Comparison, Dotted, Expression, ExpressionKind, List, Logic, Name, Operator, OptionTest, Order, Table,
+};
 
 /// An expression of its own: what a statement says after `=`, or a word such as `spring`.
 pub fn expression(tokens: &mut Tokens) -> Parsed<Expression> {
@@ -83,6 +85,11 @@ fn atom(tokens: &mut Tokens) -> Parsed<Expression> {
         return at.expected("a value", "k*s");
     };
     match tokens.group(Delimiter::Parenthesis) {
+        Some(inside) if name.text == "table" => {
+            let kind = ExpressionKind::Table(Box::new(table(inside)?));
+            let span = tokens.span_from(span);
+            Ok(Expression { kind, span })
+        }
         Some(inside) => {
             let kind = ExpressionKind::Call(name, arguments(inside)?);
             let span = tokens.span_from(span);
@@ -103,7 +110,7 @@ fn literal(tokens: &mut Tokens) -> Parsed<Expression> {
     let number = unit::number(tokens)?;
     if let Some(word) = tokens
         .peek()
-        .filter(|word| !["in", "if", "else", "from", "by"].contains(&word.as_str()))
+        .filter(|word| !["in", "if", "else", "from", "by", "vanishes"].contains(&word.as_str()))
     {
         return Err(Box::new(reading::missing_operator(
             tokens.span(),
@@ -128,6 +135,35 @@ pub fn arguments(mut inside: Tokens) -> Parsed<Vec<Expression>> {
         }
     }
     Ok(arguments)
+}
+
+/// `x, [x0, …], [y0, …]`
+fn table(mut inside: Tokens) -> Parsed<Table> {
+    const EXAMPLE: &str = "table(v, [-1 m/s, 0 m/s, 1 m/s], [-1.5 kN, 0 kN, 0.9 kN])";
+    let x = sum(&mut inside)?;
+    inside.expect(",", EXAMPLE)?;
+    let knots = list(&mut inside, EXAMPLE)?;
+    inside.expect(",", EXAMPLE)?;
+    let values = list(&mut inside, EXAMPLE)?;
+    inside.take(",");
+    inside.finished(EXAMPLE)?;
+    Ok(Table { x, knots, values })
+}
+
+fn list(tokens: &mut Tokens, example: &str) -> Parsed<List> {
+    let span = tokens.span();
+    let Some(mut inside) = tokens.group(Delimiter::Bracket) else {
+        return tokens.expected("`[`", example);
+    };
+    let mut entries = Vec::new();
+    while !inside.at_end() {
+        entries.push(inside.entry(sum)?);
+        if !inside.at_end() {
+            inside.expect(",", example)?;
+        }
+    }
+    let span = tokens.span_from(span);
+    Ok(List { entries, span })
 }
 
 /// Names joined by dots.

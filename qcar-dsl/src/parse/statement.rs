@@ -100,6 +100,10 @@ pub fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
             let home = "a `link name: a - b { … }`";
             Err(Box::new(reading::misplaced_statement(tokens.span(), word, home)))
         }
+        Some(word @ ("strength" | "shape" | "shared")) => {
+            let home = "an `effect name at link l { … }`";
+            Err(Box::new(reading::misplaced_statement(tokens.span(), word, home)))
+        }
         _ => {
             let mistake = reading::unknown_statement(tokens.span(), &tokens.found(), &WORDS);
             Err(Box::new(mistake))

@@ -312,6 +312,14 @@ impl<'a> Tokens<'a> {
         }
     }
 
+    /// Parses an entry of a list. Entries stand beside each other, so that the parts of one do not count for the next.
+    pub fn entry<Part>(&mut self, parse: impl FnOnce(&mut Self) -> Parsed<Part>) -> Parsed<Part> {
+        let parts = self.context.parts.get();
+        let part = parse(self);
+        self.context.parts.set(parts);
+        part
+    }
+
     /// Starts to count anew.
     pub fn reset_parts(&self) {
         self.context.parts.set(0);
@@ -330,6 +338,6 @@ fn owner(name: &str) -> Option<&'static str> {
 }
 
 /// The functions of the language.
-pub const FUNCTIONS: [&str; 13] = [
-    "abs", "sign", "sqrt", "exp", "ln", "sin", "cos", "tan", "atan", "tanh", "min", "max", "pow",
+pub const FUNCTIONS: [&str; 14] = [
+    "abs", "sign", "sqrt", "exp", "ln", "sin", "cos", "tan", "atan", "tanh", "min", "max", "pow", "table",
 ];

@@ -1,7 +1,7 @@
 //! Trees with other names in them.
 
 use crate::syntax::{
-    Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, Logic,
+    Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, List, Logic, Table,
 };
 
 /// What a name becomes: `None` leaves it as it is.
@@ -17,6 +17,15 @@ pub fn expression<Mistake>(e: &Expression, rename: Rename<'_, Mistake>) -> Resul
         ExpressionKind::Binary(operator, a, b) => ExpressionKind::Binary(*operator, Box::new(of(a)?), Box::new(of(b)?)),
         ExpressionKind::Call(function, arguments) => {
             ExpressionKind::Call(function.clone(), arguments.iter().map(of).collect::<Result<_, _>>()?)
+        }
+        ExpressionKind::Table(table) => {
+            let mut list = |own: &List| -> Result<List, Mistake> {
+                let entries = own.entries.iter().map(&mut of).collect::<Result<_, _>>()?;
+                Ok(List { entries, ..own.clone() })
+            };
+            let (knots, values) = (list(&table.knots)?, list(&table.values)?);
+            let x = of(&table.x)?;
+            ExpressionKind::Table(Box::new(Table { x, knots, values }))
         }
         ExpressionKind::If(condition, then, otherwise) => {
             let condition = logic(condition, rename)?;

@@ -6,7 +6,7 @@ use super::terms::{LINEAR, WORDS};
 use crate::diagnostic::{Diagnostic, Severity, effects, names, reading};
 use crate::parse::parse_text;
 use crate::source::{Source, Span};
-use crate::syntax::{Change, Effect, Item, Name, PlaceKind};
+use crate::syntax::{Change, Effect, EffectParameter, Item, Name, PlaceKind, Role};
 
 /// The only effect of a file.
 pub fn effect_of(source: &Source) -> Made<Effect> {
@@ -38,6 +38,7 @@ fn second(effects: &[Effect]) -> Span {
 fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     let mut found = undescribed(effect);
     found.extend(forms_are_told_apart(effect));
+    found.extend(second_strengths(effect));
     let pattern = &effect.pattern;
     let of_forms = effect.forms.iter().flat_map(|form| &form.terms);
     for term in pattern.terms.iter().chain(of_forms) {
@@ -81,6 +82,32 @@ fn forms_are_told_apart(effect: &Effect) -> Vec<Diagnostic> {
         }
     }
     found
+}
+
+/// Each form vanishes with one parameter at most.
+fn second_strengths(effect: &Effect) -> Vec<Diagnostic> {
+    let shared = strengths(effect.parameters());
+    let mut found = beyond_first(effect, &shared);
+    for form in &effect.forms {
+        let first = shared.iter().copied().take(1);
+        let all: Vec<&Name> = first.chain(strengths(form.parameters())).collect();
+        found.extend(beyond_first(effect, &all));
+    }
+    found
+}
+
+fn strengths(declared: Vec<&EffectParameter>) -> Vec<&Name> {
+    let strengths = declared.into_iter().filter(|own| matches!(own.role, Role::Strength(_)));
+    strengths.map(|own| &own.name).collect()
+}
+
+fn beyond_first(effect: &Effect, strengths: &[&Name]) -> Vec<Diagnostic> {
+    let Some((first, more)) = strengths.split_first() else {
+        return vec![];
+    };
+    more.iter()
+        .map(|own| effects::second_strength(own.span, first.span, &effect.name.text, &own.text))
+        .collect()
 }
 
 /// A person must be able to judge an effect: what it is, where its law comes from, how it shows.

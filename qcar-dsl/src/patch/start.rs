@@ -11,9 +11,23 @@ use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
 use crate::model::Model;
 use crate::syntax::{
-    EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Statement,
+    EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role, Statement, VanishesAt,
 };
 use crate::units::Unit;
+
+/// What a parameter is to its effect, in numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterRole {
+    /// As it goes to a value, the model becomes what it was before the patch.
+    Strength {
+        /// 0, another value in SI, or infinity.
+        vanishes_at: f64,
+    },
+    /// It says where the effect acts, over travel, speed or frequency.
+    Shape,
+    /// Neither.
+    Other,
+}
 
 /// A parameter of an effect with its expressions in the names of the model.
 pub struct Asked<'a> {
@@ -21,12 +35,22 @@ pub struct Asked<'a> {
     pub declared: &'a EffectParameter,
     /// Its name in the model.
     pub name: String,
-    /// Start, lower and upper bound.
-    pub expressions: [Expression; 3],
+    /// What [`expressions`] gives.
+    pub expressions: Vec<Expression>,
+}
+
+/// Start, lower and upper bound, and the value at which a strength vanishes where that is an expression.
+pub fn expressions(declared: &EffectParameter) -> impl Iterator<Item = &Expression> {
+    let vanishes_at = match &declared.role {
+        Role::Strength(VanishesAt::Value(value)) => Some(value),
+        _ => None,
+    };
+    let (low, high) = &declared.range;
+    [&declared.start, low, high].into_iter().chain(vanishes_at)
 }
 
 /// What an expression stands for, as a derived quantity of a model that is only asked.
-const ROLES: [&str; 3] = ["start of ", "low end of ", "high end of "];
+const ROLES: [&str; 4] = ["start of ", "low end of ", "high end of ", "vanishing value of "];
 
 /// The numbers of every parameter, and its declaration in the model.
 ///
@@ -94,15 +118,19 @@ fn unit_of(one: &Asked) -> String {
     format!("unit of {}", one.name)
 }
 
-fn numbers(
-    one: &Asked,
-    model: &Model,
-    answers: &BTreeMap<&str, (f64, Unit)>,
-) -> Result<([f64; 3], Unit), Box<Diagnostic>> {
+/// The numbers of a parameter, in SI.
+struct Numbers {
+    start: f64,
+    range: (f64, f64),
+    role: ParameterRole,
+    unit: Unit,
+}
+
+fn numbers(one: &Asked, model: &Model, answers: &BTreeMap<&str, (f64, Unit)>) -> Result<Numbers, Box<Diagnostic>> {
     let name = unit_of(one);
     let unit = model.parameters.iter().find(|parameter| parameter.name == name);
     let unit = unit.map_or(Unit::ONE, |parameter| parameter.unit);
-    let mut numbers = [0.0; 3];
+    let mut numbers = [0.0; ROLES.len()];
     for ((number, role), expression) in numbers.iter_mut().zip(ROLES).zip(&one.expressions) {
         let question = format!("{role}{}", one.name);
         let (value, own) = answers.get(question.as_str()).copied().unwrap_or((f64::NAN, unit));
@@ -117,18 +145,36 @@ fn numbers(
         }
         *number = value;
     }
-    let [start, low, high] = numbers.map(rounded);
+    let [start, low, high, vanishes_at] = numbers;
+    let [start, low, high] = [start, low, high].map(rounded);
+    let name = &one.declared.name;
     if !(low <= start && start <= high && low < high) {
-        let span = one.declared.name.span;
-        return Err(Box::new(effects::start_outside_range(
-            span,
-            &one.declared.name.text,
-            start,
-            low,
-            high,
-        )));
+        let mistake = effects::start_outside_range(name.span, &name.text, start, low, high);
+        return Err(Box::new(mistake));
     }
-    Ok(([start, low, high], unit))
+    let role = role(one.declared, vanishes_at, (low, high))?;
+    Ok(Numbers {
+        start,
+        range: (low, high),
+        role,
+        unit,
+    })
+}
+
+fn role(declared: &EffectParameter, value: f64, (low, high): (f64, f64)) -> Result<ParameterRole, Box<Diagnostic>> {
+    let vanishes_at = match &declared.role {
+        Role::Shape => return Ok(ParameterRole::Shape),
+        Role::Other => return Ok(ParameterRole::Other),
+        Role::Strength(VanishesAt::Zero) => 0.0,
+        Role::Strength(VanishesAt::Infinity) => f64::INFINITY,
+        Role::Strength(VanishesAt::Value(_)) if value == 0.0 || (low <= value && value <= high) => value,
+        Role::Strength(VanishesAt::Value(said)) => {
+            let name = &declared.name.text;
+            let mistake = effects::vanishes_outside_range(said.span, name, value, low, high);
+            return Err(Box::new(mistake));
+        }
+    };
+    Ok(ParameterRole::Strength { vanishes_at })
 }
 
 /// A number without a unit, which is in the declared one.
@@ -145,25 +191,27 @@ fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
 }
 
-fn declaration(one: &Asked, ([start, low, high], unit): ([f64; 3], Unit), base: &Base) -> (NewParameter, Parameter) {
+fn declaration(one: &Asked, numbers: Numbers, base: &Base) -> (NewParameter, Parameter) {
     let declared = one.declared;
+    let (low, high) = numbers.range;
     let [from, to] = [(&declared.range.0, low), (&declared.range.1, high)].map(|(e, value)| number(e, value));
     let parameter = Parameter {
         known: declared.known,
         name: Name::new(&one.name),
         unit: declared.unit.clone(),
-        default: Some(ParameterDefault::Number(number(&declared.start, start))),
+        default: Some(ParameterDefault::Number(number(&declared.start, numbers.start))),
         range: Some((from, to)),
         doc: declared.doc.clone(),
     };
     let new = NewParameter {
         name: one.name.clone(),
         effect_name: declared.name.text.clone(),
-        unit,
-        start,
-        range: (low, high),
+        unit: numbers.unit,
+        start: numbers.start,
+        range: numbers.range,
         known: declared.known,
         doc: declared.doc.clone(),
+        role: numbers.role,
         is_new: base.global(&one.name).is_none(),
     };
     (new, parameter)

@@ -1,7 +1,7 @@
 //! Effects as canonical text.
 
 use super::{block, law_lines, sentence, statement_lines};
-use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern};
+use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, Pattern, Role, VanishesAt};
 
 /// The lines of an effect.
 pub fn effect_lines(effect: &Effect) -> Vec<String> {
@@ -94,8 +94,15 @@ fn parameter_line(parameter: &EffectParameter) -> String {
     let shared = if parameter.shared { "shared " } else { "" };
     let known = if parameter.known { "known " } else { "" };
     let (low, high) = &parameter.range;
+    let (role, vanishes) = match &parameter.role {
+        Role::Strength(VanishesAt::Zero) => ("strength ", String::new()),
+        Role::Strength(VanishesAt::Infinity) => ("strength ", " vanishes at infinity".to_string()),
+        Role::Strength(VanishesAt::Value(value)) => ("strength ", format!(" vanishes at {value}")),
+        Role::Shape => ("shape ", String::new()),
+        Role::Other => ("", String::new()),
+    };
     format!(
-        "{shared}{known}param {}: {} = {} in {low}..{high}{};",
+        "{role}{shared}{known}param {}: {} = {} in {low}..{high}{vanishes}{};",
         parameter.name.text,
         parameter.unit,
         parameter.start,

@@ -3,7 +3,7 @@
 use std::fmt::{self, Display, Formatter};
 
 use crate::syntax::{
-    Comparison, Expression, ExpressionKind, Logic, Number, Operator, OptionTest, Order, UnitFactor, UnitText,
+    Comparison, Expression, ExpressionKind, List, Logic, Number, Operator, OptionTest, Order, UnitFactor, UnitText,
 };
 use crate::units;
 
@@ -26,9 +26,8 @@ fn rank(expression: &Expression) -> Rank {
         // Its unit would take the exponent.
         ExpressionKind::Number(number) if !number.unit.factors.is_empty() => Rank::Power,
         ExpressionKind::Binary(Operator::Power, ..) => Rank::Power,
-        ExpressionKind::Number(_) | ExpressionKind::Name(_) | ExpressionKind::Call(..) | ExpressionKind::If(..) => {
-            Rank::Atom
-        }
+        ExpressionKind::Number(_) | ExpressionKind::Name(_) | ExpressionKind::Call(..) => Rank::Atom,
+        ExpressionKind::Table(_) | ExpressionKind::If(..) => Rank::Atom,
     }
 }
 
@@ -51,11 +50,19 @@ impl Display for Expression {
                 let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
                 write!(f, "{}({})", name.text, arguments.join(", "))
             }
+            ExpressionKind::Table(table) => write!(f, "table({}, {}, {})", table.x, table.knots, table.values),
             ExpressionKind::If(condition, then, otherwise) => match otherwise.kind {
                 ExpressionKind::If(..) => write!(f, "if {condition} {{ {then} }} else {otherwise}"),
                 _ => write!(f, "if {condition} {{ {then} }} else {{ {otherwise} }}"),
             },
         }
+    }
+}
+
+impl Display for List {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let entries: Vec<String> = self.entries.iter().map(ToString::to_string).collect();
+        write!(f, "[{}]", entries.join(", "))
     }
 }
 

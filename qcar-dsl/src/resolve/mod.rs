@@ -13,6 +13,8 @@ pub mod options;
 // Then values and their units.
 mod quantity;
 mod value;
+// Curves through points.
+mod table;
 // What names mean.
 mod names;
 // Then what is made of them, in the order in which it is resolved.

@@ -150,6 +150,13 @@ impl Resolver<'_> {
             ExpressionKind::Negative(operand) => self.moves(operand, direction),
             ExpressionKind::Binary(_, a, b) => self.moves(a, direction) || self.moves(b, direction),
             ExpressionKind::Call(_, arguments) => arguments.iter().any(|argument| self.moves(argument, direction)),
+            ExpressionKind::Table(table) => {
+                let entries = table.knots.entries.iter().chain(&table.values.entries);
+                [&table.x]
+                    .into_iter()
+                    .chain(entries)
+                    .any(|part| self.moves(part, direction))
+            }
             ExpressionKind::If(_, a, b) => self.moves(a, direction) || self.moves(b, direction),
         }
     }

@@ -91,6 +91,7 @@ impl Resolver<'_> {
             }
             ExpressionKind::Binary(operator, left, right) => self.binary(*operator, left, right, locals),
             ExpressionKind::Call(function, arguments) => self.call(function, arguments, locals),
+            ExpressionKind::Table(table) => self.table(table, locals),
             ExpressionKind::If(condition, then, otherwise) => self.branches(condition, then, otherwise, locals),
         }
     }

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::expr::Function;
+use crate::expr::{Curve, Function};
 use crate::program::{Op, Program, Value};
 
 use super::names::Names;
@@ -266,19 +266,39 @@ impl<'a> Printer<'a> {
             Op::Max(a, b) => format!("f64::max({}, {})", at(a), at(b)),
             Op::Call(f, a) => format!("{}({})", function_path(f), at(a)),
             Op::Select(test, a, b) => format!("if {} > 0.0 {{ {} }} else {{ {} }}", at(test), at(a), at(b)),
+            Op::Table(order, x, curve) => self.table(order, &at(x), &self.cut.program.curves[curve as usize]),
         }
     }
+
+    /// Abscissae, ordinates and slopes, each from a line of its own on.
+    fn table(&self, order: u8, x: &str, curve: &Curve<Value>) -> String {
+        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
+        let rows: [Vec<String>; 3] = [
+            curve.knots().map(literal).collect(),
+            entries(&curve.values),
+            entries(&curve.slopes),
+        ];
+        let row = |entries: Vec<String>| {
+            let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
+            format!("    &[{}]", lines.join(",\n      "))
+        };
+        format!("{TABLE}({order}, {x},\n{})", rows.map(row).join(",\n"))
+    }
 }
+
+/// How many points of a table stand on a line.
+const ENTRIES: usize = 8;
+
+/// What interpolates at run time.
+const TABLE: &str = "::qcar_runtime::generated::table";
 
 /// The argument of a frequency response that has a value for each line.
 pub const FREQUENCIES: &str = "frequencies";
 
 fn indent(statements: &[String], depth: usize) -> String {
     let margin = "    ".repeat(depth);
-    statements
-        .iter()
-        .flat_map(|statement| [margin.as_str(), statement, "\n"])
-        .collect()
+    let lines = statements.iter().flat_map(|statement| statement.lines());
+    lines.flat_map(|line| [margin.as_str(), line, "\n"]).collect()
 }
 
 fn literal(number: f64) -> String {

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use crate::equations::named_quantities;
-use crate::expr::{Expr, LinkId, Node, Symbol};
+use crate::expr::{Curve, Expr, LinkId, Node, Symbol};
 use crate::model::Term;
 use crate::program::{Op, Program, Value};
 use crate::schedule::Compiled;
@@ -153,6 +153,14 @@ impl<'a> Finder<'a> {
                     let reciprocal = self.reciprocal(b)?;
                     self.place(&[Op::Mul(a, reciprocal), Op::Mul(reciprocal, a)])
                 })
+            }
+            Node::Table(order, x, curve) => {
+                let x = self.value(x)?;
+                let curve = self.compiled.graph.curve(curve);
+                let entries: Vec<Value> = curve.entries().map(|&entry| self.value(entry)).collect::<Option<_>>()?;
+                let is_it = |own: &Curve<Value>| own.knots().eq(curve.knots()) && own.entries().eq(&entries);
+                let place = self.program.curves.iter().position(is_it)?;
+                self.place(&[Op::Table(order, x, place as u32)])
             }
             Node::Powi(a, 2) => {
                 let a = self.value(a)?;

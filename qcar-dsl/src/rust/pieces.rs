@@ -52,7 +52,9 @@ impl<'a> Pieces<'a> {
     /// The values that a piece takes from an earlier one.
     pub fn taken(&self, piece: usize) -> BTreeSet<Value> {
         let values = &self.pieces[piece];
-        let used = values.iter().flat_map(|&value| op(self.program, value).arguments());
+        let used = values
+            .iter()
+            .flat_map(|&value| self.program.arguments(op(self.program, value)));
         used.filter(|&value| is_computed(self.program, value) && value < values[0])
             .collect()
     }
@@ -61,7 +63,7 @@ impl<'a> Pieces<'a> {
     pub fn read(&self, piece: usize) -> BTreeMap<Leaf, Value> {
         let used = self.pieces[piece]
             .iter()
-            .flat_map(|&value| op(self.program, value).arguments());
+            .flat_map(|&value| self.program.arguments(op(self.program, value)));
         let stored = self.stored(piece).into_iter().map(|(_, value)| value);
         used.chain(stored)
             .filter_map(|value| Some((as_leaf(self.program, value)?, value)))

@@ -28,6 +28,11 @@ impl Effect {
             .iter()
             .chain(self.forms.first().into_iter().flat_map(|form| &form.body))
     }
+
+    /// The parameters that it declares in every form, those of single directions among them.
+    pub fn parameters(&self) -> Vec<&EffectParameter> {
+        parameters(&self.body)
+    }
 }
 
 /// `form NAME { "sentence" … }`: a way in which an effect may act, beside what all its forms change.
@@ -41,6 +46,22 @@ pub struct Form {
     pub terms: Vec<Name>,
     /// In the order of the text.
     pub body: Vec<Change>,
+}
+
+impl Form {
+    /// The parameters that it declares beside those of all forms.
+    pub fn parameters(&self) -> Vec<&EffectParameter> {
+        parameters(&self.body)
+    }
+}
+
+fn parameters(changes: &[Change]) -> Vec<&EffectParameter> {
+    let declared = changes.iter().map(|change| match change {
+        Change::Parameter(parameter) => vec![parameter],
+        Change::Direction { body, .. } => parameters(body),
+        _ => vec![],
+    });
+    declared.flatten().collect()
 }
 
 /// `at link l in z named damper with damper given pivot seen from wheel`
@@ -149,6 +170,8 @@ pub struct EffectParameter {
     pub shared: bool,
     /// `known param`
     pub known: bool,
+    /// `strength param` or `shape param`
+    pub role: Role,
     /// The name.
     pub name: Name,
     /// The declared unit.
@@ -159,4 +182,26 @@ pub struct EffectParameter {
     pub range: (Expression, Expression),
     /// The sentence.
     pub doc: String,
+}
+
+/// What a parameter is to its effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Role {
+    /// `strength param`: as it goes to a value, the model becomes what it was before the patch.
+    Strength(VanishesAt),
+    /// `shape param`: it says where the effect acts, over travel, speed or frequency.
+    Shape,
+    /// Neither.
+    Other,
+}
+
+/// Where a strength leaves nothing of its effect.
+#[derive(Clone, Debug, PartialEq)]
+pub enum VanishesAt {
+    /// At 0, unless something else is said.
+    Zero,
+    /// `vanishes at infinity`
+    Infinity,
+    /// `vanishes at 1`: of the model's parameters and coefficients.
+    Value(Expression),
 }

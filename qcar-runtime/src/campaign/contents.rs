@@ -149,12 +149,20 @@ pub enum Test {
         cleat: String,
     },
     /// Any excitation, recorded with its response.
-    TimeHistory {
-        /// Hz.
-        sample_rate: f64,
-        /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
-        band_limited: bool,
-    },
+    TimeHistory(Recording),
+}
+
+/// How any excitation was recorded with its response.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Recording {
+    /// Hz.
+    pub sample_rate: f64,
+    /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
+    pub band_limited: bool,
+    /// The band that is compared, Hz: from zero or above to below half the sample rate; all of it without one.
+    pub band: Option<(f64, f64)>,
+    /// True where the record holds whole periods of a motion that repeats.
+    pub periodic: bool,
 }
 
 /// A sine sweep of constant peak velocity.
@@ -219,7 +227,8 @@ impl Test {
     pub fn sample_rate(&self) -> Option<f64> {
         match self {
             Test::Sweep(sweep) => Some(sweep.sample_rate),
-            Test::Cleat { sample_rate, .. } | Test::TimeHistory { sample_rate, .. } => Some(*sample_rate),
+            Test::Cleat { sample_rate, .. } => Some(*sample_rate),
+            Test::TimeHistory(recording) => Some(recording.sample_rate),
             Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal => None,
         }
     }

@@ -135,6 +135,11 @@ impl<'a> Section<'a> {
         self.typed(key, value.as_bool(), value, "true or false")
     }
 
+    /// `true` or `false`, which it is where the key is left out.
+    pub fn flag(&self, key: &'static str) -> bool {
+        self.optional(key).and_then(|_| self.boolean(key)).unwrap_or(false)
+    }
+
     /// Lower and upper bound, `None` where the key is left out.
     pub fn range(&self, key: &'static str) -> Option<(f64, f64)> {
         let value = self.optional(key)?;

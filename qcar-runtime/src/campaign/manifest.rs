@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use super::contents::{Axis, Campaign, Channel, Parameter, Quantity, Road, Role, Run, Side, Spacing, Sweep, Test};
+use super::contents::{
+    Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, Run, Side, Spacing, Sweep, Test,
+};
 use super::fields::{Document, Section};
 use super::{table, unit};
 use crate::error::{InputError, Place, Problem};
@@ -276,10 +278,27 @@ fn cleat(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Test> {
 
 fn time_history(section: &Section<'_>) -> Option<Test> {
     let (sample_rate, band_limited) = (section.positive("sample_rate"), section.boolean("band_limited"));
-    Some(Test::TimeHistory {
-        sample_rate: sample_rate?,
-        band_limited: band_limited?,
-    })
+    let (band, periodic) = (section.range("band"), section.flag("periodic"));
+    let (sample_rate, band_limited) = (sample_rate?, band_limited?);
+    if let Some((low, high)) = band
+        && (low < 0.0 || high >= sample_rate / 2.0)
+    {
+        section.wrong(
+            "band",
+            format!("[{low}, {high}] Hz"),
+            format!(
+                "a band from 0 Hz to below half the sample rate, {} Hz",
+                sample_rate / 2.0
+            ),
+            "correct the band, or leave it out to compare all frequencies",
+        );
+    }
+    Some(Test::TimeHistory(Recording {
+        sample_rate,
+        band_limited,
+        band,
+        periodic,
+    }))
 }
 
 fn road(section: &Section<'_>) -> Option<Road> {
@@ -335,7 +354,7 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
     let runs = campaign.runs.iter().map(|run| match run.test {
         Test::Bounce | Test::Longitudinal => (run.file.as_str(), CURVE, &[][..]),
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
-        Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory { .. } => (run.file.as_str(), &["time"][..], channels),
+        Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
     runs.chain(campaign.roads.iter().map(|road| (road.file.as_str(), ROAD, &[][..])))
         .collect()

@@ -52,6 +52,22 @@ pub struct Added {
     pub range: (f64, f64),
     /// Given, not to be found: it stays at its start, or at what the vehicle says.
     pub known: bool,
+    /// What it is to its effect.
+    pub role: ParameterRole,
+}
+
+/// What a parameter is to its effect.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ParameterRole {
+    /// As it goes to a value, the model becomes what it was without the effect.
+    Strength {
+        /// 0, another value in SI, or infinity.
+        vanishes_at: f64,
+    },
+    /// It says where the effect acts, over travel, speed or frequency.
+    Shape,
+    /// Neither.
+    Other,
 }
 
 impl Candidate {

@@ -6,7 +6,11 @@
 
 // Swept sines: the first harmonics at each frequency.
 pub(super) mod sweep;
-// Where a model that drifts is set right.
+// Which frequencies of a record are compared.
+mod band;
+// What a sensor of a record shows beside the motion.
+mod noise;
+// From where a model sets out, and where one that drifts is set right.
 mod restart;
 // Any other excitation: the responses themselves.
 mod history;
@@ -18,9 +22,10 @@ pub(super) mod travel;
 // K&C sines.
 mod cycle;
 
+pub use band::Band;
 use means::Means;
 use nalgebra::Complex;
-pub use restart::Restart;
+pub use restart::{Restart, Spread, is_seen};
 
 use crate::campaign::{Axis, Campaign, Quantity, Role, Side, Test};
 use crate::error::{InputError, Place, Problem};
@@ -85,6 +90,12 @@ pub enum Stimulus {
         band_limited: bool,
         /// From where the model sets out, and where it is set right; the first is at the first sample.
         restarts: Vec<Restart>,
+        /// How far from there it may have been when the record began.
+        spread: Spread,
+        /// Which frequencies are compared; all without one.
+        band: Option<Band>,
+        /// True where the record is made of whole periods of a motion that repeats.
+        periodic: bool,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
@@ -123,14 +134,22 @@ pub struct Passage {
     pub most_steps: f64,
 }
 
-/// Signals of one record; at least one.
+/// Signals of one record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Recordings {
     /// Time of the first sample, s.
     pub start: f64,
+    /// Number of samples.
+    pub samples: usize,
     /// The sensors with their samples.
     pub signals: Vec<(Point, Vec<f64>)>,
 }
+
+/// The least noise of a value, in parts of the signal: that of a converter of twelve bits.
+pub(super) const LEAST_NOISE: f64 = 2.4e-4;
+
+/// A record keeps at least this part of its length: what it begins with need not tell what comes later.
+const MOST_SHORTENED: usize = 2;
 
 impl Stimulus {
     /// Leaves less of a record through which a model has to be driven, so many times less of a history and half of a
@@ -138,11 +157,14 @@ impl Stimulus {
     /// looked at. Anything else stays.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
-            Stimulus::History { inputs, rate, .. } => {
-                let length = inputs.signals[0].1.len() / times;
-                let signals = inputs.signals.iter_mut();
+            // Part of a period is no period.
+            Stimulus::History { periodic: true, .. } => (f64::INFINITY, times),
+            Stimulus::History { inputs, rate, band, .. } => {
+                let reach = band.as_ref().map_or(0, Band::half);
+                inputs.samples = (inputs.samples / times.min(MOST_SHORTENED) + reach).min(inputs.samples);
+                let (length, signals) = (inputs.samples, inputs.signals.iter_mut());
                 signals.for_each(|(_, samples)| samples.truncate(length));
-                (inputs.start + (length as f64 - 0.5) / *rate, 1)
+                (inputs.start + ((length - reach) as f64 - 0.5) / *rate, 1)
             }
             // The impact and the first of the after-shake have all modes of an axle.
             Stimulus::Cleat(passage) if at.len() > 1 && times > 1 => {
@@ -155,11 +177,43 @@ impl Stimulus {
         }
     }
 
-    /// The sensor of what drove the run; none measures a road.
+    /// What is compared of a signal that was recorded in the run, sample by sample.
+    pub fn of_band(&self, signal: &[f64]) -> Vec<f64> {
+        match self {
+            Stimulus::History {
+                band: Some(band),
+                periodic,
+                ..
+            } => band.of(signal, *periodic),
+            _ => signal.to_vec(),
+        }
+    }
+
+    /// Samples at either end of a record that are not compared, since a band reaches beyond them.
+    pub fn cut(&self) -> usize {
+        match self {
+            Stimulus::History {
+                band: Some(band),
+                periodic: false,
+                ..
+            } => band.half(),
+            _ => 0,
+        }
+    }
+
+    /// True where what never changes is compared too.
+    pub fn holds_rest(&self) -> bool {
+        match self {
+            Stimulus::History { band: Some(band), .. } => band.holds_rest(),
+            _ => true,
+        }
+    }
+
+    /// The sensor of what drove the run; none measures a road, and a mass that swings out is driven by nothing.
     pub fn reference(&self) -> Option<&Point> {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),
-            Stimulus::History { inputs, .. } => Some(&inputs.signals[0].0),
+            Stimulus::History { inputs, .. } => inputs.signals.first().map(|(sensor, _)| sensor),
             Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => None,
         }
     }
@@ -180,6 +234,10 @@ pub struct Series {
     pub value: Vec<Complex<f64>>,
     /// Standard deviation of the noise of each value: `E|error|²` is its square.
     pub sigma: Vec<f64>,
+    /// The part of it that is independent from value to value.
+    pub noise: Vec<f64>,
+    /// What no calibration and no model gets right, in parts of the signal: the other part, which neighbours have in common.
+    pub least_discrepancy: f64,
 }
 
 /// What the values of a series are.
@@ -226,6 +284,31 @@ impl Kind {
 }
 
 impl Series {
+    /// Half a period of the mean frequency of a record, s: of the root of the ratio of the mean squares of its slope and
+    /// itself (Rice's formula for a Gaussian process).
+    pub fn half_a_period(&self) -> f64 {
+        let count = self.at.len() as f64;
+        let mean = self.value.iter().map(|value| value.re).sum::<f64>() / count;
+        let power: f64 = self.value.iter().map(|value| (value.re - mean).powi(2)).sum();
+        let pairs = self.value.windows(2).zip(self.at.windows(2));
+        let slope = pairs
+            .map(|(y, t)| ((y[1].re - y[0].re) / (t[1] - t[0])).powi(2))
+            .sum::<f64>();
+        std::f64::consts::PI * (power / slope.max(f64::MIN_POSITIVE)).sqrt()
+    }
+
+    /// Keeps every so many-th value.
+    pub fn thin(&mut self, step: usize) {
+        self.keep((0..self.at.len()).step_by(step));
+    }
+
+    fn keep(&mut self, places: impl Iterator<Item = usize> + Clone) {
+        self.at = places.clone().map(|k| self.at[k]).collect();
+        self.value = places.clone().map(|k| self.value[k]).collect();
+        self.sigma = places.clone().map(|k| self.sigma[k]).collect();
+        self.noise = places.map(|k| self.noise[k]).collect();
+    }
+
     /// Number of real residuals.
     pub fn residuals(&self) -> usize {
         self.value.len() * if self.kind.complex() { 2 } else { 1 }
@@ -268,6 +351,17 @@ impl Evidence {
         series.filter(move |(_, series)| self.runs[series.run].role == role)
     }
 
+    /// The sensors of a run, each once.
+    pub fn sensors(&self, run: usize) -> Vec<&Point> {
+        let mut sensors: Vec<&Point> = Vec::new();
+        for series in self.series.iter().filter(|series| series.run == run) {
+            if !sensors.contains(&&series.sensor) {
+                sensors.push(&series.sensor);
+            }
+        }
+        sensors
+    }
+
     /// The same with this share of every value added to its uncertainty: for a model that is known to lack something.
     pub fn tolerant(&self, share: f64) -> Self {
         let mut tolerant = self.clone();
@@ -300,11 +394,8 @@ impl Evidence {
         let ends: Vec<(f64, usize)> = thinned.runs.iter_mut().enumerate().map(shorten).collect();
         for series in &mut thinned.series {
             let (end, step) = ends[series.run];
-            let inside = (0..series.at.len()).filter(|&k| series.at[k] < end);
-            let keep: Vec<usize> = inside.step_by(step).collect();
-            series.at = keep.iter().map(|&k| series.at[k]).collect();
-            series.value = keep.iter().map(|&k| series.value[k]).collect();
-            series.sigma = keep.iter().map(|&k| series.sigma[k]).collect();
+            let inside = series.at.partition_point(|at| *at < end);
+            series.keep((0..inside).step_by(step));
         }
         thinned
     }
@@ -341,7 +432,7 @@ impl Evidence {
     fn add(&mut self, campaign: &Campaign, about: &About, run: &crate::campaign::Run) -> Result<(), InputError> {
         match &run.test {
             Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
-            Test::TimeHistory { band_limited, .. } => self.add_history(campaign, about, run, *band_limited),
+            Test::TimeHistory(recording) => self.add_history(campaign, about, run, recording),
             Test::Cleat { .. } => self.add_cleat(campaign, about, run),
             Test::Bounce => self.add_travel(campaign, about, run, Axis::Z),
             Test::Longitudinal => self.add_travel(campaign, about, run, Axis::X),

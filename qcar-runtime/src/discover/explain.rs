@@ -158,7 +158,7 @@ impl Explanandum<'_> {
             place(name).map_or(0.0, |place| other.refit.factor(place))
         };
         let mut errors = other.refit.coefficients.clone();
-        errors.resize(self.nuisance.len(), 0.0);
+        errors.resize(self.nuisance.of_sensors(), 0.0);
         errors.extend(free.iter().map(factor));
         refit_from(
             self.model,

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use super::beginning::beginnings;
 use super::evidence::{Evidence, Kind, Series};
 use super::predict::{PredictError, predict_sides, unsteady};
 use super::refit::{Refit, scaled};
@@ -50,7 +51,9 @@ impl Gap {
     /// Where the model lacks what was measured.
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
-        let misread = refit.nuisance.misread(evidence, &refit.coefficients);
+        let sensors = (&refit.nuisance, refit.coefficients.as_slice());
+        let mut misread = refit.nuisance.misread(evidence, &refit.coefficients);
+        beginnings(model, &refit.values, sensors, evidence, Role::HeldOut, &mut misread)?;
         for role in [Role::Fit, Role::HeldOut] {
             let unsteady = unsteady(model, &refit.values, &misread, evidence, role)?;
             let sides = [&refit.values, &refit.side];
@@ -59,7 +62,7 @@ impl Gap {
                 prediction.add(&unsteady[prediction.series]);
                 let shown = refit.measured(evidence, &prediction);
                 let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
-                scaled(series, differences, &mut residuals[prediction.series]);
+                scaled(series, &series.sigma, differences, &mut residuals[prediction.series]);
             }
         }
         let of_role = |role| {

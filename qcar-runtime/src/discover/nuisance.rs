@@ -13,7 +13,8 @@ use nalgebra::Complex;
 
 use super::evidence::{Evidence, Kind, Run, Series, Stimulus};
 use super::predict::{Misread, Prediction};
-use crate::campaign::Axis;
+use crate::campaign::{Axis, Role};
+use crate::model::{About, State};
 use crate::transmissibility::Point;
 
 /// A way in which a sensor may be wrong.
@@ -100,8 +101,25 @@ pub struct Nuisance {
     pub band: (f64, f64),
     /// What is suspected beside their calibration.
     pub suspects: Vec<Suspect>,
+    /// The RMS value of what each sensor reads in all records; zero without any.
+    pub reads: Vec<f64>,
+    /// Sensors of records that are given no offset, and what of the model stands for it: a parameter or a state.
+    pub without_offset: Vec<(Point, String)>,
+    /// The states of a model with which records begin.
+    pub beginnings: Vec<Beginning>,
     /// Coefficients from which a search begins; zero beyond those that are known.
     pub start: Vec<f64>,
+}
+
+/// A state of a model when a record begins: how far it is from where a sensor saw it, or from rest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beginning {
+    /// The run's file.
+    pub run: String,
+    /// The state's name in the model.
+    pub state: String,
+    /// Standard deviation before any measurement, in the unit of the state.
+    pub sigma: f64,
 }
 
 /// An error that some sensors have in common: they are one device, or are read through one.
@@ -132,12 +150,15 @@ impl Nuisance {
                 .flat_map(|s| s.at.iter().filter_map(|&at| s.kind.frequency(at)))
         };
         Self {
+            reads: sensors.iter().map(|sensor| reads(evidence, sensor)).collect(),
+            without_offset: Vec::new(),
             sensors,
             band: (
                 frequencies().fold(f64::INFINITY, f64::min),
                 frequencies().fold(0.0, f64::max),
             ),
             suspects: Vec::new(),
+            beginnings: Vec::new(),
             start: Vec::new(),
         }
     }
@@ -155,8 +176,34 @@ impl Nuisance {
         Some(self)
     }
 
-    /// Number of coefficients: [`SENSOR`] for each sensor in turn, and one for each suspect.
+    /// The same with the states with which this model begins the records that are fitted, in place of those of another.
+    pub fn beginning(mut self, about: &About, evidence: &Evidence) -> Self {
+        let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
+        let of_run = |run: &Run| {
+            let Stimulus::History { spread, .. } = &run.stimulus else {
+                return Vec::new();
+            };
+            let states = about.states.iter();
+            let beginning = |state: &State| {
+                Some(Beginning {
+                    run: run.name.clone(),
+                    state: state.name.to_string(),
+                    sigma: spread.sigma(state)?,
+                })
+            };
+            states.filter_map(beginning).collect()
+        };
+        self.beginnings = fitted.flat_map(of_run).collect();
+        self
+    }
+
+    /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each beginning.
     pub fn len(&self) -> usize {
+        self.of_sensors() + self.beginnings.len()
+    }
+
+    /// Number of coefficients before those of the beginnings.
+    pub fn of_sensors(&self) -> usize {
         self.of_calibration() + self.suspects.len()
     }
 
@@ -175,6 +222,7 @@ impl Nuisance {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
         priors
             .chain(self.suspects.iter().map(|suspect| suspect.sigma))
+            .chain(self.beginnings.iter().map(|beginning| beginning.sigma))
             .collect()
     }
 
@@ -189,21 +237,38 @@ impl Nuisance {
             let gains = self.reference_gains(run);
             (-gains.map(|k| coefficients[k]).sum::<f64>()).exp()
         };
+        let begun = |run: &Run| {
+            let own = self.beginnings_of(run);
+            own.map(|(k, own)| (own.state.clone(), coefficients[k])).collect()
+        };
         Misread {
             late: evidence.series.iter().map(late).collect(),
             louder: evidence.runs.iter().map(louder).collect(),
+            begun: evidence.runs.iter().map(begun).collect(),
         }
     }
 
     /// The derivatives of a prediction along the coefficients by which it is misread, by place.
     pub fn misread_slopes(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
         let mut slopes = self.delays(evidence, prediction);
+        let run = &evidence.runs[evidence.series[prediction.series].run];
+        for (k, own) in self.beginnings_of(run) {
+            let slope = prediction.begun.iter().find(|(state, _)| *state == own.state);
+            slopes.extend(slope.map(|(_, slope)| (k, slope.clone())));
+        }
         if let Some(louder) = &prediction.louder {
-            let run = &evidence.runs[evidence.series[prediction.series].run];
             let along = |k| (k, louder.iter().map(|slope| -slope).collect());
             slopes.extend(self.reference_gains(run).map(along));
         }
         slopes
+    }
+
+    /// The coefficients of the states with which a run begins.
+    fn beginnings_of(&self, run: &Run) -> impl Iterator<Item = (usize, &Beginning)> {
+        let first = self.of_sensors();
+        let all = self.beginnings.iter().enumerate();
+        all.filter(|(_, own)| own.run == run.name)
+            .map(move |(k, own)| (first + k, own))
     }
 
     /// The coefficients of the mean gain of a run's reference.
@@ -283,7 +348,7 @@ impl Nuisance {
             .collect();
         let along = |slope: Vec<Complex<f64>>| slope.iter().zip(&scaled).map(|(slope, value)| slope * value).collect();
         let mut slopes: Vec<_> = logarithmic.into_iter().map(|(k, slope)| (k, along(slope))).collect();
-        let offset = self.offset(series);
+        let offset = self.offset(evidence, series);
         let added = offset.map_or(0.0, |(k, unit)| unit * coefficients[k]);
         slopes.extend(offset.map(|(k, unit)| (k, vec![Complex::from(unit); value.len()])));
         Shown {
@@ -293,12 +358,34 @@ impl Nuisance {
         }
     }
 
-    /// The coefficient of a history's offset, and what one of it adds.
-    fn offset(&self, series: &Series) -> Option<(usize, f64)> {
+    /// The coefficient of an offset, and what one of it adds: a record has it of its sensor, a K&C curve one of its own size.
+    fn offset(&self, evidence: &Evidence, series: &Series) -> Option<(usize, f64)> {
+        if !evidence.runs[series.run].stimulus.holds_rest() {
+            return None;
+        }
         let place = self.coefficient(&series.sensor, Form::Offset)?;
-        let power: f64 = series.value.iter().map(|value| value.norm_sqr()).sum();
-        let rms = (power / series.value.len() as f64).sqrt();
-        matches!(series.kind, Kind::Time | Kind::Travel).then_some((place, rms))
+        let unit = match series.kind {
+            Kind::Time if self.without_offset.iter().any(|(sensor, _)| *sensor == series.sensor) => return None,
+            Kind::Time => self.reads[place / SENSOR.len()],
+            Kind::Travel => rms(series.value.iter()),
+            _ => return None,
+        };
+        Some((place, unit))
+    }
+
+    /// What the sensors of records read at zero, with standard errors (NaN where nothing tells it), by coefficients and
+    /// theirs; SI.
+    pub fn offsets(&self, coefficients: &[f64], stderr: &[f64]) -> Vec<(Point, f64, f64)> {
+        let records = self.sensors.iter().zip(&self.reads);
+        let records = records.filter(|(sensor, reads)| {
+            let is_it = |(own, _): &(Point, String)| own == *sensor;
+            **reads > 0.0 && !self.without_offset.iter().any(is_it)
+        });
+        let offset = |(sensor, reads): (&Point, &f64)| {
+            let k = self.coefficient(sensor, Form::Offset)?;
+            Some((sensor.clone(), reads * coefficients[k], reads * stderr[k]))
+        };
+        records.filter_map(offset).collect()
     }
 
     /// For each value of a series, what each of the coefficients adds to its logarithm.
@@ -358,4 +445,20 @@ impl Nuisance {
         let u = (2.0 * (f / first).ln() / (last / first).ln().max(f64::MIN_POSITIVE) - 1.0).clamp(-1.0, 1.0);
         (degree as f64 * u.acos()).cos()
     }
+}
+
+/// The RMS value of what a sensor reads in all records.
+fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
+    let is_it = |series: &&Series| {
+        let holds_rest = evidence.runs[series.run].stimulus.holds_rest();
+        series.kind == Kind::Time && series.sensor == *sensor && holds_rest
+    };
+    let records = evidence.series.iter().filter(is_it);
+    rms(records.flat_map(|series| &series.value))
+}
+
+/// Root of the mean square; zero of nothing.
+fn rms<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> f64 {
+    let (power, count) = values.fold((0.0, 0), |(power, count), value| (power + value.norm_sqr(), count + 1));
+    (power / f64::from(count.max(1))).sqrt()
 }

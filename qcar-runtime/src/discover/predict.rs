@@ -58,6 +58,9 @@ pub struct Prediction {
     /// The derivatives of the values by the logarithm of the amplitude that drove the run; `None` where they do not
     /// depend on it.
     pub louder: Option<Vec<Complex<f64>>>,
+    /// The derivatives of the values by the states of the model when the record begins, by their names; none where the
+    /// prediction was not differentiated, or does not begin with a record.
+    pub begun: Vec<(String, Vec<Complex<f64>>)>,
 }
 
 /// What errors of sensors change in a prediction itself, not only in what they show of it.
@@ -67,9 +70,16 @@ pub struct Misread {
     pub late: Vec<f64>,
     /// By what factor each run was driven harder than its reference shows; without entries none was.
     pub louder: Vec<f64>,
+    /// For each run, which states began elsewhere than sensors saw them (or than at rest), and by how much, SI; without
+    /// entries none did.
+    pub begun: Vec<Vec<(String, f64)>>,
 }
 
 impl Misread {
+    fn begun(&self, run: usize) -> &[(String, f64)] {
+        self.begun.get(run).map_or(&[], Vec::as_slice)
+    }
+
     fn louder(&self, run: usize) -> f64 {
         self.louder.get(run).copied().unwrap_or(1.0)
     }
@@ -131,7 +141,8 @@ pub enum PredictError {
     },
 }
 
-/// Predicts all series of the runs of one role; differentiated along `free`.
+/// Predicts all series of the runs of one role; differentiated along `free` and, where there is any, along the states with
+/// which records begin.
 ///
 /// # Errors
 /// Where the model lacks what was measured.
@@ -170,6 +181,38 @@ pub fn predict_sides(
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
+/// What the sensors of a run show, differentiated along the states of the model when its record begins alone.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_begun(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    history::history(model, values, misread, (&[], true), evidence, run)
+}
+
+/// What the sensors of a sweep or a time history would have recorded, sample by sample; nothing of any other run.
+///
+/// # Errors
+/// As [`predict`].
+pub fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    match &evidence.runs[run].stimulus {
+        Stimulus::Sweep { .. } => unsteady::replayed(model, values, evidence, run),
+        Stimulus::History { .. } => history::replayed(model, values, misread, evidence, run),
+        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => Ok(Vec::new()),
+    }
+}
+
 /// The excitation of the model that a sensor measured in a run.
 fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Point) -> Result<usize, PredictError> {
     excitation_of(model.about(), reference).ok_or_else(|| PredictError::NoInput {
@@ -192,7 +235,7 @@ fn of_run(
         Stimulus::Sweep { .. } if model.about().linear => linear::sweep(model, values, free, evidence, run),
         Stimulus::Sweep { .. } => nonlinear::sweep(model, values, misread.louder(run), free, evidence, run),
         Stimulus::Cleat(passage) => cleat::passage(model, side, late, free, evidence, (run, passage)),
-        Stimulus::History { .. } => history::history(model, values, late, free, evidence, run),
+        Stimulus::History { .. } => history::history(model, values, misread, (free, !free.is_empty()), evidence, run),
         Stimulus::Travel { .. } | Stimulus::Sine { .. } => travel::travel(model, values, free, evidence, run),
     }
 }

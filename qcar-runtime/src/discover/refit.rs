@@ -8,6 +8,8 @@
 //! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
 //! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
 
+// No offset twice.
+mod offset;
 // With what sweeps show beyond their steady harmonics.
 mod settle;
 
@@ -15,6 +17,7 @@ use std::ops::Range;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Run, Series, Stimulus};
 use super::nuisance::{Nuisance, STRAINED};
 use super::predict::{Free, PredictError, Prediction, predict_sides};
@@ -23,6 +26,7 @@ use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, Stop, minimize};
 use crate::model::Model;
 use crate::response::parameters::Values;
+use crate::transmissibility::Point;
 pub use settle::settle;
 
 /// The explanation that was found.
@@ -48,6 +52,14 @@ pub struct Refit {
     pub coefficient_stderr: Vec<f64>,
     /// Sum of squares of all residuals, priors included.
     pub chi2: f64,
+    /// By how much the last search lowered half the sum of squares.
+    pub gained: f64,
+    /// Logarithm of the evidence, by Laplace's method, but for a constant of the data; NaN without a discrepancy.
+    pub log_evidence: f64,
+    /// What the model misses; `None` where residuals are held against noise alone.
+    pub discrepancy: Option<Discrepancy>,
+    /// The values at which the priors of the parameters are centred.
+    pub centre: Values,
     /// Number of residuals of the data.
     pub residuals: usize,
     /// Relative standard deviation of what the mean of the measured sides has by chance: of the parts that were made for one
@@ -67,6 +79,10 @@ const SIDE: f64 = 0.015;
 /// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not buy its
 /// way out by sides that no car has.
 const MOST: f64 = 3.0;
+
+/// The most that the error of a sensor differs from its prior by, in standard deviations, where a discrepancy is fitted: no
+/// such error is met in practice, and a search stays where numbers are finite.
+const FARTHEST: f64 = 6.0;
 
 /// How far a parameter strays from where a search begins for next to nothing: a factor of ten, or the whole of a range
 /// that reaches zero. What a part of the evidence hardly sees stays where all of it looks next.
@@ -93,24 +109,26 @@ impl Refit {
         (self.chi2 / self.residuals as f64).max(1.0)
     }
 
-    /// The residuals of the `model` that was fitted, those of the data before those of what is held by a prior, and their
-    /// Jacobian along all unknowns.
+    /// The residuals of the `model` that was fitted, in units of their noise, those of the data before those of what is held
+    /// by a prior, and their Jacobian along all unknowns.
     pub fn linearised(&self, model: &dyn Model, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
-        let mut posterior = Posterior::new(model, self.values.clone(), &self.free, evidence, self.nuisance.clone());
+        let mut posterior = Posterior::of(self, model, evidence);
         let place = posterior.place(self);
         posterior.start.clone_from(&place);
+        posterior.whitens = false;
         let mut residual = DVector::zeros(posterior.residuals());
         let mut jacobian = DMatrix::zeros(posterior.residuals(), posterior.variables());
         posterior.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
         (residual, jacobian)
     }
 
-    /// The residuals of the data where another model with these `values` stands in the place of the `fitted` one; `None`
-    /// where that gives no number.
+    /// The residuals of the data where another model with these `values` stands in the place of the `fitted` one, and
+    /// sensors with these errors; `None` where that gives no number.
     pub fn residuals_of(
         &self,
         other: &dyn Model,
         values: &Values,
+        coefficients: &[f64],
         fitted: &dyn Model,
         evidence: &Evidence,
     ) -> Option<DVector<f64>> {
@@ -124,13 +142,28 @@ impl Refit {
         }
         let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
         posterior.side = side;
+        posterior.by_evidence = self.discrepancy.is_some();
         let mut residual = vec![0.0; posterior.residuals()];
-        posterior.look(&self.coefficients, &mut residual, false);
+        posterior.look(coefficients, &mut residual, false);
         residual.truncate(posterior.residuals);
         residual
             .iter()
             .all(|r| r.is_finite())
             .then(|| DVector::from_vec(residual))
+    }
+
+    /// The discrepancy that was found, for another part of the evidence.
+    pub fn discrepancy_of(&self, evidence: &Evidence) -> Option<Discrepancy> {
+        self.discrepancy
+            .as_ref()
+            .map(|known| known.carried_to(evidence, Role::Fit))
+    }
+
+    /// What the sensors of records read at zero, with standard errors; SI.
+    pub fn offsets(&self) -> Vec<(Point, f64, f64)> {
+        let scatter = self.scatter().sqrt();
+        let errors: Vec<f64> = self.coefficient_stderr.iter().map(|error| scatter * error).collect();
+        self.nuisance.offsets(&self.coefficients, &errors)
     }
 
     /// What the sensors would have shown of a prediction.
@@ -166,7 +199,9 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let errors = nuisance.start.clone();
+    let mut errors = nuisance.start.clone();
+    // Where the records of an earlier search began is another search's to find.
+    errors.truncate(nuisance.of_sensors());
     refit_from(model, (values, &errors), free, evidence, nuisance, evaluations)
 }
 
@@ -183,15 +218,71 @@ pub fn refit_from(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
+    let (errors, factors) = errors.split_at(errors.len().min(nuisance.of_sensors()));
+    let nuisance = nuisance.beginning(model.about(), evidence);
+    let nuisance = offset::once(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
     start.extend(errors);
+    start.resize(free.len() + nuisance.len(), 0.0);
+    start.extend(factors);
+    let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, evaluations)?;
     Ok(posterior.refit(outcome))
 }
 
+/// Where a fit by evidence begins.
+pub struct Start<'a> {
+    /// All parameters.
+    pub values: &'a Values,
+    /// The errors of sensors with the logarithms of the recorded side's factors behind them, zero beyond those that are known.
+    pub errors: &'a [f64],
+    /// Where the priors of the parameters are centred.
+    pub centre: &'a Values,
+    /// What the model is taken to miss at first.
+    pub discrepancy: Discrepancy,
+}
+
+/// Fits the free parameters and nuisance parameters at their maximum a posteriori, and the discrepancy with them: in so many
+/// `rounds` of at most so many evaluations each, after each of which the discrepancy is learnt from what is left.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn fit(
+    model: &dyn Model,
+    start: Start<'_>,
+    free: &[Free],
+    evidence: &Evidence,
+    nuisance: Nuisance,
+    (rounds, evaluations): (usize, usize),
+) -> Result<Refit, PredictError> {
+    let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
+    posterior.discrepancy = Some(start.discrepancy);
+    posterior.by_evidence = true;
+    posterior.centre = start.centre.clone();
+    let mut place: Vec<f64> = free
+        .iter()
+        .map(|free| start.values.as_slice()[free.parameter])
+        .collect();
+    place.extend(start.errors);
+    place.resize(posterior.variables(), 0.0);
+    posterior.fit(place, rounds, evaluations)
+}
+
 impl Free {
+    /// How far it is from the centre of its prior in standard deviations, and the derivative of that: of a value whose range
+    /// lies above zero in its logarithm. The standard deviation is that of a uniform distribution over the range.
+    fn prior(&self, value: f64, centre: f64) -> (f64, f64) {
+        let of_width = |width: f64| width / 12.0_f64.sqrt();
+        if self.lower > 0.0 {
+            let sd = of_width((self.upper / self.lower).ln());
+            ((value / centre.max(self.lower)).ln() / sd, 1.0 / (value * sd))
+        } else {
+            let sd = of_width(self.upper - self.lower);
+            ((value - centre) / sd, 1.0 / sd)
+        }
+    }
+
     /// How far it is from its start, in units of [`STRAY`], and the derivative of that.
     fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
         if self.lower > 0.0 {
@@ -223,9 +314,9 @@ fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
 }
 
 /// The real residuals of a series: each complex one as its parts, in units of the standard deviation of a part.
-pub(super) fn scaled(series: &Series, values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
+pub(super) fn scaled(series: &Series, sigma: &[f64], values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
     let complex = series.kind.complex();
-    for (value, sigma) in values.zip(&series.sigma) {
+    for (value, sigma) in values.zip(sigma) {
         if complex {
             let scale = std::f64::consts::SQRT_2 / sigma;
             into.extend([value.re * scale, value.im * scale]);
@@ -260,6 +351,14 @@ struct Posterior<'a> {
     sigmas: Vec<f64>,
     /// Where the search began.
     start: Vec<f64>,
+    /// Where the priors of the parameters are centred, where there is a discrepancy,
+    centre: Values,
+    /// and what that is.
+    discrepancy: Option<Discrepancy>,
+    /// Whether residuals are independent by it,
+    whitens: bool,
+    /// and whether there is one at all, whatever it is at the moment.
+    by_evidence: bool,
     residuals: usize,
     /// Why the model cannot say anything of the evidence at all,
     refused: Option<PredictError>,
@@ -278,17 +377,98 @@ impl<'a> Posterior<'a> {
         Self {
             model,
             side: values.clone(),
-            values,
             free: free.to_vec(),
             evidence,
             sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
             start: Vec::new(),
+            centre: values.clone(),
+            discrepancy: None,
+            whitens: true,
+            by_evidence: false,
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,
             has_answered: false,
             unsteady: vec![Vec::new(); evidence.series.len()],
             looked: None,
+            values,
+        }
+    }
+
+    /// At a refit that was made of this evidence, or of another part of it.
+    fn of(refit: &Refit, model: &'a dyn Model, evidence: &'a Evidence) -> Self {
+        let mut posterior = Self::new(
+            model,
+            refit.values.clone(),
+            &refit.free,
+            evidence,
+            refit.nuisance.clone(),
+        );
+        posterior.discrepancy = refit.discrepancy_of(evidence);
+        posterior.by_evidence = posterior.discrepancy.is_some();
+        posterior.centre = refit.centre.clone();
+        posterior
+    }
+
+    /// Searches and learns the discrepancy in turn.
+    fn fit(&mut self, mut place: Vec<f64>, rounds: usize, evaluations: usize) -> Result<Refit, PredictError> {
+        let mut outcome = self.search(&place, evaluations)?;
+        for round in 0..rounds {
+            if round > 0 {
+                outcome = self.search(&place, evaluations)?;
+            }
+            place.clone_from(&outcome.x);
+            self.learn(&place);
+        }
+        let mut residual = DVector::zeros(self.residuals());
+        let mut jacobian = DMatrix::zeros(self.residuals(), self.variables());
+        self.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
+        // What the discrepancy takes up is no gain of the search.
+        outcome.start_cost += residual.norm_squared() / 2.0 - outcome.cost;
+        outcome.cost = residual.norm_squared() / 2.0;
+        outcome.jacobian = jacobian;
+        Ok(self.refit(outcome))
+    }
+
+    /// The discrepancy that explains best what is left.
+    fn learn(&mut self, place: &[f64]) {
+        let Some(mut discrepancy) = self.discrepancy.take() else {
+            return;
+        };
+        let mut residual = vec![0.0; self.residuals()];
+        self.look(place, &mut residual, false);
+        residual.truncate(self.residuals);
+        if residual.iter().all(|r| r.is_finite()) {
+            discrepancy.learn(&residual);
+        }
+        self.discrepancy = Some(discrepancy);
+    }
+
+    /// Laplace's approximation of the evidence, in units in which every prior has the standard deviation one: it cancels
+    /// the normalisations of priors and posterior but for the determinant (MacKay 2003, chapter 28).
+    fn log_evidence(&self, outcome: &Outcome) -> f64 {
+        let Some(discrepancy) = &self.discrepancy else {
+            return f64::NAN;
+        };
+        let mut scaled = outcome.jacobian.clone();
+        for (k, mut column) in scaled.column_iter_mut().enumerate() {
+            column *= match k.checked_sub(self.free.len()) {
+                Some(k) => self.sigmas[k],
+                None => 1.0 / self.prior_of(k, outcome.x[k]).1,
+            };
+        }
+        let hessian = scaled.tr_mul(&scaled);
+        let determinant = hessian
+            .cholesky()
+            .map_or(f64::NAN, |own| own.l_dirty().diagonal().map(f64::ln).sum());
+        -outcome.cost - discrepancy.cost() - determinant
+    }
+
+    /// How far a free parameter is from where its prior has it, and the derivative of that.
+    fn prior_of(&self, k: usize, value: f64) -> (f64, f64) {
+        match self.discrepancy {
+            Some(_) => self.free[k].prior(value, self.centre.as_slice()[self.free[k].parameter]),
+            None => self.free[k].strayed(value, self.start[k]),
         }
     }
 
@@ -302,7 +482,9 @@ impl<'a> Posterior<'a> {
         };
         let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
         let sides = sides.iter().map(|sigma| MOST * sigma);
-        let priors: Vec<f64> = sensors.iter().map(|sigma| STRAINED * sigma).chain(sides).collect();
+        // Beside a discrepancy a prior alone holds the errors of sensors.
+        let strained = if self.discrepancy.is_some() { FARTHEST } else { STRAINED };
+        let priors: Vec<f64> = sensors.iter().map(|sigma| strained * sigma).chain(sides).collect();
         let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
         let bounds = Bounds {
@@ -336,6 +518,10 @@ impl<'a> Posterior<'a> {
             free: self.free.clone(),
             coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
             chi2: 2.0 * outcome.cost,
+            gained: outcome.start_cost - outcome.cost,
+            log_evidence: self.log_evidence(&outcome),
+            discrepancy: self.discrepancy.clone(),
+            centre: self.centre.clone(),
             residuals: self.residuals,
             made: if self.evidence.two_sided {
                 SIDE / f64::sqrt(2.0)
@@ -417,10 +603,13 @@ impl<'a> Posterior<'a> {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
         self.looked = Some((x.to_vec(), swept));
+        if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
+            discrepancy.whiten(&mut rows);
+            columns.iter_mut().for_each(|column| discrepancy.whiten(column));
+        }
         let errors = x[self.free.len()..].iter().zip(&self.sigmas);
         rows.extend(errors.map(|(error, sigma)| error / sigma));
-        let strays = self.free.iter().zip(x.iter().zip(&self.start));
-        rows.extend(strays.map(|(free, (&x, &start))| free.strayed(x, start).0));
+        rows.extend((0..self.free.len()).map(|k| self.prior_of(k, x[k]).0));
         residual.copy_from_slice(&rows);
         columns
     }
@@ -430,13 +619,15 @@ impl<'a> Posterior<'a> {
     /// alone.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
+        // Beside a discrepancy, what neighbours have in common is not noise.
+        let sigma = if self.by_evidence { &series.noise } else { &series.sigma };
         let of_sensors = self.free.len();
         let shown = self
             .nuisance
             .show(self.evidence, series, &prediction.value, &x[of_sensors..]);
         let first = residual.len();
         let left = series.value.iter().zip(&shown.value);
-        scaled(series, left.map(|(measured, shown)| measured - shown), residual);
+        scaled(series, sigma, left.map(|(measured, shown)| measured - shown), residual);
         if columns.is_empty() {
             return;
         }
@@ -446,7 +637,7 @@ impl<'a> Posterior<'a> {
         let mut rows = Vec::with_capacity(residual.len() - first);
         let mut add = |slope: &mut dyn Iterator<Item = Complex<f64>>, place: usize| {
             rows.clear();
-            scaled(series, slope.map(|slope| -slope), &mut rows);
+            scaled(series, sigma, slope.map(|slope| -slope), &mut rows);
             let sums = columns[place][first..].iter_mut();
             sums.zip(&rows).for_each(|(sum, row)| *sum += row);
         };
@@ -486,7 +677,7 @@ impl Problem for Posterior<'_> {
             into[..column.len()].copy_from_slice(column);
             match k.checked_sub(self.free.len()) {
                 Some(k) => into[self.residuals + k] = 1.0 / self.sigmas[k],
-                None => into[self.residuals + self.sigmas.len() + k] = self.free[k].strayed(x[k], self.start[k]).1,
+                None => into[self.residuals + self.sigmas.len() + k] = self.prior_of(k, x[k]).1,
             }
         }
     }

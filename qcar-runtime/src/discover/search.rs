@@ -23,6 +23,7 @@ use super::predict::PredictError;
 use crate::campaign::Role;
 use rules::Judge;
 use state::{Contender, Field, State};
+pub use taken::Taken;
 pub use visible::Visible;
 use visible::visible;
 

@@ -27,7 +27,7 @@ pub fn levels(
     let runs: Vec<&Run> = campaign
         .runs
         .iter()
-        .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory { .. }))
+        .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_)))
         .collect();
     let measured = progress::map(&runs, told, |run| level(campaign, run, about, wanted, options));
     let (mut levels, mut problems) = (Vec::new(), Vec::new());

@@ -89,7 +89,7 @@ fn all_ratios(
     arguments: &Arguments,
     notices: &mut Vec<String>,
 ) -> Result<Vec<Ratio>, Failure> {
-    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory { .. });
+    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
     let found = match (both, beside) {
         (Some(both), _) => ratios::of_campaigns(sides, both)?,
         (None, Some(campaign)) if campaign.runs.iter().any(|run| is_rig(&run.test)) => {

@@ -194,7 +194,7 @@ fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
     };
     match (test(a, first), test(b, second)) {
         (Some(Test::Sweep(a)), Some(Test::Sweep(b))) => (a.peak_velocity / b.peak_velocity - 1.0).abs() < 0.02,
-        (Some(Test::TimeHistory { .. }), Some(Test::TimeHistory { .. })) => first.name == second.name,
+        (Some(Test::TimeHistory(_)), Some(Test::TimeHistory(_))) => first.name == second.name,
         _ => false,
     }
 }

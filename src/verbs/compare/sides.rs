@@ -217,7 +217,7 @@ struct Rig {
 }
 
 fn rig(campaign: &Campaign, wanted: Option<&str>) -> Result<Rig, Failure> {
-    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory { .. });
+    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
     let mut runs = campaign.runs.iter();
     if !runs.any(|run| run.role == Role::Fit && is_rig(&run.test)) {
         let model = catalogue::of_campaign(campaign, wanted)?;

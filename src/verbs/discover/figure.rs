@@ -3,7 +3,7 @@
 use qcar_runtime::discover::gap::Gap;
 use qcar_runtime::transmissibility::Point;
 
-use crate::figure::{Curve, Figure, Panel, Style};
+use crate::figure::{Across, Curve, Figure, Panel, Style};
 
 pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
     let mut sensors: Vec<&Point> = before.tiles.iter().map(|tile| &tile.sensor).collect();
@@ -19,6 +19,7 @@ pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
     };
     Figure {
         title,
+        across: Across::Frequency,
         panels: sensors.into_iter().map(panel).collect(),
     }
 }

@@ -26,6 +26,8 @@ pub(crate) struct Result<'a> {
     visible: Vec<Seen<'a>>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
+    offsets: Vec<Offset>,
+    at_bound: Ordered<&'static str>,
     model_file: Option<String>,
     notices: &'a [String],
     seconds: f64,
@@ -43,6 +45,16 @@ struct Effect<'a> {
     units: &'a BTreeMap<String, String>,
     evidence: Evidence,
     rivals: &'a [Rival],
+}
+
+/// What a sensor of a record reads at zero.
+#[derive(Serialize)]
+struct Offset {
+    channel: String,
+    quantity: &'static str,
+    offset: f64,
+    stderr: Option<f64>,
+    unit: &'static str,
 }
 
 /// An effect that is not there, and how clearly it would have been seen.
@@ -127,6 +139,8 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             held_out: BeforeAfter::new(before.held_out, after.held_out),
         },
         by_channel: by_channel(of),
+        offsets: offsets(&of.discovery.after),
+        at_bound: at_bound(&of.discovery.after).collect(),
         model_file: of
             .model
             .as_ref()
@@ -223,13 +237,65 @@ fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
     named.collect()
 }
 
-/// A parameter file as `--params` takes it.
+/// What the sensors of records read at zero beside the model.
+fn offsets(of: &Explanation) -> Vec<Offset> {
+    let offsets = of.refit.offsets().into_iter();
+    let offset = |(sensor, offset, stderr): (Point, f64, f64)| Offset {
+        channel: channel(&sensor),
+        quantity: sensor.quantity.name(),
+        offset,
+        stderr: stderr.is_finite().then_some(stderr),
+        unit: sensor.quantity.unit(),
+    };
+    offsets.map(offset).collect()
+}
+
+/// The parameters that a search has driven to an end of their range, and to which.
+fn at_bound(of: &Explanation) -> impl Iterator<Item = (String, &'static str)> {
+    let free = of.refit.free.iter().zip(&of.refit.at_bound);
+    free.filter_map(|(free, side)| {
+        let name = of.named[free.parameter].0.clone();
+        match side.cmp(&0) {
+            Ordering::Less => Some((name, "lower")),
+            Ordering::Equal => None,
+            Ordering::Greater => Some((name, "upper")),
+        }
+    })
+}
+
+/// A parameter file as `--params` takes it. What the sensors read at zero stands in it as a remark.
 pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
     let mut out = format!("# {heading}\n\n[parameters]\n");
+    let ends: BTreeMap<String, &str> = at_bound(of).collect();
     for (name, value) in &of.named {
-        let _ = writeln!(out, "{name} = {value:?}");
+        let end = ends.get(name);
+        let remark = end.map_or(String::new(), |end| format!(" # at the {end} end of its range"));
+        let _ = writeln!(out, "{name} = {value:?}{remark}");
+    }
+    for own in offsets(of) {
+        let error = own
+            .stderr
+            .map_or(String::new(), |error| format!(", standard error {error:.2e}"));
+        let Offset {
+            channel,
+            quantity,
+            offset,
+            unit,
+            ..
+        } = own;
+        let _ = writeln!(out, "# offset of {channel} {quantity}: {offset:.4e} {unit}{error}");
     }
     out
+}
+
+fn offsets_table(of: &Explanation) -> String {
+    let mut table = Table::new(["channel", "quantity", "unit", "offset", "stderr"]);
+    for own in offsets(of) {
+        let numbers = [number(own.offset, 4), or_dash(own.stderr, 2)];
+        let names = [own.channel, own.quantity.into(), own.unit.into()];
+        table.row(names.into_iter().chain(numbers).collect());
+    }
+    table.text()
 }
 
 pub(super) fn text(of: &Answer) -> String {
@@ -245,6 +311,15 @@ pub(super) fn text(of: &Answer) -> String {
     out += &gaps.text();
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         out += &format!("\n{}{}", choice(of, place), described(finding, units));
+    }
+    for (name, end) in at_bound(&of.discovery.after) {
+        let _ = writeln!(out, "\n{name} stands at the {end} end of its range");
+    }
+    if !of.discovery.after.refit.offsets().is_empty() {
+        out += &format!(
+            "\nwhat the sensors of records read at zero\n{}",
+            offsets_table(&of.discovery.after)
+        );
     }
     if of.discovery.verdict != Verdict::None {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
@@ -354,12 +429,22 @@ fn visible(of: &Answer) -> String {
     table.text()
 }
 
+/// What a tile of the gap is a span of.
+fn unit_of_span(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Harmonic(_) | Kind::Cycle(_) => "Hz",
+        Kind::Time | Kind::Passage => "s",
+        Kind::Travel | Kind::Width => "m",
+    }
+}
+
 fn tiles(of: &Answer) -> String {
     let mut table = Table::new([
         "channel",
         "harmonic",
-        "from_Hz",
-        "to_Hz",
+        "from",
+        "to",
+        "unit",
         "level",
         "times_the_uncertainty",
     ]);
@@ -369,6 +454,7 @@ fn tiles(of: &Answer) -> String {
             tile.kind.order().map_or("-".into(), |order| order.to_string()),
             number(tile.span.0, 3),
             number(tile.span.1, 3),
+            unit_of_span(tile.kind).into(),
             number(tile.level, 3),
             number(tile.strength, 3),
         ]);

@@ -11,7 +11,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
 use super::{Fitted, render};
-use crate::figure::{Curve, Figure, Panel, Style};
+use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::files::put;
 
 /// Writes values, curves and a figure.
@@ -108,6 +108,7 @@ fn figure(of: &Fitted, compared: &[Compared]) -> Figure {
     let shown = compared.iter().filter(|compared| compared.level.name == first);
     Figure {
         title: format!("{} fitted to {}, {first}", of.fit.model, of.campaign.name),
+        across: Across::Frequency,
         panels: shown.map(panel).collect(),
     }
 }

@@ -1,40 +1,116 @@
-//! Simulated rides as text, JSON and CSV.
+//! What was simulated as text, JSON and CSV.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use qcar_runtime::campaign::Campaign;
 use qcar_runtime::compare::Summary;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 use qcar_runtime::simulate::Ride;
 use serde::Serialize;
 
-use super::compared::{Compared, Difference};
-use super::{Cleat, Loaded};
+use super::Cleat;
+use super::compared::{Compared, Difference, Sizes};
+use super::figure;
+use super::records::{Record, RecordError};
 use crate::files::put;
 use crate::json;
 use crate::table::{Table, number};
 
+/// All runs.
+pub(super) struct Result<'a> {
+    /// Name.
+    pub campaign: &'a str,
+    /// Name.
+    pub model: &'a str,
+    /// Parameters that still have their start values.
+    pub at_start: &'a [String],
+    /// Runs over cleats, where there are any.
+    pub cleats: Option<&'a Compared>,
+    /// Sweeps and time histories.
+    pub records: &'a [Record],
+}
+
+/// The same as `docs/json.md` describes it.
 #[derive(Serialize)]
-struct Result<'a> {
+struct Json<'a> {
     campaign: &'a str,
     model: &'a str,
     at_start: &'a [String],
-    #[serde(flatten)]
-    compared: &'a Compared,
+    runs: &'a [Difference],
+    summary: Option<&'a BTreeMap<String, Sizes>>,
+    records: Vec<&'a RecordError>,
 }
 
-pub(super) fn json(campaign: &Campaign, model: &Loaded, of: &Compared, guessed: &[String]) -> String {
-    json::line(&Result {
-        campaign: &campaign.name,
-        model: &model.about().name,
-        at_start: guessed,
-        compared: of,
-    })
+impl Result<'_> {
+    pub fn json(&self) -> String {
+        json::line(&Json {
+            campaign: self.campaign,
+            model: self.model,
+            at_start: self.at_start,
+            runs: self.cleats.map_or(&[], |cleats| &cleats.runs),
+            summary: self.cleats.map(|cleats| &cleats.summary),
+            records: self.errors().collect(),
+        })
+    }
+
+    pub fn text(&self) -> String {
+        let cleats = self.cleats.map(text);
+        let records = (!self.records.is_empty()).then(|| self.records_text());
+        let parts: Vec<String> = cleats.into_iter().chain(records).collect();
+        format!("{}{}", parts.join("\n"), note(self.at_start))
+    }
+
+    /// A table of the cleats, one of the records, and an empty line between them.
+    pub fn csv(&self) -> String {
+        let cleats = self.cleats.map(csv);
+        let records = (!self.records.is_empty()).then(|| self.records_csv());
+        let parts: Vec<String> = cleats.into_iter().chain(records).collect();
+        parts.join("\n")
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &RecordError> {
+        self.records.iter().flat_map(|record| &record.errors)
+    }
+
+    fn records_text(&self) -> String {
+        let headings = [
+            "run",
+            "role",
+            "channel",
+            "quantity",
+            "unit",
+            "measured_rms",
+            "rms_error",
+            "nrms_%",
+        ];
+        let mut table = Table::new(headings);
+        for own in self.errors() {
+            let names = [
+                own.run.clone(),
+                own.role.into(),
+                own.channel.clone(),
+                own.quantity.into(),
+                own.unit.into(),
+            ];
+            let numbers = [number(own.measured_rms, 4), number(own.rms_error, 4), percent(own.nrms)];
+            table.row(names.into_iter().chain(numbers).collect());
+        }
+        table.text()
+    }
+
+    fn records_csv(&self) -> String {
+        let row = |own: &RecordError| {
+            let names = format!("{},{},{},{},{}", own.run, own.role, own.channel, own.quantity, own.unit);
+            format!("{names},{},{},{}\n", own.measured_rms, own.rms_error, own.nrms)
+        };
+        let head = "run,role,channel,quantity,unit,measured_rms,rms_error,nrms\n";
+        head.to_string() + &self.errors().map(row).collect::<String>()
+    }
 }
 
-pub(super) fn text(of: &Compared, guessed: &[String]) -> String {
+fn text(of: &Compared) -> String {
     let mut runs = Table::new([
         "run",
         "role",
@@ -66,7 +142,7 @@ pub(super) fn text(of: &Compared, guessed: &[String]) -> String {
         let cells = [size.peak, size.after_shake].into_iter().flat_map(median_and_worst);
         sizes.row(std::iter::once(name.clone()).chain(cells).collect());
     }
-    format!("{}\n{}{}", runs.text(), sizes.text(), note(guessed))
+    format!("{}\n{}", runs.text(), sizes.text())
 }
 
 fn note(guessed: &[String]) -> String {
@@ -110,6 +186,46 @@ pub(crate) fn csv(of: &Compared) -> String {
     head.to_string() + &of.runs.iter().map(row).collect::<String>()
 }
 
+/// For each sweep or time history a CSV of what was measured beside what was simulated, and a figure of it.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub(super) fn records(of: &[Record], folder: &Path) -> std::result::Result<(), InputError> {
+    for record in of {
+        let stem = stem(&record.run);
+        put(folder, &format!("{stem}.csv"), &beside(record))?;
+        put(folder, &format!("{stem}.svg"), &figure::record(record).svg())?;
+    }
+    Ok(())
+}
+
+fn beside(record: &Record) -> String {
+    let mut out = String::from("time");
+    for error in &record.errors {
+        let (channel, quantity) = (&error.channel, error.quantity);
+        let _ = write!(out, ",{channel}_{quantity}_measured,{channel}_{quantity}_simulated");
+    }
+    out.push('\n');
+    let samples = record.signals.first().map_or(0, |(_, [measured, _])| measured.len());
+    for sample in 0..samples {
+        let _ = write!(out, "{}", record.start + sample as f64 / record.rate);
+        for (_, [measured, simulated]) in &record.signals {
+            let _ = write!(out, ",{},{}", measured[sample], simulated[sample]);
+        }
+        out.push('\n');
+    }
+    out
+}
+
+/// A file's name without its folder and endings.
+fn stem(file: &str) -> &str {
+    let name = Path::new(file)
+        .file_name()
+        .and_then(|name| name.to_str())
+        .unwrap_or("run");
+    name.trim_end_matches(".gz").trim_end_matches(".csv")
+}
+
 /// A CSV for each run: time, the outputs of the model, the tyre's forces and contact area.
 ///
 /// # Errors
@@ -121,11 +237,7 @@ pub(crate) fn histories(
     folder: &Path,
 ) -> std::result::Result<(), InputError> {
     for (cleat, ride) in cleats.iter().zip(rides) {
-        let stem = Path::new(&cleat.run.file)
-            .file_name()
-            .and_then(|name| name.to_str())
-            .unwrap_or("run");
-        let stem = stem.trim_end_matches(".gz").trim_end_matches(".csv");
+        let stem = stem(&cleat.run.file);
         put(folder, &format!("{stem}.csv"), &history(about, ride))?;
     }
     Ok(())

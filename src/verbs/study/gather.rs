@@ -73,7 +73,12 @@ pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, F
     let campaign = &fitted.campaign;
     let gradients = gradients(campaign, out)?;
     let discovery = out.join("discovery");
-    let mut answer = discover::answer(campaign, model, Some(&discovery))?;
+    let mut answer = discover::answer(
+        campaign,
+        model,
+        Some(&discovery),
+        qcar_runtime::discover::select::discover,
+    )?;
     discover::write(&mut answer, &discovery)?;
     let after = after(campaign, &answer)?;
     let track = track(&fitted, after.as_ref(), out)?;

@@ -92,7 +92,7 @@ fn listed(run: &Run) -> Listed {
         } => ("dynamic bounce", format!("{peak_velocity} m/s peak, {amplitude} m")),
         Test::Longitudinal => ("longitudinal", "quasi-static cycle".into()),
         Test::Cleat { speed, cleat, .. } => ("cleat", format!("{:.1} km/h over {cleat}", 3.6 * speed)),
-        Test::TimeHistory { sample_rate, .. } => ("time history", format!("{sample_rate} Hz")),
+        Test::TimeHistory(recording) => ("time history", format!("{} Hz", recording.sample_rate)),
     };
     Listed {
         file: run.file.clone(),

@@ -1,5 +1,6 @@
 //! The axles of the blind tests: their layout and true values, drawn by a seed.
 
+use crate::hardware::Hardware;
 use crate::random::Random;
 
 /// Which parts the real axle has.
@@ -103,10 +104,17 @@ impl Axle {
         }
     }
 
-    /// The other side of the car: every rate and mass of its own within 1 to 2 %.
-    pub fn other_side(&self, seed: u64) -> Self {
+    /// The other side of the car: every rate and mass of its own, within 1 to 2 % where the hardware does not say more.
+    pub fn other_side(&self, seed: u64, hardware: &Hardware) -> Self {
         let mut random = Random::new(seed, "asymmetry");
-        let mut vary = |value: &mut f64| *value *= 1.0 + 0.012 * random.uniform(-1.0, 1.0);
+        let mut uneven = hardware.sides();
+        let mut vary = |value: &mut f64| {
+            *value *= 1.0
+                + match &mut uneven {
+                    Some(share) => share(),
+                    None => 0.012 * random.uniform(-1.0, 1.0),
+                };
+        };
         let mut side = *self;
         [
             &mut side.k_wheel_z,

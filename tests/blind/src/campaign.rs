@@ -1,5 +1,6 @@
 //! Writes a campaign folder in the measurement campaign format, version 1.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::fs;
 use std::io::Write as _;
@@ -9,12 +10,15 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use crate::axle::{Axle, GRAVITY, Layout, Mount};
-use crate::cleat::{self, Road, SPACING, Track};
+use crate::cleat::{self, Track};
 use crate::corner::Corner;
+use crate::hardware::Hardware;
 use crate::hidden::{Hidden, Laws};
 use crate::kc;
+use crate::programme::Programme;
 use crate::random::Random;
 use crate::rig::{self, Motion, RATE, Sweep};
+use crate::road::{Road, SPACING};
 use crate::sensor::Sensor;
 
 /// What a campaign is made from.
@@ -34,27 +38,18 @@ pub struct Plan {
     pub noise: f64,
     /// Parameters of the model with the share by which their start value is off; 0 means known.
     pub parameters: Vec<(String, f64, f64)>,
-    /// Whether to run the cleats too.
-    pub cleats: bool,
+    /// Which runs.
+    pub programme: Programme,
+    /// What car, rig and sensors do that no model knows.
+    pub hardware: Hardware,
 }
 
-const SPEEDS: [f64; 3] = [20.0, 30.0, 40.0];
-const HEIGHTS: [u32; 4] = [10, 20, 30, 40];
 /// Noise of the accelerometers on the track, m/s².
 pub const TRACK_NOISE: f64 = 0.06;
-/// Levels of the sweeps, mm/s, and their roles.
-pub const LEVELS: [(u32, &str); 5] = [
-    (5, "held_out"),
-    (25, "fit"),
-    (50, "held_out"),
-    (100, "fit"),
-    (150, "held_out"),
-];
-
 /// Writes the campaign to a folder.
 pub fn write(plan: &Plan, axle: &Axle, folder: &Path) -> std::io::Result<()> {
-    let laws = Laws::of(&plan.effects);
-    let right = axle.other_side(plan.seed);
+    let laws = Laws::of(&plan.effects).on(&plan.hardware);
+    let right = axle.other_side(plan.seed, &plan.hardware);
     for part in ["rig", "kc", "cleat", "road"] {
         fs::create_dir_all(folder.join(part))?;
     }
@@ -67,10 +62,10 @@ pub fn write(plan: &Plan, axle: &Axle, folder: &Path) -> std::io::Result<()> {
     );
     let mut toml = head(plan, axle);
     write_sweeps(plan, &corner, &mirror, folder, &mut toml)?;
-    write_kc(plan, &corner, folder, &mut toml)?;
-    if plan.cleats {
-        write_cleats(plan, &corner, folder, &mut toml)?;
+    if !plan.programme.kc.is_empty() {
+        write_kc(plan, &corner, folder, &mut toml)?;
     }
+    write_cleats(plan, &corner, folder, &mut toml)?;
     fs::write(folder.join("campaign.toml"), toml)?;
     fs::write(folder.join("truth.toml"), truth(plan))
 }
@@ -126,56 +121,51 @@ fn sees(plan: &Plan, parameter: &str) -> bool {
     plan.parameters.iter().any(|(name, ..)| name == parameter)
 }
 
-fn channels(plan: &Plan) -> Vec<(&'static str, &'static str, &'static str, &'static str)> {
-    let mut all = vec![
-        ("pad_left_z", "pad", "left", "z"),
-        ("pad_right_z", "pad", "right", "z"),
-        ("wheel_left_z", "wheel", "left", "z"),
-        ("wheel_right_z", "wheel", "right", "z"),
-        ("body_left_z", "body", "left", "z"),
-        ("body_right_z", "body", "right", "z"),
-    ];
+/// Name, location, side and axis of a sensor.
+type Channel = (&'static str, &'static str, &'static str, &'static str);
+
+fn channels(plan: &Plan) -> Vec<Channel> {
+    let (swept, driven) = (!plan.programme.sweeps.is_empty(), !plan.programme.cleats.is_empty());
     let (subframe, powertrain) = (sees(plan, "m_sf"), sees(plan, "m_pwt"));
-    if subframe {
-        all.extend([("sf_front_z", "sf", "front", "z"), ("sf_rear_z", "sf", "rear", "z")]);
-    }
-    if powertrain {
-        all.push(("pwt_centre_z", "pwt", "centre", "z"));
-    }
-    if plan.cleats {
-        all.extend([
-            ("wheel_left_x", "wheel", "left", "x"),
-            ("body_left_x", "body", "left", "x"),
-        ]);
-        if subframe {
-            all.push(("sf_front_x", "sf", "front", "x"));
-        }
-        if powertrain {
-            all.push(("pwt_centre_x", "pwt", "centre", "x"));
-        }
-    }
-    all
+    let body = plan.programme.body_sensor;
+    let all: [(Channel, bool); 13] = [
+        (("pad_left_z", "pad", "left", "z"), swept),
+        (("pad_right_z", "pad", "right", "z"), swept),
+        (("wheel_left_z", "wheel", "left", "z"), true),
+        (("wheel_right_z", "wheel", "right", "z"), swept),
+        (("body_left_z", "body", "left", "z"), body),
+        (("body_right_z", "body", "right", "z"), body && swept),
+        (("sf_front_z", "sf", "front", "z"), subframe),
+        (("sf_rear_z", "sf", "rear", "z"), subframe),
+        (("pwt_centre_z", "pwt", "centre", "z"), powertrain),
+        (("wheel_left_x", "wheel", "left", "x"), driven),
+        (("body_left_x", "body", "left", "x"), driven && body),
+        (("sf_front_x", "sf", "front", "x"), driven && subframe),
+        (("pwt_centre_x", "pwt", "centre", "x"), driven && powertrain),
+    ];
+    let there = all.into_iter().filter(|(_, there)| *there);
+    there.map(|(channel, _)| channel).collect()
 }
 
 fn write_sweeps(plan: &Plan, left: &Corner, right: &Corner, folder: &Path, toml: &mut String) -> std::io::Result<()> {
-    for (level, role) in LEVELS {
-        let sweep = Sweep::of_level(level);
+    for run in &plan.programme.sweeps {
+        let sweep = Sweep::new(run, plan.hardware.pad());
         let (here, there) = (rig::run(left, &sweep), rig::run(right, &sweep));
-        let file = format!("rig/sweep_{level:03}.csv.gz");
+        let file = format!("rig/sweep_{:03}.csv.gz", run.level);
         let columns: Vec<(&str, Vec<f64>)> = channels(plan)
             .into_iter()
             .filter(|channel| channel.3 == "z")
             .map(|(name, location, side, _)| {
                 let motion = rig_motion(if side == "right" { &there } else { &here }, location, side);
-                (name, record(plan, name, location, plan.noise, level, motion))
+                (name, record(plan, name, location, plan.noise, run.level, motion))
             })
             .collect();
         write_history(&folder.join(&file), &columns)?;
         let _ = write!(
             toml,
-            "\n[[run]]\nkind = \"sweep\"\nfile = \"{file}\"\nrole = \"{role}\"\npeak_velocity = {}\n\
-             start_frequency = 0.5\nend_frequency = 30.0\nspacing = \"logarithmic\"\nsample_rate = {RATE:?}\n",
-            sweep.peak_velocity
+            "\n[[run]]\nkind = \"sweep\"\nfile = \"{file}\"\nrole = \"{}\"\npeak_velocity = {}\n\
+             start_frequency = {:?}\nend_frequency = {:?}\nspacing = \"logarithmic\"\nsample_rate = {RATE:?}\n",
+            run.role, sweep.peak_velocity, run.from, run.to
         );
     }
     Ok(())
@@ -194,12 +184,9 @@ fn rig_motion<'a>(motion: &'a Motion, location: &str, side: &str) -> &'a [f64] {
 
 /// Gain errors belong to a sensor and are the same in every run; noise is new in each.
 fn record(plan: &Plan, name: &str, location: &str, noise: f64, run: u32, motion: &[f64]) -> Vec<f64> {
-    let sensor = Sensor::new(name, location, plan.systematic, noise, &plan.effects, plan.seed);
-    sensor.record(
-        motion,
-        RATE,
-        &mut Random::new(plan.seed, &format!("noise of {name} in {run}")),
-    )
+    let errors = (plan.systematic, noise);
+    let sensor = Sensor::new(name, location, errors, &plan.effects, &plan.hardware, plan.seed);
+    sensor.record(motion, RATE, plan.seed, run)
 }
 
 fn write_kc(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) -> std::io::Result<()> {
@@ -216,7 +203,7 @@ fn write_kc(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) -> s
         &kc::bounce(corner, 0.08, &mut random),
     )?;
     run("bounce", "kc/bounce.csv", "");
-    for level in [25_u32, 75, 125] {
+    for &level in &plan.programme.kc {
         let velocity = f64::from(level) / 1000.0;
         let rows = kc::dynamic_bounce(corner, 0.02, velocity, &mut random);
         let file = format!("kc/dynamic_bounce_{level:03}.csv");
@@ -234,7 +221,8 @@ fn write_kc(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) -> s
 }
 
 fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) -> std::io::Result<()> {
-    for height in HEIGHTS {
+    let heights: BTreeSet<u32> = plan.programme.cleats.iter().map(|run| run.height).collect();
+    for height in heights {
         let road = Road::cleat(f64::from(height) / 1000.0);
         write_road(&folder.join(format!("road/cleat_{height}.csv")), &road)?;
         let _ = write!(
@@ -242,40 +230,36 @@ fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) 
             "\n[[road]]\nname = \"cleat_{height}\"\nfile = \"road/cleat_{height}.csv\"\n"
         );
     }
-    for (height, i, speed, role) in cleat_runs() {
-        let track = cleat::run(corner, &Road::cleat(f64::from(height) / 1000.0), speed / 3.6, 1.5);
-        let file = format!("cleat/v{speed:.0}_h{height}.csv");
+    for run in &plan.programme.cleats {
+        let number = run.stream();
+        let track = cleat::run(corner, run, plan.hardware.jitter(number));
+        let file = format!("cleat/v{:.0}_h{}.csv", run.speed, run.height);
         let columns: Vec<(&str, Vec<f64>)> = channels(plan)
             .into_iter()
             .filter(|&(_, location, side, _)| location != "pad" && side != "right")
             .map(|(name, location, _, axis)| {
-                let motion = track_motion(&track, location, axis);
-                (
-                    name,
-                    record(plan, name, location, TRACK_NOISE, 1000 * height + i, motion),
-                )
+                let motion = seen_across(&track, location, axis, plan.hardware.cross_axis(name));
+                (name, record(plan, name, location, TRACK_NOISE, number, &motion))
             })
             .collect();
         write_history(&folder.join(&file), &columns)?;
         let _ = write!(
             toml,
-            "\n[[run]]\nkind = \"cleat\"\nfile = \"{file}\"\nrole = \"{role}\"\nspeed = {:.7}\n\
-             sample_rate = {RATE:?}\ncleat = \"cleat_{height}\"\n",
-            speed / 3.6
+            "\n[[run]]\nkind = \"cleat\"\nfile = \"{file}\"\nrole = \"{}\"\nspeed = {:.7}\n\
+             sample_rate = {RATE:?}\ncleat = \"cleat_{}\"\n",
+            run.role,
+            run.speed / 3.6,
+            run.height
         );
     }
     Ok(())
 }
 
-/// Height in mm, number of the speed, speed in km/h and role of every run over a cleat. One height in four of each
-/// speed is fitted, so that both are spread over the set.
-pub fn cleat_runs() -> impl Iterator<Item = (u32, u32, f64, &'static str)> {
-    HEIGHTS.into_iter().flat_map(|height| {
-        SPEEDS.into_iter().zip(0..).map(move |(speed, i)| {
-            let fitted = (height / 10 + i).is_multiple_of(4);
-            (height, i, speed, if fitted { "fit" } else { "held_out" })
-        })
-    })
+/// What a sensor of one axis sees that is a little sensitive to the other. On the rig nothing moves along x.
+fn seen_across(track: &Track, location: &str, axis: &str, sensitivity: f64) -> Vec<f64> {
+    let across = track_motion(track, location, if axis == "z" { "x" } else { "z" });
+    let along = track_motion(track, location, axis);
+    along.iter().zip(across).map(|(a, b)| a + sensitivity * b).collect()
 }
 
 fn track_motion<'a>(track: &'a Track, location: &str, axis: &str) -> &'a [f64] {

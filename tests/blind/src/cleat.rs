@@ -1,57 +1,13 @@
 //! The track: a tyre of area contact over a cleat, its overlap summed column by column.
 
-use crate::corner::{BODY, COORDINATES, Corner, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL};
+use crate::corner::{
+    BODY, COORDINATES, Corner, FLEX, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL,
+};
+use crate::enveloping::Felt;
 use crate::integrate::step;
+use crate::programme::CleatRun;
 use crate::rig::RATE;
-
-/// A cleat: flat, a vertical step, a descent and a smooth return, sampled every millimetre.
-pub struct Road {
-    pub z: Vec<f64>,
-    pub slope: Vec<f64>,
-}
-
-/// Spacing of the samples, m.
-pub const SPACING: f64 = 1e-3;
-const START: f64 = 1.5;
-
-impl Road {
-    /// The profile of a cleat of height `h`, m, on 18 m of road: 78 % of it lost on a straight descent, the rest on
-    /// a return whose slope fades like a cosine, so that the curvature is continuous.
-    pub fn cleat(h: f64) -> Self {
-        let straight = 0.366;
-        let slope = 0.78 * h / straight;
-        let rest = 0.22 * h;
-        let fade = 2.0 * rest / slope;
-        let z = |x: f64| {
-            let along = x - START;
-            let u = ((along - straight) / fade).min(1.0);
-            if along < SPACING / 2.0 {
-                0.0
-            } else if along < straight {
-                h - slope * along
-            } else {
-                rest - slope * fade / 2.0 * (u + (std::f64::consts::PI * u).sin() / std::f64::consts::PI)
-            }
-        };
-        let z: Vec<f64> = (0..=18_000).map(|i| z(f64::from(i) * SPACING)).collect();
-        let slope = (0..z.len())
-            .map(|i| {
-                if i + 1 < z.len() {
-                    (z[i + 1] - z[i]) / SPACING
-                } else {
-                    0.0
-                }
-            })
-            .collect();
-        Self { z, slope }
-    }
-
-    fn height(&self, x: f64) -> f64 {
-        let place = (x / SPACING).clamp(0.0, (self.z.len() - 2) as f64);
-        let i = place as usize;
-        self.z[i] + (self.z[i + 1] - self.z[i]) * (place - i as f64)
-    }
-}
+use crate::road::Road;
 
 /// Overlap of the circle with the ground.
 #[derive(Default)]
@@ -65,14 +21,31 @@ struct Overlap {
 /// Half a millimetre: the width of a column of the sum.
 const COLUMN: f64 = 5e-4;
 
+/// The columns that may reach into the ground: the others are above its highest point under the circle.
+fn touching(road: &Road, radius: f64, centre: [f64; 2]) -> (usize, usize) {
+    let above = centre[1] - road.highest(centre[0] - radius, centre[0] + radius);
+    if above >= radius {
+        return (0, 0);
+    }
+    let half = (radius * radius - above.max(0.0).powi(2)).sqrt();
+    let columns = (2.0 * radius / COLUMN) as usize;
+    let first = ((radius - half) / COLUMN) as usize;
+    let end = ((radius + half) / COLUMN) as usize;
+    (first.saturating_sub(2), (end + 2).min(columns))
+}
+
 fn overlap(road: &Road, radius: f64, centre: [f64; 2], velocity: [f64; 2]) -> Overlap {
     let mut sum = Overlap::default();
-    let columns = (2.0 * radius / COLUMN) as usize;
     let reach = |dx: f64| (radius * radius - dx * dx).max(0.0).sqrt();
     let depth = |dx: f64| road.height(centre[0] + dx) - centre[1] + reach(dx);
-    let mut left = depth(-radius);
-    for k in 0..columns {
-        let dx = -radius + (k as f64 + 0.5) * COLUMN;
+    let middle = |k: usize| -radius + (k as f64 + 0.5) * COLUMN;
+    let (first, end) = touching(road, radius, centre);
+    let mut left = match first {
+        0 => depth(-radius),
+        _ => depth(middle(first - 1) + COLUMN / 2.0),
+    };
+    for k in first..end {
+        let dx = middle(k);
         let right = depth(dx + COLUMN / 2.0);
         let inside = left.max(0.0) + right.max(0.0);
         // Of the column at an edge only a part is in the ground. Counted as a whole, it would come and go with a jolt.
@@ -130,16 +103,46 @@ fn towards_centre(moment: [f64; 2], scale: f64) -> [f64; 2] {
 struct Rolling<'a> {
     corner: &'a Corner<'a>,
     road: &'a Road,
+    /// The road as the tyre feels it, where it obeys the other law.
+    felt: Option<Felt>,
     speed: f64,
+    /// How late the logger's trigger comes, s.
+    late: f64,
     drag: f64,
 }
 
 impl Rolling<'_> {
     /// Force on the ring over and above the static load, and the drag at rest.
     fn push(&self, t: f64, y: &State) -> Push {
+        let t = t + self.late;
+        match &self.felt {
+            Some(felt) => self.push_of_cams(felt, t, y),
+            None => self.push_of_area(t, y),
+        }
+    }
+
+    /// A spring and damper across the effective plane (see [`crate::hardware::Cams`]).
+    fn push_of_cams(&self, felt: &Felt, t: f64, y: &State) -> Push {
         let a = self.corner.axle;
         let ring = self.corner.ring();
-        let centre = [self.speed * t + y[X_WHEEL], a.r_tire - a.static_tire_def + y[ring]];
+        let (x, z) = (self.speed * t + y[X_WHEEL], y[ring]);
+        let [height, growth, slope] = felt.at(x);
+        let cosine = 1.0 / slope.hypot(1.0);
+        let deflection = self.tread_at_rest() + (height - z) * cosine;
+        let rate = (growth * (self.speed + y[COORDINATES + X_WHEEL]) - y[COORDINATES + ring]) * cosine;
+        let spring = self.pressed(deflection.max(0.0)) + self.corner.tire_memory(y);
+        let force = (spring + a.c_tire * rate).max(0.0);
+        Push {
+            z: force * cosine - a.static_load(),
+            x: -force * slope * cosine - self.drag,
+            compression_rate: if deflection > 0.0 { rate } else { 0.0 },
+        }
+    }
+
+    fn push_of_area(&self, t: f64, y: &State) -> Push {
+        let a = self.corner.axle;
+        let ring = self.corner.ring();
+        let centre = [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]];
         let velocity = [self.speed + y[COORDINATES + X_WHEEL], y[COORDINATES + ring]];
         let o = overlap(self.road, a.r_tire, centre, velocity);
         if o.area <= 0.0 {
@@ -152,7 +155,7 @@ impl Rolling<'_> {
         let d = deflection(a.r_tire, o.area);
         let width = 2.0 * (2.0 * a.r_tire * a.static_tire_def - a.static_tire_def.powi(2)).sqrt();
         let e = towards_centre(o.moment, o.area);
-        let spring = (self.elastic(d) + y[crate::corner::TIRE_BRANCH]).max(0.0);
+        let spring = (self.pressed(d) + self.corner.tire_memory(y)).max(0.0);
         let grow = a.c_tire * o.growth[0] / width;
         let shrink = (a.c_tire * o.shrinkage[0] / width).max(-spring);
         let eg = towards_centre([o.growth[1], o.growth[2]], o.growth[0].max(1e-12));
@@ -164,13 +167,30 @@ impl Rolling<'_> {
         }
     }
 
-    /// Static force over deflection: through zero and the static point with the rig's slope there.
+    /// Deflection of the tread under the static load, m: the sidewalls have the rest of the tyre's.
+    fn tread_at_rest(&self) -> f64 {
+        let a = self.corner.axle;
+        let sidewalls = self
+            .corner
+            .laws
+            .belt
+            .map_or(0.0, |belt| a.static_load() / belt.k_sidewall);
+        a.static_tire_def - sidewalls
+    }
+
+    /// Static force over the deflection of the tread, N.
+    fn pressed(&self, tread: f64) -> f64 {
+        self.elastic(self.corner.whole_tire(tread, |d| self.elastic(d.max(0.0))))
+    }
+
+    /// Static force over the deflection of the whole tyre: through zero and the static point with the rig's slope there.
     fn elastic(&self, d: f64) -> f64 {
         let a = self.corner.axle;
         let (f0, d0) = (a.static_load(), a.static_tire_def);
         let exponent = a.k_tire * d0 / f0;
         let growth = self.corner.laws.tire_increase.unwrap_or(0.0);
-        f0 * (d / d0).powf(exponent) + 0.5 * a.k_tire * growth / d0 * (d - d0).max(0.0).powi(2)
+        let other = self.corner.laws.other.map_or(0.0, |law| law.tire(a.k_tire, d - d0));
+        f0 * (d / d0).powf(exponent) + 0.5 * a.k_tire * growth / d0 * (d - d0).max(0.0).powi(2) + other
     }
 }
 
@@ -192,27 +212,32 @@ const FINER: usize = 4;
 /// Steps of integration between two looks where friction sticks: what sticks follows a fast damper within 0.1 ms.
 const STICKING: usize = 4;
 
-/// Drives a corner over a road for `seconds`.
-pub fn run(corner: &Corner, road: &Road, speed: f64, seconds: f64) -> Track {
+/// Drives a corner over a cleat; the record begins `late` s after it should.
+pub fn run(corner: &Corner, drive: &CleatRun, late: f64) -> Track {
+    let road = &Road::cleat(f64::from(drive.height) / 1000.0);
+    let speed = drive.speed / 3.6;
     let mut rolling = Rolling {
         corner,
         road,
+        felt: corner.laws.cams.map(|cams| Felt::new(road, corner.axle, cams)),
         speed,
+        late,
         drag: 0.0,
     };
     rolling.drag = rolling.push(0.5 / speed, &[0.0; STATES]).x;
     let h = 1.0 / (RATE * FINER as f64);
     let derivative = |t: f64, y: &State| corner.derivative(0.0, y, rolling.push(t, y), false);
     let mut y = [0.0; STATES];
-    let is_dry = corner.laws.friction.is_some() || corner.laws.bouc_wen.is_some();
+    let laws = corner.laws;
+    let is_dry = laws.friction.is_some() || laws.bouc_wen.is_some() || laws.other.is_some_and(|law| law.is_dry());
     let steps = if is_dry { STICKING } else { 1 };
     let mut track = Track::default();
     let mut mean = Average::default();
-    for i in 0..(seconds * RATE) as usize * FINER {
+    for i in 0..(drive.seconds * RATE) as usize * FINER {
         let t = i as f64 * h;
         mean.take(&derivative(t, &y)[COORDINATES..2 * COORDINATES]);
         if i % FINER == FINER - 1 {
-            track.push(&mean.give());
+            track.push(&mean.give(), corner.sensor_beside_bend());
         }
         for k in 0..steps {
             let part = h / steps as f64;
@@ -241,14 +266,57 @@ impl Average {
 }
 
 impl Track {
-    fn push(&mut self, a: &[f64; COORDINATES]) {
+    fn push(&mut self, a: &[f64; COORDINATES], beside_bend: f64) {
         self.wheel_z.push(a[WHEEL]);
-        self.body_z.push(a[BODY]);
+        self.body_z.push(a[BODY] - beside_bend * a[FLEX]);
         self.sf_z.push(a[SF]);
         self.pwt_z.push(a[PWT]);
         self.wheel_x.push(a[X_WHEEL]);
         self.body_x.push(a[X_BODY]);
         self.sf_x.push(a[X_SF]);
         self.pwt_x.push(a[X_PWT]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axle::{Axle, Layout, Mount};
+    use crate::hidden::{Hidden, Laws};
+
+    /// A car whose tyre has a belt stands still before the cleat: its tread carries the static load from the first.
+    #[test]
+    fn a_tyre_with_a_belt_carries_its_load_before_the_cleat() {
+        let layout = Layout {
+            top_mount: true,
+            subframe: false,
+            powertrain: Mount::None,
+        };
+        let axle = Axle::draw(layout, 1);
+        let belt = [("m_belt", 7.0), ("k_sidewall", 700e3), ("c_sidewall", 200.0)];
+        let laws = Laws::of(&[Hidden::new("tire_belt", "tire", &belt)]);
+        let corner = Corner {
+            axle: &axle,
+            laws: &laws,
+        };
+        let road = Road::cleat(0.01);
+        let rolling = Rolling {
+            corner: &corner,
+            road: &road,
+            felt: None,
+            speed: 5.0,
+            late: 0.0,
+            drag: 0.0,
+        };
+        let rest = rolling.tread_at_rest();
+        assert!((rest + axle.static_load() / 700e3 - axle.static_tire_def).abs() < 1e-12);
+        // Columns of the sum, beside the closed segment, are some thousandths of the load.
+        let above_load = rolling.push(0.1, &[0.0; STATES]).z;
+        assert!(above_load.abs() < 0.01 * axle.static_load(), "{above_load} N");
+        let mut lower = [0.0; STATES];
+        lower[rolling.corner.ring()] = -1e-4;
+        let slope = (rolling.push(0.1, &lower).z - above_load) / 1e-4;
+        let in_series = 1.0 / (1.0 / slope + 1.0 / 700e3);
+        assert!((in_series / axle.k_tire - 1.0).abs() < 0.03, "{in_series} N/m");
     }
 }

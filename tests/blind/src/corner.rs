@@ -2,6 +2,7 @@
 
 use crate::axle::{Axle, GRAVITY, Mount};
 use crate::hidden::Laws;
+use crate::other_law::{INNER, Other};
 
 /// Vertical coordinates, by their place.
 pub const WHEEL: usize = 0;
@@ -33,18 +34,22 @@ pub const X_SF: usize = 12;
 pub const X_PWT: usize = 13;
 /// See [`X_WHEEL`].
 pub const X_OTHER: usize = 14;
+/// How far the body bends up where the suspension acts.
+pub const FLEX: usize = 15;
 /// How many coordinates.
-pub const COORDINATES: usize = 15;
+pub const COORDINATES: usize = 16;
 const FRICTION: usize = 2 * COORDINATES;
 const TM_BRANCH: usize = FRICTION + 1;
 const PWT_BRANCH: usize = FRICTION + 2;
 /// Force of the relaxing branch of the tyre, N, positive in compression.
-pub const TIRE_BRANCH: usize = FRICTION + 3;
+const TIRE_BRANCH: usize = FRICTION + 3;
 const LOOP: usize = FRICTION + 4;
 /// Force of a damper that ends in a spring.
 const SERIES: usize = FRICTION + 5;
+/// States of a law in another form.
+const OTHER_LAW: usize = FRICTION + 6;
 /// Length of the state: positions, velocities, inner forces.
-pub const STATES: usize = FRICTION + 6;
+pub const STATES: usize = OTHER_LAW + INNER;
 
 /// Positions, velocities, inner forces.
 pub type State = [f64; STATES];
@@ -83,6 +88,16 @@ impl Corner<'_> {
         a.m_corner - rest
     }
 
+    /// How much less of the body's bending its sensor sees than the suspension's end of it does.
+    pub fn sensor_beside_bend(&self) -> f64 {
+        self.laws.flexible.map_or(0.0, |mode| 1.0 - mode.at_sensor)
+    }
+
+    /// Share of the damping that is left at a share of a run.
+    fn warm(&self, share: f64) -> f64 {
+        self.laws.heat.map_or(1.0, |heat| heat.left(share))
+    }
+
     /// Which coordinate touches the road.
     pub fn ring(&self) -> usize {
         if self.laws.belt.is_some() { BELT } else { WHEEL }
@@ -99,9 +114,10 @@ impl Corner<'_> {
         self.strut(share, y, &mut f, &mut dy);
         self.mounts(y, &mut f, &mut dy);
         f[BODY] -= self.laws.body_drag.unwrap_or(0.0) * y[COORDINATES + BODY];
+        f[BODY] -= self.laws.other.map_or(0.0, |law| law.drag(y[COORDINATES + BODY]));
         f[WHEEL] -= self.laws.wheel_drag.unwrap_or(0.0) * y[COORDINATES + WHEEL];
         self.longitudinal(y, &mut f);
-        self.accelerate(&f, gravity, &mut dy);
+        self.accelerate(y, &f, gravity, &mut dy);
         dy
     }
 
@@ -123,17 +139,61 @@ impl Corner<'_> {
             let rate = std::f64::consts::TAU * t.relaxation_frequency;
             dy[TIRE_BRANCH] = k * push.compression_rate - rate * y[TIRE_BRANCH];
         }
+        if let Some(law) = self.laws.other {
+            let inner = &y[OTHER_LAW..];
+            law.tire_relaxes(self.axle.k_tire, push.compression_rate, inner, &mut dy[OTHER_LAW..]);
+        }
     }
 
-    /// Force of the standing tyre for a compression from rest, N, positive on the ring.
+    /// Force of a law in another form that has states, N.
+    fn remembered(&self, y: &State, dy: &mut State, force: impl Fn(&Other, &[f64], &mut [f64]) -> f64) -> f64 {
+        let law = self.laws.other.as_ref();
+        law.map_or(0.0, |law| force(law, &y[OTHER_LAW..], &mut dy[OTHER_LAW..]))
+    }
+
+    /// What relaxes in the tyre, N, positive in compression.
+    pub fn tire_memory(&self, y: &State) -> f64 {
+        y[TIRE_BRANCH] + self.laws.other.map_or(0.0, |law| law.tire_memory(&y[OTHER_LAW..]))
+    }
+
+    /// Force of the standing tyre for a compression of its tread from rest, N, positive on the ring.
     pub fn tire_force(&self, y: &State, compression: f64, rate: f64) -> f64 {
+        let whole = self.whole_tire(compression, |s| self.standing(s));
+        let memory = if self.laws.rolling_only {
+            0.0
+        } else {
+            self.tire_memory(y)
+        };
+        self.standing(whole) + self.axle.c_tire * rate + memory
+    }
+
+    /// Elastic force of the whole standing tyre for a compression from rest, N.
+    fn standing(&self, compression: f64) -> f64 {
         let a = self.axle;
-        let linear = a.k_tire * compression + a.c_tire * rate;
+        let linear = a.k_tire * compression;
         if self.laws.rolling_only {
             return linear;
         }
         let growth = self.laws.tire_increase.unwrap_or(0.0) / (2.0 * a.static_tire_def);
-        linear + a.k_tire * growth * compression * compression + y[TIRE_BRANCH]
+        let other = self.laws.other.map_or(0.0, |law| law.tire(a.k_tire, compression));
+        linear + a.k_tire * growth * compression * compression + other
+    }
+
+    /// How far the whole tyre is compressed where its tread is, m, by Newton's method. Tread and sidewalls in series have
+    /// the elastic `force` that the whole tyre was measured to have.
+    pub fn whole_tire(&self, tread: f64, force: impl Fn(f64) -> f64) -> f64 {
+        let Some(belt) = self.laws.belt else { return tread };
+        let tread_of = |whole: f64| whole - force(whole) / belt.k_sidewall;
+        let mut whole = tread;
+        for _ in 0..20 {
+            let slope = (tread_of(whole + 1e-6) - tread_of(whole)) / 1e-6;
+            let missing = (tread - tread_of(whole)) / slope;
+            whole += missing;
+            if missing.abs() < 1e-12 {
+                break;
+            }
+        }
+        whole
     }
 
     fn pivot(&self, y: &State) -> (f64, f64) {
@@ -193,6 +253,7 @@ impl Corner<'_> {
                 let fade = std::f64::consts::TAU * branch.relaxation_frequency;
                 dy[TM_BRANCH] = branch.k_maxwell * rate - fade * y[TM_BRANCH];
             }
+            force += self.remembered(y, dy, |law, inner, dy| law.top_mount(rate, inner, dy));
             f[BODY] -= force;
             f[TM] += force;
         }
@@ -202,7 +263,8 @@ impl Corner<'_> {
     fn spring(&self, s: f64) -> f64 {
         let rise = self.laws.rate_increase_at_40mm.unwrap_or(0.0) / 3.0 * (s / 0.04).powi(2);
         let stop = self.laws.bump_stop.map_or(0.0, |b| b.k_stop * (s + b.gap).min(0.0));
-        self.axle.k_wheel_z * s * (1.0 + rise) + stop
+        let k = self.axle.k_wheel_z;
+        k * s * (1.0 + rise) + stop + self.laws.other.map_or(0.0, |law| law.spring(k, s))
     }
 
     /// Resisting force of the damper at the wheel without its friction, N.
@@ -223,16 +285,23 @@ impl Corner<'_> {
         if let Some(d) = l.digressive {
             c = d.c0 / (1.0 + v.abs() / d.v0);
         }
+        if let Some(force) = l.other.and_then(|law| law.damper(c, s, v)) {
+            return self.warm(share) * force;
+        }
         let engaged = l.free_play.is_none_or(|gap| s.abs() > gap / 2.0);
         let quadratic = l.quadratic_damping.unwrap_or(0.0) * v * v.abs();
-        if engaged { c * v + quadratic } else { 0.0 }
+        if engaged {
+            self.warm(share) * (c * v + quadratic)
+        } else {
+            0.0
+        }
     }
 
     fn damper(&self, share: f64, s: f64, v: f64, y: &State, dy: &mut State) -> f64 {
         let Some(k) = self.laws.k_series else {
             return self.damper_law(share, s, v);
         };
-        dy[SERIES] = k * (v - y[SERIES] / self.axle.c_wheel_z);
+        dy[SERIES] = k * (v - y[SERIES] / (self.warm(share) * self.axle.c_wheel_z));
         y[SERIES]
     }
 
@@ -249,7 +318,7 @@ impl Corner<'_> {
             let lost = b.loop_shape * v.abs() * part * part.abs() + (1.0 - b.loop_shape) * v * part * part;
             dy[LOOP] = b.k_hysteresis * (v - lost);
         }
-        force
+        force + self.remembered(y, dy, |law, inner, dy| law.friction(v, inner, dy))
     }
 
     /// Sub-frame and powertrain.
@@ -316,13 +385,14 @@ impl Corner<'_> {
 
     /// What the longitudinal bushing adds beyond its linear travel, N.
     pub fn saturation(&self, s: f64) -> f64 {
-        let Some(law) = self.laws.saturation else { return 0.0 };
+        let other = self.laws.other.map_or(0.0, |law| law.bushing(self.axle.k_wheel_x, s));
+        let Some(law) = self.laws.saturation else { return other };
         let beyond = (s.abs() - law.linear_travel).max(0.0);
         let curvature = self.axle.k_wheel_x * law.rate_increase_at_twice_travel / (2.0 * law.linear_travel);
         s.signum() * curvature * beyond * beyond
     }
 
-    fn accelerate(&self, f: &Forces, gravity: bool, dy: &mut State) {
+    fn accelerate(&self, y: &State, f: &Forces, gravity: bool, dy: &mut State) {
         let (a, l) = (self.axle, self.laws);
         let g = if gravity { GRAVITY } else { 0.0 };
         let acceleration = &mut dy[COORDINATES..FRICTION];
@@ -349,6 +419,11 @@ impl Corner<'_> {
         }
         if let Some(apparent) = l.apparent {
             self.couple_by_body(apparent, f, g, acceleration);
+        }
+        if let Some(mode) = l.flexible {
+            let elastic = mode.omega * (mode.omega * y[FLEX] + 2.0 * mode.damping * y[COORDINATES + FLEX]);
+            acceleration[FLEX] = f[BODY] / (mode.generalised() * self.body()) - elastic;
+            acceleration[BODY] += acceleration[FLEX];
         }
         if let Some(pitch) = l.pitch {
             acceleration[PITCH] = f[PITCH] / pitch.inertia;
@@ -401,5 +476,40 @@ impl Corner<'_> {
         let det = m11 * m22 - m12 * m12;
         acceleration[BODY] = (m22 * f1 - m12 * f2) / det;
         acceleration[OTHER] = (m11 * f2 - m12 * f1) / det;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axle::Layout;
+    use crate::hidden::Hidden;
+
+    /// Pressed slowly, the tread gives way by its own law and the sidewalls beside it: together by that of the tyre.
+    #[test]
+    fn a_belt_leaves_the_tyre_its_static_stiffness() {
+        let layout = Layout {
+            top_mount: true,
+            subframe: false,
+            powertrain: Mount::None,
+        };
+        let axle = Axle::draw(layout, 1);
+        let (k_sidewall, growth) = (700e3, 0.4);
+        let belt = [("m_belt", 7.0), ("k_sidewall", k_sidewall), ("c_sidewall", 200.0)];
+        let stiffening = [("tangent_increase_at_twice_static", growth)];
+        let laws = Laws::of(&[
+            Hidden::new("tire_belt", "tire", &belt),
+            Hidden::new("tire_progressive_stiffness", "tire", &stiffening),
+        ]);
+        let corner = Corner {
+            axle: &axle,
+            laws: &laws,
+        };
+        for tread in [-4e-3, 1e-3, 5e-3] {
+            let force = corner.tire_force(&[0.0; STATES], tread, 0.0);
+            let whole = tread + force / k_sidewall;
+            let parabola = axle.k_tire * (whole + growth / (2.0 * axle.static_tire_def) * whole * whole);
+            assert!((force - parabola).abs() < 1e-3, "{force} N, not {parabola} N");
+        }
     }
 }

@@ -1,5 +1,8 @@
 //! What a campaign hides: the effects of the catalogue and some outside of it, by name, with hand-written laws.
 
+use crate::hardware::{Cams, Flexible, Hardware, Heat};
+use crate::other_law::Other;
+
 /// An effect with its true parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hidden {
@@ -79,6 +82,14 @@ pub struct Laws {
     pub quadratic_damping: Option<f64>,
     /// Outside the catalogue: the top mount stiffens with the square of its stretch, N/m³.
     pub cubic_top_mount: Option<f64>,
+    /// A law in another form than the catalogue's.
+    pub other: Option<Other>,
+    /// A flaw of hardware: the body bends.
+    pub flexible: Option<Flexible>,
+    /// A flaw of hardware: the damper warms up.
+    pub heat: Option<Heat>,
+    /// A flaw of hardware: the tyre's law over a cleat.
+    pub cams: Option<Cams>,
 }
 
 macro_rules! law {
@@ -132,6 +143,16 @@ impl Laws {
         laws
     }
 
+    /// The same in a car that has flaws.
+    pub fn on(self, hardware: &Hardware) -> Self {
+        Self {
+            flexible: hardware.flexible(),
+            heat: hardware.heat(),
+            cams: hardware.cams(),
+            ..self
+        }
+    }
+
     fn add(&mut self, effect: &Hidden) {
         self.friction_past_mount |= effect.form == "strut";
         self.rolling_only |= effect.form == "rolling";
@@ -163,8 +184,8 @@ impl Laws {
             ("damper_fade", _) => self.fade = Some(effect.get("share")),
             ("quadratic_damping", _) => self.quadratic_damping = Some(effect.get("c2")),
             ("cubic_top_mount", _) => self.cubic_top_mount = Some(effect.get("k3")),
-            // Parts that the layout already holds, and sensors.
-            _ => {}
+            // Laws in another form, and of what is left parts that the layout already holds, and sensors.
+            _ => self.other = self.other.or(Other::named(&effect.name, |name| effect.get(name))),
         }
     }
 }

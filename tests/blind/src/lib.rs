@@ -5,25 +5,59 @@
     reason = "fields have the names of the campaign format, the axle tables and the catalogue"
 )]
 
-mod axle;
-mod campaign;
-mod cleat;
-mod corner;
-pub mod hidden;
-mod integrate;
-mod kc;
 mod random;
+
+// What a campaign is to hold.
+pub mod hardware;
+pub mod programme;
+
+// What is hidden in the car, and the car.
+mod other_law;
+
+pub mod hidden;
+
+mod axle;
+
+// How it moves.
+mod corner;
+
+mod integrate;
+
+// On the rigs.
+mod kc;
 mod rig;
+
+// On the track.
+mod road;
+
+mod enveloping;
+
+mod cleat;
+
+// What sensors make of it.
+mod calibration;
+
 mod sensor;
+
+// All of it in a folder.
+mod campaign;
+
+// What of it can be found at all.
 mod separable;
 
+// Cases by the hundred, and what was answered to them.
 pub mod matrix;
+
 pub mod outcome;
+
+pub mod tables;
 
 use std::path::Path;
 
 use axle::{Axle, Layout, Mount};
+use hardware::{Flaw, Hardware};
 use hidden::Hidden;
+use programme::Programme;
 
 /// What campaign is wanted.
 #[derive(Clone, Debug)]
@@ -38,10 +72,14 @@ pub struct Order {
     pub systematic: f64,
     /// Noise of the rig's accelerometers, m/s².
     pub noise: f64,
-    /// Whether to run the cleats too.
+    /// Which runs.
+    pub programme: Programme,
+    /// Whether to run its cleats too.
     pub cleats: bool,
     /// What the model lacks.
     pub effects: Vec<Hidden>,
+    /// What no model has.
+    pub flaws: Vec<Flaw>,
 }
 
 impl Order {
@@ -53,8 +91,10 @@ impl Order {
             model: None,
             systematic: 0.005,
             noise: 0.02,
+            programme: Programme::full(),
             cleats: true,
             effects: Vec::new(),
+            flaws: Vec::new(),
         }
     }
 }
@@ -97,7 +137,12 @@ fn planned(order: Order, folder: &Path) -> Result<(campaign::Plan, Axle, Axle), 
         seed: order.seed,
         systematic: order.systematic,
         noise: order.noise,
-        cleats: order.cleats,
+        programme: if order.cleats {
+            order.programme
+        } else {
+            order.programme.without_cleats()
+        },
+        hardware: Hardware::new(order.seed, order.flaws),
     };
     Ok((plan, axle, seen))
 }

@@ -1,15 +1,17 @@
 //! Makes the campaigns of the blind tests.
 //!
-//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE[/FORM]:parameter=value,…]… [--model MODEL]`
+//! `qcar-blind FOLDER --seed N --axle a|c|d [--hide NAME@PLACE[/FORM]:parameter=value,…]… [--flaws all|NAME,…] [--model MODEL]`
 
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use qcar_blind::hardware::Flaw;
 use qcar_blind::hidden::Hidden;
+use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
 
 const USAGE: &str = "qcar-blind FOLDER [--seed N] [--axle a|c|d] [--model NAME] [--systematic SHARE] [--noise M_S2] \
-                     [--no-cleats] [--hide NAME@PLACE[/FORM]:parameter=value,...]...";
+                     [--no-cleats] [--fast] [--flaws all|NAME,...] [--hide NAME@PLACE[/FORM]:parameter=value,...]...";
 
 fn main() -> ExitCode {
     match run() {
@@ -36,11 +38,21 @@ fn run() -> Result<(), String> {
             "--systematic" => order.systematic = number(value()?)?,
             "--noise" => order.noise = number(value()?)?,
             "--no-cleats" => order.cleats = false,
+            "--fast" => order.programme = Programme::fast(),
+            "--flaws" => order.flaws = flaws(&value()?)?,
             "--hide" => order.effects.push(parse(&value()?)?),
             _ => return Err(format!("what is {word}?")),
         }
     }
     make(order, &folder)
+}
+
+fn flaws(text: &str) -> Result<Vec<Flaw>, String> {
+    if text == "all" {
+        return Ok(Flaw::ALL.to_vec());
+    }
+    let named = |name: &str| Flaw::named(name).ok_or(format!("there is no flaw {name}: all, or of {:?}", Flaw::ALL));
+    text.split(',').map(named).collect()
 }
 
 fn parse(text: &str) -> Result<Hidden, String> {

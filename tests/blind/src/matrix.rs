@@ -1,7 +1,18 @@
-//! The cases of the blind matrix: every effect at three strengths, clean axles, effects outside the catalogue, pairs.
+//! The cases of the blind matrix.
+
+mod entries;
+mod other_laws;
+
+pub use other_laws::family;
 
 use crate::Order;
+use crate::hardware::Flaw;
 use crate::hidden::Hidden;
+use crate::programme::Programme;
+use crate::random::Random;
+
+use entries::{Entry, OUTSIDE, OUTSIDE_LATER, SINGLES};
+use other_laws::OTHER_LAWS;
 
 /// What a case is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -14,6 +25,36 @@ pub enum Kind {
     Outside,
     /// Two effects at once.
     Pair,
+    /// Nothing is hidden, in a short campaign.
+    FastClean,
+    /// Nothing is hidden in hardware with flaws.
+    HardwareClean,
+    /// One effect of usual strength in hardware with flaws.
+    HardwareSingle,
+    /// One effect of usual strength in a campaign that shows little.
+    Minimal,
+    /// One effect of usual strength by another law than the catalogue's.
+    OtherLaw,
+}
+
+impl Kind {
+    /// All of them.
+    pub const ALL: [Self; 9] = [
+        Self::Single,
+        Self::Clean,
+        Self::Outside,
+        Self::Pair,
+        Self::FastClean,
+        Self::HardwareClean,
+        Self::HardwareSingle,
+        Self::Minimal,
+        Self::OtherLaw,
+    ];
+
+    /// A kind by its name as `{:?}` prints it.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| format!("{kind:?}") == name)
+    }
 }
 
 /// A campaign of the matrix.
@@ -27,332 +68,270 @@ pub struct Case {
     pub order: Order,
 }
 
-/// An effect with its parameters at three strengths.
-struct Entry {
-    name: &'static str,
-    at: &'static str,
-    form: &'static str,
-    axle: &'static str,
-    parameters: &'static [(&'static str, [f64; 3])],
-}
-
-const fn entry(
-    name: &'static str,
-    at: &'static str,
-    axle: &'static str,
-    parameters: &'static [(&'static str, [f64; 3])],
-) -> Entry {
-    Entry {
-        name,
-        at,
-        form: "",
-        axle,
-        parameters,
-    }
-}
-
-impl Entry {
-    const fn form(mut self, form: &'static str) -> Self {
-        self.form = form;
-        self
-    }
-
-    fn hidden(&self, strength: usize) -> Hidden {
-        let parameters: Vec<(&str, f64)> = self
-            .parameters
-            .iter()
-            .map(|(name, values)| (*name, values[strength]))
-            .collect();
-        Hidden::new(self.name, self.at, &parameters).form(self.form)
-    }
-}
-
-const SINGLES: [Entry; 32] = [
-    entry(
-        "top_mount",
-        "damper",
-        "c",
-        &[
-            ("m_tm", [3.0, 5.0, 8.0]),
-            ("k_tm", [800e3, 450e3, 250e3]),
-            ("c_tm", [900.0, 700.0, 500.0]),
-        ],
-    ),
-    entry(
-        "suspended_mass",
-        "body",
-        "a",
-        &[
-            ("m_pwt", [25.0, 60.0, 110.0]),
-            ("k_pwt_z", [90e3, 240e3, 380e3]),
-            ("c_pwt_z", [300.0, 500.0, 700.0]),
-            ("k_pwt_x", [100e3, 260e3, 450e3]),
-            ("c_pwt_x", [300.0, 500.0, 900.0]),
-        ],
-    ),
-    entry(
-        "suspended_mass",
-        "subframe",
-        "d",
-        &[
-            ("m_pwt", [20.0, 40.0, 60.0]),
-            ("k_pwt_z", [120e3, 300e3, 500e3]),
-            ("c_pwt_z", [250.0, 420.0, 600.0]),
-            ("k_pwt_x", [120e3, 260e3, 450e3]),
-            ("c_pwt_x", [300.0, 400.0, 600.0]),
-        ],
-    ),
-    entry(
-        "coulomb_friction",
-        "damper",
-        "c",
-        &[
-            ("f_coulomb", [20.0, 60.0, 150.0]),
-            ("k_presliding", [300e3, 600e3, 1.2e6]),
-        ],
-    ),
-    entry(
-        "coulomb_friction",
-        "damper",
-        "a",
-        &[
-            ("f_coulomb", [20.0, 60.0, 150.0]),
-            ("k_presliding", [300e3, 600e3, 1.2e6]),
-        ],
-    )
-    .form("strut"),
-    entry(
-        "asymmetric_damper",
-        "damper",
-        "c",
-        &[("rebound_over_compression", [1.15, 1.5, 2.5])],
-    ),
-    entry(
-        "digressive_damper",
-        "damper",
-        "a",
-        &[("c0", [1800.0, 2200.0, 3000.0]), ("v0", [1.5, 0.6, 0.25])],
-    ),
-    entry(
-        "progressive_spring",
-        "spring",
-        "c",
-        &[("rate_increase_at_40mm", [0.15, 0.5, 1.5])],
-    ),
-    entry(
-        "bump_stop",
-        "spring",
-        "c",
-        &[("gap", [0.03, 0.02, 0.012]), ("k_stop", [40e3, 80e3, 120e3])],
-    ),
-    entry(
-        "bushing_relaxation",
-        "top_mount",
-        "c",
-        &[
-            ("k_maxwell", [100e3, 250e3, 600e3]),
-            ("relaxation_frequency", [15.0, 10.0, 8.0]),
-        ],
-    ),
-    entry(
-        "bushing_relaxation",
-        "powertrain_mount",
-        "a",
-        &[
-            ("k_maxwell", [30e3, 90e3, 200e3]),
-            ("relaxation_frequency", [8.0, 6.0, 10.0]),
-        ],
-    ),
-    entry(
-        "hydraulic_mount",
-        "powertrain_mount",
-        "a",
-        &[
-            ("k_volume", [60e3, 150e3, 300e3]),
-            ("inertance", [30.0, 45.0, 60.0]),
-            ("c_track", [300.0, 500.0, 700.0]),
-        ],
-    ),
-    entry(
-        "subframe_pitch",
-        "subframe",
-        "d",
-        &[
-            ("inertia", [0.8, 1.5, 2.5]),
-            ("half_length", [0.25, 0.3, 0.35]),
-            ("front_share", [0.52, 0.6, 0.68]),
-            ("arm_offset", [0.03, 0.08, 0.15]),
-        ],
-    ),
-    entry(
-        "apparent_mass",
-        "body",
-        "c",
-        &[
-            ("dynamic_index", [0.93, 0.8, 0.6]),
-            ("k_wheel_z_other", [22e3, 25e3, 28e3]),
-            ("c_wheel_z_other", [1300.0, 1500.0, 1700.0]),
-        ],
-    ),
-    entry("sensor_delay", "body", "c", &[("delay", [0.001, 0.003, 0.008])]),
-    entry("sensor_delay", "wheel", "a", &[("delay", [0.001, 0.003, 0.008])]),
-    entry("sensor_gain", "body", "a", &[("gain", [1.04, 1.08, 0.85])]),
-    entry("sensor_gain", "wheel", "c", &[("gain", [1.04, 1.08, 0.85])]),
-    entry(
-        "tire_progressive_stiffness",
-        "tire",
-        "c",
-        &[("tangent_increase_at_twice_static", [0.15, 0.4, 0.9])],
-    ),
-    entry(
-        "tire_progressive_stiffness",
-        "tire",
-        "a",
-        &[("tangent_increase_at_twice_static", [0.15, 0.4, 0.9])],
-    )
-    .form("rolling"),
-    entry(
-        "tire_dynamic_stiffness",
-        "tire",
-        "c",
-        &[
-            ("stiffness_ratio", [1.15, 1.4, 2.0]),
-            ("relaxation_frequency", [6.0, 8.0, 12.0]),
-        ],
-    ),
-    entry(
-        "tire_dynamic_stiffness",
-        "tire",
-        "a",
-        &[
-            ("stiffness_ratio", [1.3, 1.7, 2.3]),
-            ("relaxation_frequency", [10.0, 14.0, 18.0]),
-        ],
-    )
-    .form("rolling"),
-    entry(
-        "tire_belt",
-        "tire",
-        "c",
-        &[
-            ("m_belt", [5.0, 7.0, 9.0]),
-            ("k_sidewall", [1.8e6, 1.1e6, 700e3]),
-            ("c_sidewall", [200.0, 250.0, 300.0]),
-        ],
-    ),
-    entry(
-        "bushing_saturation",
-        "wheel_bushing_x",
-        "c",
-        &[
-            ("linear_travel", [0.003, 0.002, 0.001]),
-            ("rate_increase_at_twice_travel", [0.5, 1.0, 2.0]),
-        ],
-    ),
-    entry("free_play", "damper", "c", &[("gap", [0.0005, 0.0015, 0.004])]),
-    entry("inerter", "damper", "c", &[("inertance", [4.0, 10.0, 25.0])]),
-    entry(
-        "secondary_resonator",
-        "wheel",
-        "c",
-        &[
-            ("m_resonator", [2.0, 4.0, 7.0]),
-            ("k_resonator", [20e3, 50e3, 80e3]),
-            ("c_resonator", [20.0, 40.0, 60.0]),
-        ],
-    ),
-    entry(
-        "series_compliance",
-        "damper",
-        "a",
-        &[("k_series", [900e3, 400e3, 200e3])],
-    ),
-    entry("drag_to_ground", "body", "c", &[("c_drag", [100.0, 250.0, 600.0])]),
-    entry("drag_to_ground", "wheel", "a", &[("c_drag", [100.0, 250.0, 600.0])]),
-    entry(
-        "segmented_polynomial_damper",
-        "damper",
-        "c",
-        &[
-            ("c_rebound", [1500.0, 1700.0, 2000.0]),
-            ("q_rebound", [300.0, 700.0, 1500.0]),
-            ("c_compression", [1200.0, 1100.0, 900.0]),
-            ("q_compression", [400.0, 900.0, 2000.0]),
-        ],
-    ),
-    entry(
-        "bouc_wen_hysteresis",
-        "damper",
-        "c",
-        &[
-            ("f_hysteresis", [30.0, 80.0, 200.0]),
-            ("k_hysteresis", [60e3, 100e3, 200e3]),
-            ("loop_shape", [0.6, 0.7, 0.8]),
-        ],
-    ),
-];
-
-const OUTSIDE: [Entry; 3] = [
-    entry("damper_fade", "damper", "c", &[("share", [0.1, 0.2, 0.4])]),
-    entry("cubic_top_mount", "top_mount", "a", &[("k3", [3e11, 1e12, 4e12])]),
-    entry("sensor_saturation", "body", "c", &[("soft_limit", [20.0, 10.0, 5.0])]),
-];
-
 /// Places of two entries of [`SINGLES`] that are hidden together.
 const PAIRS: [(usize, usize); 8] = [(3, 1), (5, 7), (3, 19), (1, 20), (0, 5), (16, 3), (11, 5), (21, 6)];
 
 /// Levels of the noise of the rig's accelerometers, m/s², taken in turn.
 const NOISE: [f64; 3] = [0.02, 0.01, 0.04];
 
+/// The first seed that draws what the earlier ones take from tables: strengths, pairs, noise and gain errors.
+const DRAWN: u64 = 3;
+
+/// Share of the way from the weakest effect to the strongest: all of it, and from what is usual on.
+const ANY: (f64, f64) = (0.0, 1.0);
+const USUAL: (f64, f64) = (0.5, 1.0);
+
 /// Cases of one seed.
 pub fn cases(seed: u64) -> Vec<Case> {
-    let order = |k: usize, axle: &str, effects: Vec<Hidden>| Order {
-        noise: NOISE[k % NOISE.len()],
-        systematic: if k.is_multiple_of(2) { 0.005 } else { 0.01 },
-        effects,
-        ..Order::clean(axle, seed * 1000 + k as u64)
-    };
-    let mut cases = Vec::new();
-    let mut of_entries = |kind, entries: &[Entry]| {
+    let draw = Draw { seed };
+    let mut cases = draw.of_entries(Kind::Single, &SINGLES);
+    cases.extend(draw.of_entries(Kind::Outside, &OUTSIDE));
+    if draw.is_fresh() {
+        cases.extend(draw.outside_later());
+    }
+    cases.extend(draw.clean());
+    cases.extend(draw.pairs());
+    cases.extend(draw.fast_clean());
+    cases.extend(draw.hardware_clean());
+    cases.extend(draw.hardware_single());
+    cases.extend(draw.minimal());
+    cases.extend(draw.other_laws());
+    cases
+}
+
+/// Makes the cases of a seed.
+struct Draw {
+    seed: u64,
+}
+
+impl Draw {
+    fn is_fresh(&self) -> bool {
+        self.seed >= DRAWN
+    }
+
+    fn random(&self, purpose: &str) -> Random {
+        Random::new(self.seed, purpose)
+    }
+
+    /// An order with the bench of its number: noise and gain errors.
+    fn order(&self, k: usize, axle: &str, effects: Vec<Hidden>) -> Order {
+        let mut random = self.random(&format!("bench {k}"));
+        let (noise, systematic) = if self.is_fresh() {
+            (
+                0.01 * 4_f64.powf(random.uniform(0.0, 1.0)),
+                random.uniform(0.003, 0.012),
+            )
+        } else {
+            (NOISE[k % NOISE.len()], if k.is_multiple_of(2) { 0.005 } else { 0.01 })
+        };
+        Order {
+            noise,
+            systematic,
+            effects,
+            ..Order::clean(axle, self.seed * 1000 + k as u64)
+        }
+    }
+
+    /// An effect by its place in the table, or drawn.
+    fn hidden(&self, entry: &Entry, strength: usize, purpose: &str, strengths: (f64, f64)) -> Hidden {
+        if self.is_fresh() {
+            entry.drawn(strengths, &mut self.random(purpose))
+        } else {
+            entry.hidden(strength)
+        }
+    }
+
+    fn case(&self, kind: Kind, name: &str, order: Order) -> Case {
+        Case {
+            kind,
+            name: format!("{name} seed {}", self.seed),
+            order,
+        }
+    }
+
+    /// Every entry three times.
+    fn of_entries(&self, kind: Kind, entries: &[Entry]) -> Vec<Case> {
+        let mut cases = Vec::new();
         for (k, entry) in entries.iter().enumerate() {
             for strength in 0..3 {
-                let form = if entry.form.is_empty() {
-                    String::new()
-                } else {
-                    format!("/{}", entry.form)
-                };
-                cases.push(Case {
-                    kind,
-                    name: format!("{}@{}{form} {strength} seed {seed}", entry.name, entry.at),
-                    order: order(3 * k + strength + k % 2, entry.axle, vec![entry.hidden(strength)]),
-                });
+                let name = format!("{} {strength}", entry.title());
+                let hidden = self.hidden(entry, strength, &name, ANY);
+                let order = self.order(3 * k + strength + k % 2, entry.axle, vec![hidden]);
+                cases.push(self.case(kind, &name, order));
             }
         }
-    };
-    of_entries(Kind::Single, &SINGLES);
-    of_entries(Kind::Outside, &OUTSIDE);
-    for (k, axle) in ["a", "c", "d", "a", "c", "d", "c", "a", "d", "c"]
-        .into_iter()
-        .enumerate()
-    {
-        cases.push(Case {
-            kind: Kind::Clean,
-            name: format!("clean {axle}{k} seed {seed}"),
-            order: order(200 + k, axle, Vec::new()),
-        });
+        cases
     }
-    for (k, (one, other)) in PAIRS.into_iter().enumerate() {
-        let (one, other) = (&SINGLES[one], &SINGLES[other]);
-        let axle = if one.name == "suspended_mass" || other.at == "powertrain_mount" || one.at == "powertrain_mount" {
-            "a"
-        } else {
-            "c"
+
+    fn outside_later(&self) -> Vec<Case> {
+        let of_number = |(k, entry): (usize, &Entry)| {
+            let name = format!("{} {k}", entry.title());
+            let hidden = self.hidden(entry, 1, &name, ANY);
+            self.case(Kind::Outside, &name, self.order(250 + k, entry.axle, vec![hidden]))
         };
-        cases.push(Case {
-            kind: Kind::Pair,
-            name: format!("{}@{} and {}@{} seed {seed}", one.name, one.at, other.name, other.at),
-            order: order(300 + k, axle, vec![one.hidden(1), other.hidden(1)]),
-        });
+        let twice = OUTSIDE_LATER.iter().chain(&OUTSIDE_LATER);
+        twice.enumerate().map(of_number).collect()
     }
-    cases
+
+    fn clean(&self) -> Vec<Case> {
+        let axles = ["a", "c", "d", "a", "c", "d", "c", "a", "d", "c"];
+        let of_axle = |(k, axle): (usize, &str)| {
+            let order = self.order(200 + k, axle, Vec::new());
+            self.case(Kind::Clean, &format!("clean {axle}{k}"), order)
+        };
+        axles.into_iter().enumerate().map(of_axle).collect()
+    }
+
+    fn pairs(&self) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for (k, pair) in PAIRS.into_iter().enumerate() {
+            let (one, other) = if self.is_fresh() {
+                draw_pair(&mut self.random(&format!("pair {k}")))
+            } else {
+                (&SINGLES[pair.0], &SINGLES[pair.1])
+            };
+            let with_powertrain = |entry: &Entry| entry.name == "suspended_mass" || entry.at == "powertrain_mount";
+            let axle = if with_powertrain(one) || with_powertrain(other) {
+                "a"
+            } else {
+                "c"
+            };
+            let number = if self.is_fresh() {
+                format!(" {k}")
+            } else {
+                String::new()
+            };
+            let name = format!("{}@{} and {}@{}{number}", one.name, one.at, other.name, other.at);
+            let effects = [one, other].map(|entry| self.hidden(entry, 1, &format!("{name}: {}", entry.name), USUAL));
+            cases.push(self.case(Kind::Pair, &name, self.order(300 + k, axle, effects.to_vec())));
+        }
+        cases
+    }
+
+    /// A hundred, of which nothing is told beforehand.
+    fn fast_clean(&self) -> Vec<Case> {
+        let of_number = |k: usize| {
+            let mut random = self.random(&format!("fast clean {k}"));
+            let axle = any(&["a", "c", "d"], &mut random);
+            let order = Order {
+                noise: 0.01 * 4_f64.powf(random.uniform(0.0, 1.0)),
+                systematic: random.uniform(0.003, 0.012),
+                programme: Programme::fast(),
+                ..self.order(400 + k, axle, Vec::new())
+            };
+            self.case(Kind::FastClean, &format!("fast clean {axle}{k}"), order)
+        };
+        (0..100).map(of_number).collect()
+    }
+
+    /// Each flaw alone, and all together in twenty, half of them short.
+    fn hardware_clean(&self) -> Vec<Case> {
+        let of_number = |(k, words, flaws, programme): (usize, String, Vec<Flaw>, Programme)| {
+            let axle = any(&["a", "c", "d"], &mut self.random(&format!("hardware {k}")));
+            let order = Order {
+                flaws,
+                programme,
+                ..self.order(500 + k, axle, Vec::new())
+            };
+            self.case(Kind::HardwareClean, &format!("hardware {axle}{k} {words}"), order)
+        };
+        let alone = Flaw::ALL
+            .into_iter()
+            .map(|flaw| (format!("{flaw:?} alone"), vec![flaw], Programme::full()));
+        let together = (0..20).map(|k| {
+            let (words, programme) = if k < 10 {
+                ("together", Programme::full())
+            } else {
+                ("together fast", Programme::fast())
+            };
+            (words.to_owned(), Flaw::ALL.to_vec(), programme)
+        });
+        let all = alone.chain(together).enumerate();
+        all.map(|(k, (words, flaws, programme))| of_number((k, words, flaws, programme)))
+            .collect()
+    }
+
+    /// Every effect of the car in hardware with all flaws.
+    fn hardware_single(&self) -> Vec<Case> {
+        let of_entry = |(k, entry): (usize, &Entry)| {
+            let name = format!("hardware {}", entry.title());
+            let hidden = self.hidden(entry, 1, &name, USUAL);
+            let order = Order {
+                flaws: Flaw::ALL.to_vec(),
+                ..self.order(600 + k, entry.axle, vec![hidden])
+            };
+            self.case(Kind::HardwareSingle, &name, order)
+        };
+        of_car().into_iter().enumerate().map(of_entry).collect()
+    }
+
+    /// Effects that are drawn, in campaigns that show little.
+    fn minimal(&self) -> Vec<Case> {
+        let of_number = |k: usize| {
+            let mut random = self.random(&format!("minimal {k}"));
+            let (words, programme) = little(k, &mut random);
+            let entry = any(&of_car(), &mut random);
+            let hidden = entry.drawn(USUAL, &mut random);
+            let order = Order {
+                programme,
+                ..self.order(700 + k, entry.axle, vec![hidden])
+            };
+            self.case(Kind::Minimal, &format!("{words}: {} {k}", entry.title()), order)
+        };
+        (0..32).map(of_number).collect()
+    }
+
+    /// Every law of another form twice.
+    fn other_laws(&self) -> Vec<Case> {
+        let mut cases = Vec::new();
+        for (k, (entry, _)) in OTHER_LAWS.iter().enumerate() {
+            for draw in 0..2 {
+                let name = format!("{} {draw}", entry.title());
+                let hidden = self.hidden(entry, 1 + draw, &name, USUAL);
+                let order = self.order(800 + 2 * k + draw, entry.axle, vec![hidden]);
+                cases.push(self.case(Kind::OtherLaw, &name, order));
+            }
+        }
+        cases
+    }
+}
+
+/// The ways in which a campaign may show little, in turn.
+pub const LITTLE: [&str; 4] = ["no body sensor", "one sweep", "cleats alone", "a third of the band"];
+
+fn little(k: usize, random: &mut Random) -> (&'static str, Programme) {
+    let programme = match k % LITTLE.len() {
+        0 => Programme::no_body_sensor(),
+        1 => Programme::one_sweep(any(&[50, 100, 150], random)),
+        2 => Programme::cleats_alone(),
+        _ => {
+            let (from, to) = any(&[(0.5, 10.0), (5.0, 15.0), (10.0, 20.0), (20.0, 30.0)], random);
+            Programme::band(from, to)
+        }
+    };
+    (LITTLE[k % LITTLE.len()], programme)
+}
+
+/// Effects of the car, which no sensor has.
+fn of_car() -> Vec<&'static Entry> {
+    let all = SINGLES.iter();
+    all.filter(|entry| !entry.name.starts_with("sensor_")).collect()
+}
+
+/// One of several, drawn.
+fn any<T: Copy>(of: &[T], random: &mut Random) -> T {
+    of[random.uniform(0.0, of.len() as f64) as usize]
+}
+
+/// Two effects at different places, of which an upright axle can have both.
+fn draw_pair(random: &mut Random) -> (&'static Entry, &'static Entry) {
+    let fits = |entry: &&Entry| entry.axle != "d" && !entry.name.starts_with("sensor_") && entry.name != "top_mount";
+    let all: Vec<&Entry> = SINGLES.iter().filter(fits).collect();
+    let mut any = || all[random.uniform(0.0, all.len() as f64) as usize];
+    loop {
+        let (one, other) = (any(), any());
+        if one.at != other.at {
+            return (one, other);
+        }
+    }
 }

@@ -1,107 +1,196 @@
-//! What was answered to a case of the matrix, and what the answers come to.
-
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
+//! What was answered to a case of the matrix, held against the truth, as a line of a table.
 
 use serde_json::Value;
 
 use crate::hidden::Hidden;
-use crate::matrix::{Case, Kind};
+use crate::matrix::{Case, Kind, family};
 
-/// An answer, held against the truth.
+/// An answer beside the truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outcome {
-    kind: Kind,
-    case: String,
+    pub kind: Kind,
+    /// Name of the case.
+    pub case: String,
     /// What no parameter can imitate, in units of the noise.
-    strength: f64,
-    verdict: String,
-    /// What was named, `effect@place` joined by `+`.
-    named: String,
-    /// Of the hidden effects, how many are among what was found, by name and place; by name alone.
-    right: usize,
-    right_names: usize,
-    hidden: usize,
+    pub strength: f64,
+    /// What is hidden.
+    pub truth: Vec<Place>,
+    /// `none`, `found`, `class`, `unknown`, or `failed` where there was no answer.
+    pub verdict: String,
+    /// Stated by the answer, if it was; so are the others that may be missing.
+    pub probability: Option<f64>,
+    /// What was named.
+    pub named: Vec<Place>,
+    /// What explains as much, where several do.
+    pub alike: Vec<Place>,
     /// Share of the excess of the squared held-out gap that is gone.
-    closed: f64,
-    /// Largest relative error of the parameters of what was found rightly, and how many of them lie within two standard
-    /// errors, of how many.
-    error: f64,
-    covered: (usize, usize),
-    seconds: f64,
+    pub closed: f64,
+    /// Largest relative error of the parameters of what was named rightly.
+    pub error: f64,
+    /// How many of them lie within two standard errors, of how many.
+    pub covered: (usize, usize),
+    /// Place of the law that was learned and the share of the gap that it closes.
+    pub learned: Option<(String, f64)>,
+    /// Where something is missing, the best first.
+    pub places: Vec<String>,
+    /// The best named candidates, each with its probability and what it explains.
+    pub candidates: Vec<String>,
+    /// Sensor, kind of run and what is left there in percent of the signal.
+    pub left: Vec<String>,
+    pub seconds: f64,
 }
 
-/// What stands clear of noise and calibration: below this the data hardly hold the effect.
-const SEPARABLE: f64 = 0.5;
+/// An effect at its place. Of a law in another form than the catalogue's, several names may count: they are in `name` with
+/// bars between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    pub name: String,
+    pub at: String,
+}
+
+/// The columns of the table.
+pub const HEADER: &str = "kind\tcase\tstrength\ttruth\tverdict\tprobability\tnamed\talike\tclosed\terror\tcovered\tof\t\
+                          learned_at\tlearned_closed\tplaces\tcandidates\tleft\tseconds";
+
+impl Place {
+    fn of_hidden(hidden: &Hidden) -> Self {
+        Self {
+            name: family(&hidden.name).to_owned(),
+            at: hidden.at.clone(),
+        }
+    }
+
+    /// Of an object, or of `effect@place`.
+    fn of_json(value: &Value) -> Option<Self> {
+        if let Some(text) = value.as_str() {
+            return Some(Self::parse(text));
+        }
+        let name = value["effect"].as_str().or(value["name"].as_str())?;
+        Some(Self {
+            name: name.to_owned(),
+            at: value["at"].as_str().unwrap_or_default().to_owned(),
+        })
+    }
+
+    fn parse(text: &str) -> Self {
+        let (name, at) = text.split_once('@').unwrap_or((text, ""));
+        Self {
+            name: name.to_owned(),
+            at: at.to_owned(),
+        }
+    }
+
+    /// `effect@place`.
+    pub fn words(&self) -> String {
+        format!("{}@{}", self.name, self.at)
+    }
+
+    /// Whether this is what another one names.
+    pub fn is_named_by(&self, other: &Self) -> bool {
+        self.has_name_of(other) && self.at == other.at
+    }
+
+    /// Whether the names agree, wherever they are placed.
+    pub fn has_name_of(&self, other: &Self) -> bool {
+        self.name.split('|').any(|name| name == other.name)
+    }
+}
 
 impl Outcome {
     /// From the JSON of `qcar discover`.
     pub fn new(case: &Case, answer: &Value, strength: f64) -> Self {
-        let effects = answer["effects"].as_array().cloned().unwrap_or_default();
-        let is = |effect: &Value, hidden: &Hidden| effect["name"] == *hidden.name && effect["at"] == *hidden.at;
-        let verdict = answer["verdict"].as_str().unwrap_or_default().to_owned();
-        let hidden = &case.order.effects;
-        let found = |h: &&Hidden| effects.iter().any(|effect| is(effect, h));
-        let named = |h: &&Hidden| effects.iter().any(|effect| effect["name"] == *h.name);
-        let words = |effect: &Value| Some(format!("{}@{}", effect["name"].as_str()?, effect["at"].as_str()?));
-        let gap = |when: &str| (answer["gap"]["held_out"][when].as_f64().unwrap_or(1.0).powi(2) - 1.0).max(0.0);
+        let findings = list(&answer["findings"]).chain(list(&answer["effects"]));
+        let findings: Vec<&Value> = findings.collect();
+        let is_alike = |finding: &&Value| finding["one_of"] == Value::Bool(true);
+        let places = |values: &[&Value]| values.iter().copied().filter_map(Place::of_json).collect::<Vec<_>>();
+        let (alike, named): (Vec<&Value>, Vec<&Value>) = findings.iter().partition(|finding| is_alike(finding));
         let mut outcome = Self {
-            kind: case.kind,
-            case: case.name.clone(),
-            strength,
-            right: hidden.iter().filter(found).count(),
-            right_names: hidden.iter().filter(named).count(),
-            hidden: hidden.len(),
-            named: effects.iter().filter_map(words).collect::<Vec<_>>().join("+"),
-            verdict,
-            closed: if gap("before") > 0.0 {
-                1.0 - gap("after") / gap("before")
-            } else {
-                0.0
-            },
-            error: 0.0,
-            covered: (0, 0),
+            truth: truth(case),
+            verdict: answer["verdict"].as_str().unwrap_or_default().to_owned(),
+            probability: answer["probability"].as_f64(),
+            named: places(&named),
+            alike: places(&[alike, list(&answer["alike"]).collect()].concat()),
+            closed: closed(answer),
+            learned: learned(&answer["learned"]),
+            places: words(&answer["places"], |place| Some(place["at"].as_str()?.to_owned())),
+            candidates: words(&answer["candidates"], candidate),
+            left: words(&answer["left"], left),
             seconds: answer["seconds"].as_f64().unwrap_or(f64::NAN),
+            ..Self::failed(case, strength)
         };
-        for hidden in hidden {
-            if let Some(effect) = effects.iter().find(|effect| is(effect, hidden)) {
-                outcome.compare(hidden, effect);
+        for hidden in &case.order.effects {
+            let truth = Place::of_hidden(hidden);
+            let found = |finding: &&&Value| Place::of_json(finding).is_some_and(|own| truth.is_named_by(&own));
+            if let Some(finding) = findings.iter().find(found) {
+                outcome.compare(hidden, finding);
             }
         }
         outcome
     }
 
-    fn compare(&mut self, hidden: &Hidden, effect: &Value) {
+    /// Where there was no answer.
+    pub fn failed(case: &Case, strength: f64) -> Self {
+        Self {
+            kind: case.kind,
+            case: case.name.clone(),
+            strength,
+            truth: truth(case),
+            verdict: "failed".to_owned(),
+            probability: None,
+            named: Vec::new(),
+            alike: Vec::new(),
+            closed: 0.0,
+            error: 0.0,
+            covered: (0, 0),
+            learned: None,
+            places: Vec::new(),
+            candidates: Vec::new(),
+            left: Vec::new(),
+            seconds: f64::NAN,
+        }
+    }
+
+    fn compare(&mut self, hidden: &Hidden, finding: &Value) {
         for (name, truth) in &hidden.parameters {
-            let Some(value) = effect["parameters"][name].as_f64() else {
+            let Some(value) = finding["parameters"][name].as_f64() else {
                 continue;
             };
             self.error = self.error.max((value / truth - 1.0).abs());
-            if let Some(error) = effect["stderr"][name].as_f64() {
+            if let Some(error) = finding["stderr"][name].as_f64() {
                 self.covered.0 += usize::from((value - truth).abs() <= 2.0 * error);
                 self.covered.1 += 1;
             }
         }
     }
 
-    /// As a line of a file.
+    /// As a line of the table.
     pub fn line(&self) -> String {
-        format!(
-            "{:?}\t{}\t{:.3}\t{}\t{}\t{}\t{}\t{}\t{:.4}\t{:.4}\t{}\t{}\t{:.1}",
-            self.kind,
-            self.case,
-            self.strength,
-            self.verdict,
-            self.named,
-            self.right,
-            self.right_names,
-            self.hidden,
-            self.closed,
-            self.error,
-            self.covered.0,
-            self.covered.1,
-            self.seconds
-        )
+        let join = |places: &[Place]| places.iter().map(Place::words).collect::<Vec<_>>().join("+");
+        let (learned_at, learned_closed) = match &self.learned {
+            Some((at, closed)) => (at.as_str(), format!("{closed:.4}")),
+            None => ("", String::new()),
+        };
+        [
+            format!("{:?}", self.kind),
+            self.case.clone(),
+            format!("{:.3}", self.strength),
+            join(&self.truth),
+            self.verdict.clone(),
+            self.probability.map_or(String::new(), |p| format!("{p:.4}")),
+            join(&self.named),
+            join(&self.alike),
+            format!("{:.4}", self.closed),
+            format!("{:.4}", self.error),
+            self.covered.0.to_string(),
+            self.covered.1.to_string(),
+            learned_at.to_owned(),
+            learned_closed,
+            self.places.join("+"),
+            self.candidates.join("+"),
+            self.left.join("+"),
+            format!("{:.1}", self.seconds),
+        ]
+        .join("\t")
     }
 
     /// Reads such a line.
@@ -110,197 +199,100 @@ impl Outcome {
     /// A line that is none.
     pub fn parse(line: &str) -> Result<Self, String> {
         let cells: Vec<&str> = line.split('\t').collect();
-        let [
-            kind,
-            case,
-            strength,
-            verdict,
-            named,
-            right,
-            names,
-            hidden,
-            closed,
-            error,
-            covered,
-            of,
-            seconds,
-        ] = cells[..]
-        else {
-            return Err(format!("{line}: 13 columns expected"));
+        let expected = HEADER.split('\t').count();
+        if cells.len() != expected {
+            return Err(format!("{} columns where {expected} are expected: {line}", cells.len()));
+        }
+        let cell = |name: &str| {
+            let place = HEADER.split('\t').position(|column| column == name);
+            cells[place.expect("a column of the table")]
         };
-        let number = |text: &str| text.parse::<f64>().map_err(|e| format!("{line}: {text}: {e}"));
-        let count = |text: &str| text.parse::<usize>().map_err(|e| format!("{line}: {text}: {e}"));
+        let number = |name: &str| {
+            let cell = cell(name);
+            cell.parse()
+                .map_err(|_| format!("{name} is {cell}, a number is expected: {line}"))
+        };
+        let count = |name: &str| number(name).map(|value: f64| value as usize);
+        let optional = |name: &str| {
+            Some(cell(name))
+                .filter(|cell| !cell.is_empty())
+                .map(|_| number(name))
+                .transpose()
+        };
+        let parts = |name: &str| {
+            let parts = cell(name).split('+').filter(|part| !part.is_empty());
+            parts.map(str::to_owned).collect::<Vec<_>>()
+        };
+        let places = |name: &str| parts(name).iter().map(|part| Place::parse(part)).collect::<Vec<_>>();
+        let kind = cell("kind");
         Ok(Self {
-            kind: match kind {
-                "Single" => Kind::Single,
-                "Clean" => Kind::Clean,
-                "Outside" => Kind::Outside,
-                "Pair" => Kind::Pair,
-                _ => return Err(format!("{line}: what is {kind}?")),
-            },
-            case: case.into(),
-            strength: number(strength)?,
-            verdict: verdict.into(),
-            named: named.into(),
-            right: count(right)?,
-            right_names: count(names)?,
-            hidden: count(hidden)?,
-            closed: number(closed)?,
-            error: number(error)?,
-            covered: (count(covered)?, count(of)?),
-            seconds: number(seconds)?,
+            kind: Kind::named(kind).ok_or(format!("there is no kind {kind}: {line}"))?,
+            case: cell("case").to_owned(),
+            strength: number("strength")?,
+            truth: places("truth"),
+            verdict: cell("verdict").to_owned(),
+            probability: optional("probability")?,
+            named: places("named"),
+            alike: places("alike"),
+            closed: number("closed")?,
+            error: number("error")?,
+            covered: (count("covered")?, count("of")?),
+            learned: optional("learned_closed")?.map(|closed| (cell("learned_at").to_owned(), closed)),
+            places: parts("places"),
+            candidates: parts("candidates"),
+            left: parts("left"),
+            seconds: number("seconds")?,
         })
     }
+}
 
-    fn is_found(&self) -> bool {
-        self.verdict == "found"
+fn list(value: &Value) -> impl Iterator<Item = &Value> {
+    value.as_array().into_iter().flatten()
+}
+
+fn words(value: &Value, word: impl Fn(&Value) -> Option<String>) -> Vec<String> {
+    list(value).filter_map(word).collect()
+}
+
+fn truth(case: &Case) -> Vec<Place> {
+    case.order.effects.iter().map(Place::of_hidden).collect()
+}
+
+/// What the answer says that it explains, or else what follows from the gaps that it quotes.
+fn closed(answer: &Value) -> f64 {
+    if let Some(explained) = answer["explained"].as_f64() {
+        return explained;
     }
-
-    fn separable(&self) -> bool {
-        self.strength >= SEPARABLE
-    }
-
-    /// Named and placed, and nothing beside.
-    fn is_right(&self) -> bool {
-        self.is_found() && self.right == self.hidden && self.named.split('+').count() == self.hidden
+    let gap = |when: &str| (answer["gap"]["held_out"][when].as_f64().unwrap_or(1.0).powi(2) - 1.0).max(0.0);
+    if gap("before") > 0.0 {
+        1.0 - gap("after") / gap("before")
+    } else {
+        0.0
     }
 }
 
-/// The tables in Markdown: totals, effect by effect, and every miss.
-pub fn table(outcomes: &[Outcome]) -> String {
-    let of = |kind: Kind| outcomes.iter().filter(move |o| o.kind == kind);
-    let mut text = String::from("| what | cases | result |\n|---|---|---|\n");
-    let mut row = |what: &str, cases: usize, result: String| {
-        let _ = writeln!(text, "| {what} | {cases} | {result} |");
+fn learned(value: &Value) -> Option<(String, f64)> {
+    Some((value["at"].as_str()?.to_owned(), value["explained"].as_f64()?))
+}
+
+/// `effect@place:probability:explained`.
+fn candidate(value: &Value) -> Option<String> {
+    let place = Place::of_json(value)?;
+    let share = |name: &str| {
+        value[name]
+            .as_f64()
+            .map_or(String::new(), |share| format!("{share:.3}"))
     };
-    let singles: Vec<&Outcome> = of(Kind::Single).filter(|o| o.separable()).collect();
-    let count = |wanted: &dyn Fn(&Outcome) -> bool| singles.iter().filter(|o| wanted(o)).count();
-    row(
-        "separable single effects named and placed",
-        singles.len(),
-        share(count(&Outcome::is_right), singles.len()),
-    );
-    row(
-        "the same, by name alone",
-        singles.len(),
-        share(count(&|o| o.is_found() && o.right_names == 1), singles.len()),
-    );
-    row(
-        "the same, answered by a class with it",
-        singles.len(),
-        share(count(&|o| o.verdict == "class" && o.right == 1), singles.len()),
-    );
-    row(
-        "the same, given a wrong effect",
-        singles.len(),
-        share(count(&|o| o.is_found() && o.right == 0), singles.len()),
-    );
-    let weak: Vec<&Outcome> = of(Kind::Single).filter(|o| !o.separable()).collect();
-    let wrong = weak.iter().filter(|o| o.is_found() && o.right == 0).count();
-    row(
-        "weaker single effects given a wrong effect",
-        weak.len(),
-        share(wrong, weak.len()),
-    );
-    for (kind, what, wanted) in [
-        (
-            Kind::Clean,
-            "clean campaigns given an effect",
-            (|o| o.is_found() || o.verdict == "class") as fn(&Outcome) -> bool,
-        ),
-        (
-            Kind::Outside,
-            "effects outside the catalogue called unknown, or none",
-            |o| o.verdict == "unknown" || o.verdict == "none",
-        ),
-        (Kind::Outside, "the same, given a single name", Outcome::is_found),
-        (
-            Kind::Pair,
-            "pairs with both effects named and placed",
-            Outcome::is_right,
-        ),
-    ] {
-        row(
-            what,
-            of(kind).count(),
-            share(of(kind).filter(|o| wanted(o)).count(), of(kind).count()),
-        );
-    }
-    let right: Vec<&Outcome> = outcomes.iter().filter(|o| o.hidden > 0 && o.is_right()).collect();
-    row(
-        "share of the excess held-out gap closed, median of what was found",
-        right.len(),
-        format!("{:.3}", median(right.iter().map(|o| o.closed))),
-    );
-    row(
-        "largest relative error of a parameter, median of what was found",
-        right.len(),
-        format!("{:.3}", median(right.iter().map(|o| o.error))),
-    );
-    let (covered, all) = right
-        .iter()
-        .fold((0, 0), |(a, b), o| (a + o.covered.0, b + o.covered.1));
-    row("parameters within two standard errors", all, share(covered, all));
-    let seconds = outcomes.iter().map(|o| o.seconds);
-    row(
-        "seconds, median and longest",
-        outcomes.len(),
-        format!("{:.0}, {:.0}", median(seconds.clone()), seconds.fold(0.0, f64::max)),
-    );
-    text + &by_effect(outcomes) + &misses(outcomes)
+    Some(format!(
+        "{}:{}:{}",
+        place.words(),
+        share("probability"),
+        share("explained")
+    ))
 }
 
-fn by_effect(outcomes: &[Outcome]) -> String {
-    let mut rows: BTreeMap<&str, Vec<&Outcome>> = BTreeMap::new();
-    for outcome in outcomes.iter().filter(|o| o.kind == Kind::Single) {
-        rows.entry(outcome.case.split(' ').next().unwrap_or_default())
-            .or_default()
-            .push(outcome);
-    }
-    let mut text =
-        String::from("\n| effect | cases | separable | of these right | strengths |\n|---|---|---|---|---|\n");
-    for (effect, outcomes) in rows {
-        let separable: Vec<&&Outcome> = outcomes.iter().filter(|o| o.separable()).collect();
-        let right = separable.iter().filter(|o| o.is_right()).count();
-        let strengths: Vec<String> = outcomes.iter().map(|o| format!("{:.2}", o.strength)).collect();
-        let _ = writeln!(
-            text,
-            "| {effect} | {} | {} | {right} | {} |",
-            outcomes.len(),
-            separable.len(),
-            strengths.join(", ")
-        );
-    }
-    text
-}
-
-fn misses(outcomes: &[Outcome]) -> String {
-    let mut text = String::from("\n| missed | strength | verdict | named | gap closed |\n|---|---|---|---|---|\n");
-    let is_miss = |o: &&Outcome| match o.kind {
-        Kind::Single => o.separable() && !o.is_right(),
-        Kind::Pair => !o.is_right(),
-        Kind::Clean => o.verdict != "none",
-        Kind::Outside => o.is_found() || o.verdict == "class",
-    };
-    for o in outcomes.iter().filter(is_miss) {
-        let _ = writeln!(
-            text,
-            "| {} | {:.2} | {} | {} | {:.2} |",
-            o.case, o.strength, o.verdict, o.named, o.closed
-        );
-    }
-    text
-}
-
-fn share(part: usize, of: usize) -> String {
-    if of == 0 {
-        return "-".into();
-    }
-    format!("{part} ({:.0} %)", 100.0 * part as f64 / of as f64)
-}
-
-fn median(values: impl Iterator<Item = f64>) -> f64 {
-    let mut values: Vec<f64> = values.collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+/// `sensor/kind:percent`.
+fn left(value: &Value) -> Option<String> {
+    let (sensor, kind) = (value["sensor"].as_str()?, value["kind"].as_str()?);
+    Some(format!("{sensor}/{kind}:{:.2}", value["percent"].as_f64()?))
 }

@@ -2,8 +2,10 @@
 
 use std::f64::consts::TAU;
 
-use crate::corner::{BODY, COORDINATES, Corner, PITCH, PWT, Push, SF, STATES, State, WHEEL};
+use crate::corner::{BODY, COORDINATES, Corner, FLEX, PITCH, PWT, Push, SF, STATES, State, WHEEL};
+use crate::hardware::Pad;
 use crate::integrate::step;
+use crate::programme::SweepRun;
 
 /// Samples a second of a record.
 pub const RATE: f64 = 1000.0;
@@ -15,7 +17,6 @@ const RUN_IN: f64 = 0.5;
 const TAPER: f64 = 0.5;
 
 /// A logarithmic sweep.
-#[derive(Clone, Copy)]
 pub struct Sweep {
     /// m/s
     pub peak_velocity: f64,
@@ -25,6 +26,8 @@ pub struct Sweep {
     pub to: f64,
     /// s
     pub seconds: f64,
+    /// What drives the pad, where it is not ideal.
+    pub pad: Option<Pad>,
 }
 
 /// Accelerations of the pad and of what carries sensors, m/s², one value a sample.
@@ -39,13 +42,14 @@ pub struct Motion {
 }
 
 impl Sweep {
-    /// The sweep at a level, mm/s.
-    pub fn of_level(level: u32) -> Self {
+    /// A sweep of a programme on a pad.
+    pub fn new(run: &SweepRun, pad: Option<Pad>) -> Self {
         Self {
-            peak_velocity: f64::from(level) / 1000.0,
-            from: 0.5,
-            to: 30.0,
-            seconds: 42.25,
+            peak_velocity: f64::from(run.level) / 1000.0,
+            from: run.from,
+            to: run.to,
+            seconds: run.seconds,
+            pad,
         }
     }
 
@@ -59,7 +63,9 @@ impl Sweep {
         let omega = TAU * self.from * (growth * t).exp();
         let edge = (t.min(self.seconds - t) / TAPER).min(1.0);
         let window = 0.5 - 0.5 * (std::f64::consts::PI * edge).cos();
-        window * self.peak_velocity / omega * ((omega - TAU * self.from) / growth).sin()
+        let phase = (omega - TAU * self.from) / growth;
+        let wave = self.pad.map_or_else(|| phase.sin(), |pad| real(pad, omega, phase));
+        window * self.peak_velocity / omega * wave
     }
 
     /// Height, velocity and acceleration of the pad by differences.
@@ -77,6 +83,16 @@ impl Sweep {
     pub fn samples(&self) -> usize {
         ((self.seconds + 2.0 * RUN_IN) * RATE) as usize + 1
     }
+}
+
+/// What an actuator makes of a unit sine of slowly growing frequency. The harmonics are shares of acceleration.
+fn real(pad: Pad, omega: f64, phase: f64) -> f64 {
+    let (gain, lag) = pad.response(omega);
+    let harmonic = |(n, (share, offset)): (i32, (f64, f64))| {
+        share / f64::from(n * n) * (f64::from(n) * (phase + lag) + offset).sin()
+    };
+    let harmonics: f64 = (2..).zip(pad.harmonics).map(harmonic).sum();
+    gain * ((phase + lag).sin() + harmonics)
 }
 
 /// Runs a corner over a sweep.
@@ -108,7 +124,7 @@ pub fn run(corner: &Corner, sweep: &Sweep) -> Motion {
         let a = |coordinate: usize| dy[COORDINATES + coordinate];
         motion.pad.push(sweep.pad(t)[2]);
         motion.wheel.push(a(WHEEL));
-        motion.body.push(a(BODY));
+        motion.body.push(a(BODY) - corner.sensor_beside_bend() * a(FLEX));
         motion.sf_front.push(a(SF) + half * a(PITCH));
         motion.sf_rear.push(a(SF) - half * a(PITCH));
         motion.pwt.push(a(PWT));

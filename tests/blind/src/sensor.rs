@@ -1,37 +1,67 @@
-//! What an accelerometer makes of a motion: gain error, delay, noise and quantisation.
+//! What an accelerometer makes of a motion: gain error, delay, noise and quantisation, and the flaws of hardware.
 
+use std::f64::consts::TAU;
+
+use crate::calibration::Curve;
+use crate::hardware::Hardware;
 use crate::hidden::Hidden;
 use crate::random::Random;
 
+/// Frequency of the mains, Hz.
+const MAINS: f64 = 50.0;
+/// Time in which a zero wanders by what [`Hardware::drift`] says, s.
+const WANDERING: f64 = 30.0;
+
 /// One accelerometer.
 pub struct Sensor {
+    name: String,
     gain: f64,
     delay: f64,
     noise: f64,
     step: f64,
     /// Outside the catalogue: where an amplifier begins to saturate, m/s².
     soft_limit: f64,
+    curve: Option<Curve>,
+    /// m/s² in [`WANDERING`].
+    drift: f64,
+    /// m/s².
+    hum: f64,
 }
 
 impl Sensor {
     /// A sensor with a gain error of its own (`systematic` is its standard deviation) and what is hidden in it.
-    pub fn new(name: &str, location: &str, systematic: f64, noise: f64, hidden: &[Hidden], seed: u64) -> Self {
+    pub fn new(
+        name: &str,
+        location: &str,
+        (systematic, noise): (f64, f64),
+        hidden: &[Hidden],
+        hardware: &Hardware,
+        seed: u64,
+    ) -> Self {
         let mut random = Random::new(seed, &format!("gain of {name}"));
         let of = |effect: &str, parameter: &str| {
             let at = hidden.iter().find(|h| h.name == effect && h.at == location);
             at.map(|h| h.get(parameter))
         };
         Self {
+            name: name.to_owned(),
             gain: (1.0 + systematic * random.normal()) * of("sensor_gain", "gain").unwrap_or(1.0),
             delay: of("sensor_delay", "delay").unwrap_or(0.0),
             noise,
             step: noise / 6.0,
             soft_limit: of("sensor_saturation", "soft_limit").unwrap_or(f64::INFINITY),
+            curve: hardware
+                .calibration(name)
+                .map(|(size, random)| Curve::draw(size, random)),
+            drift: noise * hardware.drift(name),
+            hum: noise * hardware.hum(name),
         }
     }
 
-    /// The record of a motion sampled at `rate` Hz.
-    pub fn record(&self, motion: &[f64], rate: f64, random: &mut Random) -> Vec<f64> {
+    /// The record of a motion sampled at `rate` Hz, by the seed of the campaign and the name of the run.
+    pub fn record(&self, motion: &[f64], rate: f64, seed: u64, run: u32) -> Vec<f64> {
+        let stream = |what: &str| Random::new(seed, &format!("{what} {} in {run}", self.name));
+        let mut random = stream("noise of");
         let late = self.delay * rate;
         let at = |i: usize| {
             let place = (i as f64 - late).max(0.0);
@@ -39,12 +69,29 @@ impl Sensor {
             let after = (before + 1).min(motion.len() - 1);
             motion[before] + (motion[after] - motion[before]) * place.fract()
         };
+        let seen: Vec<f64> = (0..motion.len())
+            .map(|i| at(i) / (1.0 + (at(i) / self.soft_limit).powi(2)).sqrt())
+            .collect();
+        let seen = match &self.curve {
+            Some(curve) => curve.pass(&seen, rate),
+            None => seen,
+        };
+        let mut beside = self.beside(rate, stream("zero and hum of"));
         let quantise = |value: f64| (value / self.step).round() * self.step;
         (0..motion.len())
-            .map(|i| {
-                let a = at(i) / (1.0 + (at(i) / self.soft_limit).powi(2)).sqrt();
-                quantise(self.gain * a + self.noise * random.normal())
-            })
+            .map(|i| quantise(self.gain * seen[i] + beside(i) + self.noise * random.normal()))
             .collect()
+    }
+
+    /// The wandering zero, a random walk, and the hum with a third of a third harmonic, m/s², sample by sample.
+    fn beside(&self, rate: f64, mut random: Random) -> impl FnMut(usize) -> f64 {
+        let (drift, hum) = (self.drift, self.hum);
+        let phases = [(); 2].map(|()| random.uniform(0.0, TAU));
+        let mut zero = drift * random.normal();
+        move |i| {
+            let angle = TAU * MAINS * i as f64 / rate;
+            zero += drift * random.normal() / (WANDERING * rate).sqrt();
+            zero + hum * ((angle + phases[0]).sin() + (3.0 * angle + phases[1]).sin() / 3.0)
+        }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::axle::Axle;
 use crate::campaign::{self, Plan};
-use crate::cleat::{self, Road};
+use crate::cleat;
 use crate::corner::Corner;
 use crate::hidden::Laws;
 use crate::rig::{self, Sweep};
@@ -16,6 +16,9 @@ const CHANGE: f64 = 0.01;
 /// RMS over the fitted runs of what is hidden, in units of the sensors' noise, less the best combination of what
 /// changes of the parameters and of the sensors' gains would do.
 pub fn strength(plan: &Plan, real: &Axle, known: &Axle) -> f64 {
+    if plan.effects.is_empty() {
+        return 0.0;
+    }
     let nothing = Laws::default();
     let truth = signals(plan, real, &Laws::of(&plan.effects));
     let base = signals(plan, known, &nothing);
@@ -43,23 +46,24 @@ pub fn strength(plan: &Plan, real: &Axle, known: &Axle) -> f64 {
 /// What the sensors of the fitted runs would show, in units of their noise.
 fn signals(plan: &Plan, axle: &Axle, laws: &Laws) -> Vec<Vec<f64>> {
     let corner = Corner { axle, laws };
+    let programme = &plan.programme;
     let mut all: [Vec<f64>; 4] = Default::default();
-    for (level, role) in campaign::LEVELS {
-        if role == "fit" {
-            let motion = rig::run(&corner, &Sweep::of_level(level));
-            all[0].extend(seen(&motion.wheel, plan.noise));
-            all[1].extend(seen(&motion.body, plan.noise));
-        }
+    for run in programme.sweeps.iter().filter(|run| run.role == "fit") {
+        let motion = rig::run(&corner, &Sweep::new(run, None));
+        all[0].extend(seen(&motion.wheel, plan.noise));
+        all[1].extend(seen(&motion.body, plan.noise));
     }
-    if plan.cleats {
-        for (height, _, speed, _) in campaign::cleat_runs().filter(|run| run.3 == "fit") {
-            let track = cleat::run(&corner, &Road::cleat(f64::from(height) / 1000.0), speed / 3.6, 1.5);
-            let noise = campaign::TRACK_NOISE;
-            all[0].extend(seen(&track.wheel_z, noise));
-            all[1].extend(seen(&track.body_z, noise));
-            all[2].extend(seen(&track.wheel_x, noise));
-            all[3].extend(seen(&track.body_x, noise));
-        }
+    for run in programme.cleats.iter().filter(|run| run.role == "fit") {
+        let track = cleat::run(&corner, run, 0.0);
+        let noise = campaign::TRACK_NOISE;
+        all[0].extend(seen(&track.wheel_z, noise));
+        all[1].extend(seen(&track.body_z, noise));
+        all[2].extend(seen(&track.wheel_x, noise));
+        all[3].extend(seen(&track.body_x, noise));
+    }
+    if !programme.body_sensor {
+        all[1].clear();
+        all[3].clear();
     }
     all.to_vec()
 }

@@ -157,6 +157,8 @@ impl Window {
             sensor,
             kind: Kind::Passage,
             sigma: sigma.collect(),
+            noise: vec![floor; value.len()],
+            least_discrepancy: SHARE,
             value: value.iter().copied().map(Complex::from).collect(),
             at,
         })

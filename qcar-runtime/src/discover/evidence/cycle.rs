@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::travel::{FLOOR, sensor};
-use super::{Evidence, Kind, Run, Series, Stimulus};
+use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus};
 use crate::campaign::{Axis, Campaign, DynamicCurve};
 use crate::error::InputError;
 use crate::model::About;
@@ -78,6 +78,8 @@ fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, V
         at: vec![frequency],
         value: vec![force.harmonic[order - 1] * turn.powi(order as i32) / reach],
         sigma: vec![noise.hypot(FLOOR * most) / reach],
+        noise: vec![noise.hypot(LEAST_NOISE * most) / reach],
+        least_discrepancy: FLOOR,
     };
     Some((reach, (1..=ORDERS).map(series).collect()))
 }

@@ -5,8 +5,11 @@
 //! such a mass is put back to where its sensor saw it at the beginning of each of [`WINDOWS`] windows, and within a
 //! window the model is on its own (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world congress, 1984).
 
+use std::f64::consts::TAU;
+
 use crate::campaign::{Quantity, Role};
-use crate::model::{About, Matrix, StateKind};
+use crate::model::{About, Matrix, State, StateKind};
+use crate::spectrum::{Trend, transform};
 use crate::transmissibility::Point;
 
 /// What sensors saw at one sample of a record.
@@ -16,6 +19,98 @@ pub struct Restart {
     pub sample: usize,
     /// Sensors of position and velocity with their values, SI.
     pub seen: Vec<(Point, f64)>,
+}
+
+/// How far a model may be, when a record begins, from where sensors saw it or, where none did, from rest: standard
+/// deviations, SI.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Spread {
+    /// Of what a sensor of position or velocity saw.
+    pub seen: Vec<(Point, f64)>,
+    /// Of other positions, velocities and forces, as far as the record tells how large they become; zero where it does not.
+    pub unseen: [f64; 3],
+}
+
+/// The offset of a sensor that tells where a record begins, over the RMS value of what it reads.
+const OFFSET: f64 = 0.1;
+/// How much farther than its record shows a motion may begin: next to nothing is known before.
+const WIDE: f64 = 3.0;
+
+impl Spread {
+    /// Of a record with these responses, the noise of each, and these inputs.
+    pub(super) fn of(recorded: &[(Point, Vec<f64>)], noise: &[f64], inputs: &[(Point, Vec<f64>)], rate: f64) -> Self {
+        let shows = |point: &Point| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
+        let seen = recorded.iter().zip(noise).filter(|((point, _), _)| shows(point));
+        let seen = seen.map(|((point, y), noise)| {
+            let power = y.iter().map(|y| y * y).sum::<f64>() / y.len() as f64;
+            (point.clone(), noise.hypot(OFFSET * power.sqrt()))
+        });
+        let mut unseen = [0.0_f64; 3];
+        for (point, y) in recorded.iter().chain(inputs) {
+            let (far, omega) = (excursion(y), TAU * middle(y, rate));
+            let of_signal = match point.quantity {
+                Quantity::Displacement => [far, far * omega, 0.0],
+                Quantity::Velocity => [far / omega, far, 0.0],
+                Quantity::Acceleration => [far / (omega * omega), far / omega, 0.0],
+                Quantity::Force => [0.0, 0.0, far],
+            };
+            for (unseen, own) in unseen.iter_mut().zip(of_signal) {
+                *unseen = unseen.max(WIDE * own);
+            }
+        }
+        Self {
+            seen: seen.collect(),
+            unseen,
+        }
+    }
+
+    /// Of a state of the model; `None` where nothing is known of its size. Angles are taken on a lever of a metre.
+    pub fn sigma(&self, state: &State) -> Option<f64> {
+        let seen = self
+            .seen
+            .iter()
+            .find(|(point, _)| is_seen(state, point))
+            .map(|(_, sigma)| *sigma);
+        let [position, velocity, force] = self.unseen;
+        let unseen = match &*state.unit {
+            "m" | "rad" | "1" if state.kind != StateKind::Inner => position,
+            "m" => position,
+            "m/s" | "rad/s" | "1/s" => velocity,
+            "N" => force,
+            _ => 0.0,
+        };
+        seen.or(Some(unseen)).filter(|sigma| *sigma > 0.0)
+    }
+}
+
+/// True where a sensor shows a state itself.
+pub fn is_seen(state: &State, point: &Point) -> bool {
+    let kind = match point.quantity {
+        Quantity::Displacement => StateKind::Position,
+        Quantity::Velocity => StateKind::Velocity,
+        Quantity::Acceleration | Quantity::Force => return false,
+    };
+    state.kind == kind && state.location == point.location && state.axis == point.axis.name()
+}
+
+/// The farthest from the mean.
+fn excursion(y: &[f64]) -> f64 {
+    let mean = y.iter().sum::<f64>() / y.len() as f64;
+    y.iter().map(|y| (y - mean).abs()).fold(0.0, f64::max)
+}
+
+/// The frequency (Hz) below which half of a signal's power is, noise and trend aside; at least a line of the spectrum.
+fn middle(y: &[f64], rate: f64) -> f64 {
+    let mut about = y.to_vec();
+    Trend::Linear.remove(&mut about);
+    let power: Vec<f64> = transform(&about).iter().map(|line| line.norm_sqr()).collect();
+    let half = power.iter().sum::<f64>() / 2.0;
+    let mut sum = 0.0;
+    let line = power.iter().position(|power| {
+        sum += power;
+        sum >= half
+    });
+    line.unwrap_or(0).max(1) as f64 * rate / y.len() as f64
 }
 
 /// Windows of a record.
@@ -30,7 +125,7 @@ pub(super) fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)
         sample: 0,
         seen: seen.collect(),
     };
-    let drifting = |(point, _): &&(Point, Vec<f64>)| role == Role::HeldOut && drifts(about, point);
+    let drifting = |(point, _): &&(Point, Vec<f64>)| role == Role::HeldOut && shows_drift(about, point);
     let drifting: Vec<_> = responses.iter().filter(drifting).collect();
     let length = drifting.first().map_or(0, |(_, y)| y.len());
     let window = length.div_ceil(WINDOWS);
@@ -45,16 +140,16 @@ pub(super) fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)
     std::iter::once(start).chain(again).collect()
 }
 
+/// True of the sensor that shows where a mass is that no link holds.
+fn shows_drift(about: &About, point: &Point) -> bool {
+    let state = about.states.iter().position(|state| is_seen(state, point));
+    state.is_some_and(|state| drifts(about, state))
+}
+
 /// True of the position of a mass on which nothing depends: no link holds it.
-fn drifts(about: &About, point: &Point) -> bool {
-    let here = |state: &crate::model::State| {
-        state.kind == StateKind::Position && state.location == point.location && state.axis == point.axis.name()
-    };
-    let Some(state) = about.states.iter().position(here) else {
-        return false;
-    };
+pub(super) fn drifts(about: &About, state: usize) -> bool {
     let matters = |entry: &crate::model::Entry| entry.matrix == Matrix::A && usize::from(entry.column) == state;
-    point.quantity == Quantity::Displacement && !about.matrices.iter().any(matters)
+    about.states[state].kind == StateKind::Position && !about.matrices.iter().any(matters)
 }
 
 /// Position and velocity there; this is the slope of the straight line through the samples around.

@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use super::{Evidence, Kind, Run, Series, Stimulus, is_pad};
+use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus, is_pad};
 use crate::campaign::{Campaign, Sweep};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
@@ -153,6 +153,12 @@ fn series(run: usize, sensor: &Point, order: usize, (at, lines): (Vec<f64>, Vec<
         run,
         sensor: sensor.clone(),
         kind: Kind::Harmonic(order),
+        noise: noise
+            .iter()
+            .zip(&value)
+            .map(|(noise, value)| noise.sqrt().hypot(LEAST_NOISE * value.norm()).max(f64::MIN_POSITIVE))
+            .collect(),
+        least_discrepancy: FLOOR,
         sigma: noise
             .iter()
             .zip(&value)

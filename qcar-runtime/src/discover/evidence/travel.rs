@@ -8,7 +8,7 @@
 
 use nalgebra::Complex;
 
-use super::{Evidence, Kind, Run, Series, Stimulus};
+use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus};
 use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::InputError;
 use crate::kc::{SineSamples, sines};
@@ -147,20 +147,18 @@ impl Loop {
     fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
         let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
         let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());
-        let ways = self.ways.iter();
-        let (value, sigma) = ways
-            .map(|[there, back]| {
-                let value = (there.0 + sign * back.0) / 2.0;
-                (Complex::from(value), (there.1.hypot(back.1) / 2.0).hypot(floor))
-            })
-            .unzip();
+        let least = (LEAST_NOISE * self.most).hypot(common * (self.at.len() as f64).sqrt());
+        let value = |[there, back]: &[(f64, f64); 2]| Complex::from((there.0 + sign * back.0) / 2.0);
+        let noise = |[there, back]: &[(f64, f64); 2]| there.1.hypot(back.1) / 2.0;
         Series {
             run,
             sensor: sensor(axis),
             kind,
             at: self.at.clone(),
-            value,
-            sigma,
+            value: self.ways.iter().map(value).collect(),
+            sigma: self.ways.iter().map(|ways| noise(ways).hypot(floor)).collect(),
+            noise: self.ways.iter().map(|ways| noise(ways).hypot(least)).collect(),
+            least_discrepancy: FLOOR,
         }
     }
 }

@@ -151,6 +151,7 @@ impl Seen<'_> {
                 shares: shares.clone(),
             }),
             louder: None,
+            begun: Vec::new(),
         };
         self.places.iter().enumerate().map(predict).collect()
     }

@@ -4,11 +4,10 @@ use nalgebra::Complex;
 use rayon::prelude::*;
 
 use super::input::{Between, Recorded};
-use super::replay::{Reading, Replay, reading};
-use super::{Delay, Free, PredictError, Prediction};
-use crate::campaign::Quantity;
-use crate::discover::evidence::{Evidence, Stimulus, excitation_of, order_of, signal_of};
-use crate::model::{About, Model, StateKind};
+use super::replay::{Reading, Replay, Replayed, reading};
+use super::{Delay, Free, Misread, PredictError, Prediction};
+use crate::discover::evidence::{Evidence, Spread, Stimulus, excitation_of, is_seen, order_of, signal_of};
+use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
 use crate::transmissibility::Point;
@@ -17,16 +16,23 @@ use crate::transmissibility::Point;
 /// what rounding leaves of a replay.
 const DIFFERENCE: f64 = 1e-5;
 const PART_OF_RANGE: f64 = 1e-3;
+/// The same of a state at the beginning of a record, relative to how far it may be from where it was seen.
+const OF_SPREAD: f64 = 1e-4;
 
+/// What the sensors of a run show, differentiated along `free` and, where `begun`, along the states at its beginning.
 pub(super) fn history(
     model: &dyn Model,
     values: &Values,
-    late: &[f64],
-    free: &[Free],
+    misread: &Misread,
+    (free, begun): (&[Free], bool),
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<Prediction>, PredictError> {
-    let Stimulus::History { inputs, rate, .. } = &evidence.runs[run].stimulus else {
+    let stimulus = &evidence.runs[run].stimulus;
+    let Stimulus::History {
+        inputs, rate, spread, ..
+    } = stimulus
+    else {
         return Ok(Vec::new());
     };
     let series: Vec<_> = evidence
@@ -43,7 +49,8 @@ pub(super) fn history(
     )?;
     let start = inputs.start;
     let shifts: Vec<Option<&Free>> = std::iter::once(None).chain(free.iter().map(Some)).collect();
-    let runs: Vec<(f64, Vec<Vec<f64>>)> = shifts
+    let begin = begin(model.about(), misread.begun(run));
+    let runs: Vec<(f64, Replayed)> = shifts
         .par_iter()
         .map(|shift| {
             let mut values = values.clone();
@@ -53,11 +60,26 @@ pub(super) fn history(
                 values.set(free.parameter, value + step);
                 step
             });
-            (step, replay.run(values.as_slice()))
+            (step, replay.run(values.as_slice(), &begin))
         })
         .collect();
+    let base = &runs[0].1;
+    let elsewhere: Vec<(usize, f64)> = if begun {
+        unknown(model.about(), spread)
+    } else {
+        Vec::new()
+    };
+    let elsewhere: Vec<(usize, f64, Replayed)> = elsewhere
+        .into_par_iter()
+        .map(|(state, sigma)| {
+            let step = OF_SPREAD * sigma;
+            let begin: Vec<_> = begin.iter().copied().chain([(state, step)]).collect();
+            (state, step, replay.beside(base, values.as_slice(), &begin))
+        })
+        .collect();
+    let shown = |replayed: &Replayed, column: usize| stimulus.of_band(&replayed.signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &crate::discover::evidence::Series))| {
-        let late = late.get(*place).copied().unwrap_or(0.0);
+        let late = misread.late.get(*place).copied().unwrap_or(0.0);
         let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
             series
                 .at
@@ -65,18 +87,23 @@ pub(super) fn history(
                 .map(|t| between(signal, (t - start - late) * rate))
                 .unzip()
         };
-        let (value, by_sample) = read(&runs[0].1[column]);
-        let slope = |(step, signals): &(f64, Vec<Vec<f64>>)| {
-            let (moved, _) = read(&signals[column]);
+        let (value, by_sample) = read(&shown(base, column));
+        let slope = |step: f64, replayed: &Replayed| -> Vec<Complex<f64>> {
+            let (moved, _) = read(&shown(replayed, column));
             moved
                 .iter()
                 .zip(&value)
                 .map(|(moved, value)| Complex::from((moved - value) / step))
                 .collect()
         };
+        let name = |state: usize| model.about().states[state].name.to_string();
         Prediction {
             series: *place,
-            slopes: runs[1..].iter().map(slope).collect(),
+            slopes: runs[1..].iter().map(|(step, own)| slope(*step, own)).collect(),
+            begun: elsewhere
+                .iter()
+                .map(|(state, step, own)| (name(*state), slope(*step, own)))
+                .collect(),
             value: value.iter().map(|&value| Complex::from(value)).collect(),
             delay: Some(Delay {
                 slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
@@ -86,6 +113,23 @@ pub(super) fn history(
         }
     };
     Ok(series.iter().enumerate().map(predict).collect())
+}
+
+/// What the sensors of a run would have recorded, sample by sample, of the band that is compared.
+pub(super) fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    let sensors = evidence.sensors(run);
+    let replay = prepare(model, evidence, run, &sensors)?;
+    let begin = begin(model.about(), misread.begun(run));
+    let signals = replay.run(values.as_slice(), &begin).signals;
+    let stimulus = &evidence.runs[run].stimulus;
+    let shown = signals.iter().map(|signal| stimulus.of_band(signal));
+    Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
 /// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
@@ -119,6 +163,8 @@ fn prepare<'a>(
         rate,
         band_limited,
         restarts,
+        periodic,
+        ..
     } = &evidence.runs[run].stimulus
     else {
         return Err(no_input(about, evidence, run, "record"));
@@ -140,6 +186,8 @@ fn prepare<'a>(
         rate: *rate,
         band_limited: *band_limited,
         band: (0.0, *rate),
+        periodic: *periodic,
+        samples: inputs.samples,
         nodes: 0,
     };
     let restarts = restarts
@@ -148,19 +196,24 @@ fn prepare<'a>(
     Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
 }
 
+/// Where the states of the model begin elsewhere than they were seen, and by how much.
+fn begin(about: &About, begun: &[(String, f64)]) -> Vec<(usize, f64)> {
+    let place = |name: &str| about.states.iter().position(|state| state.name == name);
+    let begun = begun.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
+    begun.collect()
+}
+
+/// The states whose beginning is not known exactly, and how far it may be from where they were seen.
+fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
+    let states = about.states.iter().enumerate();
+    states
+        .filter_map(|(place, state)| Some((place, spread.sigma(state)?)))
+        .collect()
+}
+
 /// The states that were seen, with their values.
 fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
-    let place = |point: &Point| {
-        let kind = match point.quantity {
-            Quantity::Displacement => StateKind::Position,
-            Quantity::Velocity => StateKind::Velocity,
-            Quantity::Acceleration | Quantity::Force => return None,
-        };
-        about
-            .states
-            .iter()
-            .position(|s| s.kind == kind && s.location == point.location && s.axis == point.axis.name())
-    };
+    let place = |point: &Point| about.states.iter().position(|state| is_seen(state, point));
     seen.iter()
         .filter_map(|(point, value)| Some((place(point)?, *value)))
         .collect()

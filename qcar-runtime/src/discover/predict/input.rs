@@ -27,13 +27,17 @@ pub struct Between {
     pub band_limited: bool,
     /// Hz: what lies outside is not motion but noise.
     pub band: (f64, f64),
+    /// True where they go on at their end as they began.
+    pub periodic: bool,
+    /// Number of samples.
+    pub samples: usize,
     /// Nodes for each sample.
     pub nodes: usize,
 }
 
 /// A row of node values for each input of the model; zero for one that was not recorded.
 pub fn rows(about: &About, recorded: &[Recorded], how: &Between) -> Vec<Vec<f64>> {
-    let length = recorded.first().map_or(0, |r| r.samples.len() * how.nodes);
+    let length = how.samples * how.nodes;
     let row = |kind| {
         let (place, power) = match kind {
             InputKind::Force(place) => (place, 0),
@@ -63,7 +67,7 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 /// The straight line between the ends goes its own way: without it a record that does not end where it began would
 /// ring. An integral begins at zero, since its constant moves road and masses alike.
 fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
-    let line = if power < 0 {
+    let line = if power < 0 || how.periodic {
         Line::default()
     } else {
         Line::through_ends(samples, how.rate)
@@ -75,7 +79,7 @@ fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
         .collect();
     let mut row = differentiated(&bent, power, how);
     let step = 1.0 / (how.rate * how.nodes as f64);
-    let first = if power < 0 { row[0] } else { 0.0 };
+    let first = if power < 0 && !how.periodic { row[0] } else { 0.0 };
     for (k, value) in row.iter_mut().enumerate() {
         *value += match power {
             0 => line.at(k as f64 * step),

@@ -44,6 +44,7 @@ pub(super) fn sweep(
             value: ratio.value,
             delay: None,
             louder: None,
+            begun: Vec::new(),
         });
     }
     Ok(predictions)
@@ -57,5 +58,6 @@ fn silence(series: usize, values: usize, free: usize) -> Prediction {
         value: zero,
         delay: None,
         louder: None,
+        begun: Vec::new(),
     }
 }

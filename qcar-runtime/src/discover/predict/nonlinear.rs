@@ -106,6 +106,7 @@ impl Reading<'_> {
             series: self.place,
             value: places.iter().map(value).collect(),
             louder: (free > 0).then(|| places.iter().map(louder).collect()),
+            begun: Vec::new(),
             slopes: (0..free).map(slope).collect(),
             delay: None,
         }

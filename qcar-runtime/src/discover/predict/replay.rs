@@ -30,6 +30,23 @@ pub struct Replay<'a> {
     nodes: [OnceLock<Vec<Vec<f64>>>; FINER.len()],
 }
 
+/// What a replay gives.
+pub struct Replayed {
+    /// For each reading its samples; not finite from where the model runs away even at the finest steps.
+    pub signals: Vec<Vec<f64>>,
+    /// All states at each sample.
+    states: Vec<Vec<f64>>,
+    /// They one sample later than the last.
+    end: Vec<f64>,
+    /// Place of the fineness that was needed.
+    finer: usize,
+}
+
+/// Periods until a motion is taken for one that repeats, whether it does or not,
+const PERIODS: usize = 60;
+/// and by what share of their largest value states may still differ from a period to the next.
+const REPEATED: f64 = 1e-9;
+
 /// How many times finer the steps are taken when a replay runs away: laws may be stiffer than any sampling foresees.
 const FINER: [usize; 2] = [1, 4];
 
@@ -52,21 +69,33 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// For each reading its samples; not finite from where the model runs away even at the finest steps.
-    pub fn run(&self, p: &[f64]) -> Vec<Vec<f64>> {
-        let mut signals = Vec::new();
-        for (nodes, finer) in self.nodes.iter().zip(FINER) {
-            let steps = steps(self.how.rate) * finer;
-            let inputs = nodes.get_or_init(|| self.inputs(steps));
-            signals = self.advance(p, inputs, steps);
-            if signals
-                .iter()
-                .all(|signal| signal.last().is_some_and(|last| last.is_finite()))
-            {
+    /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
+    pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
+        let last = FINER.len() - 1;
+        let replays = (0..last).map(|finer| self.replay(p, begin, finer));
+        let is_finite = |signal: &Vec<f64>| signal.last().is_some_and(|last| last.is_finite());
+        let mut replays = replays.filter(|replayed| replayed.signals.iter().all(is_finite));
+        replays.next().unwrap_or_else(|| self.replay(p, begin, last))
+    }
+
+    /// The same beside another replay, and no longer than the two differ: from there on it is that one.
+    pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
+        let rest = vec![0.0; self.model.about().states.len()];
+        self.advance(p, (rest, begin), other.finer, Some(other))
+    }
+
+    /// From rest, or of a motion that repeats a period of it.
+    fn replay(&self, p: &[f64], begin: &[(usize, f64)], finer: usize) -> Replayed {
+        let rest = vec![0.0; self.model.about().states.len()];
+        let mut replayed = self.advance(p, (rest, begin), finer, None);
+        let periods = if self.how.periodic { PERIODS } else { 0 };
+        for _ in 0..periods {
+            if replayed.repeats() {
                 break;
             }
+            replayed = self.advance(p, (replayed.end, &[]), finer, None);
         }
-        signals
+        replayed
     }
 
     /// For each node the inputs of the model.
@@ -80,20 +109,37 @@ impl<'a> Replay<'a> {
         (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
     }
 
-    fn advance(&self, p: &[f64], inputs: &[Vec<f64>], steps: usize) -> Vec<Vec<f64>> {
+    /// From a state with some of it elsewhere, as long as it is not that of another replay.
+    fn advance(
+        &self,
+        p: &[f64],
+        (mut x, begin): (Vec<f64>, &[(usize, f64)]),
+        finer: usize,
+        other: Option<&Replayed>,
+    ) -> Replayed {
+        let steps = steps(self.how.rate) * FINER[finer];
+        let inputs = self.nodes[finer].get_or_init(|| self.inputs(steps));
         let about = self.model.about();
         let mut constants = vec![0.0; about.constants];
         self.model.prepare(p, &mut constants);
-        let mut x = vec![0.0; about.states.len()];
         let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; about.outputs.len()];
         let mut stages = Stages::new(x.len());
         let h = 1.0 / (self.how.rate * steps as f64);
-        let mut signals = vec![Vec::new(); self.readings.len()];
-        for sample in inputs.chunks(2 * steps).enumerate() {
-            let first = 2 * steps * sample.0;
-            if let Some((_, states)) = restarts.next_if(|(at, _)| *at == sample.0) {
-                states.iter().for_each(|&(state, value)| x[state] = value);
+        let (mut signals, mut states) = (vec![Vec::new(); self.readings.len()], Vec::new());
+        let mut apart = vec![0.0_f64; x.len()];
+        for (sample, nodes) in inputs.chunks(2 * steps).enumerate() {
+            let first = 2 * steps * sample;
+            if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
+                seen.iter().for_each(|&(state, value)| x[state] = value);
+            }
+            if sample == 0 {
+                begin.iter().for_each(|&(state, by)| x[state] += by);
+            }
+            if let Some(other) = other.filter(|other| has_joined(&x, &other.states[sample], &mut apart)) {
+                let rest = signals.iter_mut().zip(&other.signals);
+                rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
+                break;
             }
             self.model.outputs(&constants, &x, &inputs[first], &mut y);
             for (signal, reading) in signals.iter_mut().zip(&self.readings) {
@@ -102,28 +148,53 @@ impl<'a> Replay<'a> {
                     Reading::State(state) => x[state],
                 });
             }
-            for node in (first..first + sample.1.len()).step_by(2) {
+            states.push(x.clone());
+            for node in (first..first + nodes.len()).step_by(2) {
                 let nodes = [node, node + 1, self.end(node, inputs.len())];
-                stages.advance(
-                    self.model,
-                    &constants,
-                    nodes.map(|node| inputs[node].as_slice()),
-                    h,
-                    &mut x,
-                );
+                let inputs = nodes.map(|node| inputs[node].as_slice());
+                stages.advance(self.model, &constants, inputs, h, &mut x);
             }
         }
-        signals
+        Replayed {
+            signals,
+            states,
+            end: x,
+            finer,
+        }
     }
 
     /// The node at which a step ends; what is held stays until the next sample replaces it.
     fn end(&self, node: usize, count: usize) -> usize {
-        if self.how.band_limited {
+        if self.how.band_limited && self.how.periodic {
+            (node + 2) % count
+        } else if self.how.band_limited {
             (node + 2).min(count - 1)
         } else {
             node + 1
         }
     }
+}
+
+impl Replayed {
+    /// True where it ends as it began, or has no number.
+    fn repeats(&self) -> bool {
+        let most = |state: usize| self.states.iter().map(|x| x[state].abs()).fold(0.0, f64::max);
+        let first = self.states.first().unwrap_or(&self.end);
+        let mut ends = self.end.iter().zip(first).enumerate();
+        ends.all(|(state, (end, first))| !((end - first).abs() > REPEATED * most(state)))
+    }
+}
+
+/// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
+fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
+    const TRACE: f64 = 1e-4;
+    let mut joined = true;
+    for ((x, other), apart) in x.iter().zip(other).zip(apart) {
+        let difference = (x - other).abs();
+        *apart = apart.max(difference);
+        joined &= difference <= TRACE * *apart;
+    }
+    joined
 }
 
 /// Steps of at most a millisecond, and at least four a sample, whose band may reach up to half its rate.

@@ -61,6 +61,7 @@ pub(super) fn travel(
             value,
             delay: None,
             louder: None,
+            begun: Vec::new(),
         }
     };
     Ok(series.iter().map(predict).collect())

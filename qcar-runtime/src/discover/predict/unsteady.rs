@@ -107,6 +107,36 @@ fn of_run(
     Ok(differences.collect())
 }
 
+/// What the sensors of a sweep would have recorded, sample by sample, from rest on.
+pub(super) fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    let Stimulus::Sweep {
+        reference,
+        signal,
+        rate,
+        band,
+        ..
+    } = &evidence.runs[run].stimulus
+    else {
+        return Ok(Vec::new());
+    };
+    let driven = Driven {
+        excitation: excitation(model, evidence, run, reference)?,
+        reference,
+        samples: signal,
+        rate: *rate,
+        band: (band.0 / BEYOND, band.1 * BEYOND),
+    };
+    let sensors = evidence.sensors(run);
+    let signals: Vec<Signal> = sensors.iter().map(|sensor| signal_of(model.about(), sensor)).collect();
+    let shown = driven.replayed(model, values, &signals)?;
+    Ok(sensors.into_iter().cloned().zip(shown).collect())
+}
+
 /// What the pad did in a sweep, from rest.
 struct Driven<'a> {
     excitation: usize,
@@ -129,11 +159,15 @@ impl Driven<'_> {
             rate: self.rate,
             band_limited: true,
             band: self.band,
+            periodic: false,
+            samples: self.samples.len(),
             nodes: 0,
         };
         let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
         let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
-        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings).run(values.as_slice()))
+        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings)
+            .run(values.as_slice(), &[])
+            .signals)
     }
 
     /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would

@@ -21,19 +21,24 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
     if !evidence.of_role(Role::Fit).any(swept) {
         return Ok(refit);
     }
-    let mut posterior = Posterior::new(
-        model,
-        refit.values.clone(),
-        &refit.free,
-        evidence,
-        refit.nuisance.clone(),
-    );
+    let mut posterior = Posterior::of(&refit, model, evidence);
     let mut settled = refit;
     for _ in 0..ROUNDS {
         let misread = settled.nuisance.misread(evidence, &settled.coefficients);
         posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
-        let outcome = posterior.search(&posterior.place(&settled), TO_SETTLE)?;
-        settled = posterior.refit(outcome);
+        let place = posterior.place(&settled);
+        settled = posterior.settle(place)?;
     }
     Ok(settled)
+}
+
+impl Posterior<'_> {
+    /// A short search, and the discrepancy where there is one.
+    fn settle(&mut self, place: Vec<f64>) -> Result<Refit, PredictError> {
+        if self.discrepancy.is_some() {
+            return self.fit(place, 1, TO_SETTLE);
+        }
+        let outcome = self.search(&place, TO_SETTLE)?;
+        Ok(self.refit(outcome))
+    }
 }

@@ -249,7 +249,13 @@ impl State {
         let explanandum = self.explanandum(candidate, &known)?;
         let beside_known = explanandum.starts().ok()?.into_iter().nth(1)?;
         let refit = &self.explanation.refit;
-        refit.residuals_of(explanandum.model, &beside_known, self.workshop.model(), evidence)
+        refit.residuals_of(
+            explanandum.model,
+            &beside_known,
+            &refit.coefficients,
+            self.workshop.model(),
+            evidence,
+        )
     }
 
     /// By how much a contender lowers the sum of squares, beside the penalty of its unknowns.

@@ -33,7 +33,7 @@ impl Taken {
                 parameters.iter().map(unknown).collect()
             }
             Change::Sensor { form, parameter, .. } => {
-                let place = nuisance.len().saturating_sub(1);
+                let place = nuisance.of_sensors().saturating_sub(1);
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };

@@ -1,18 +1,34 @@
 //! Runs the blind matrix: makes campaigns, lets `qcar discover` answer, and prints how often it is right.
 //!
-//! `matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--keep FOLDER] [--out FILE]` runs cases, leaves their
-//! campaigns in FOLDER, and adds a line for each to FILE; `matrix --table FILE` prints the Markdown table of all lines in it.
+//! `matrix [OPTION]…` runs cases and adds a line for each to a file; `matrix --table FILE` prints the Markdown tables of all
+//! lines in it.
 
 use std::fs;
 use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
-use qcar_blind::matrix::{Case, cases};
-use qcar_blind::outcome::{Outcome, table};
+use qcar_blind::matrix::{Case, Kind, cases};
+use qcar_blind::outcome::{HEADER, Outcome};
+use qcar_blind::tables::tables;
 
-const USAGE: &str = "matrix [--qcar PATH] [--seeds 1,2] [--only WORD] [--part K/N] [--keep FOLDER] [--out FILE] | \
-                     matrix --table FILE";
+const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
+  --qcar PATH     the program that answers; the one beside this is the default
+  --seeds 1,2     draws; 1 is the default
+  --kinds A,B     Single, Clean, Outside, Pair, FastClean, HardwareClean, HardwareSingle,
+                  Minimal, OtherLaw; all are the default
+  --only WORD     the cases with a word in their names, or of a kind
+  --part K/N      every N-th of them, from the K-th on
+  --jobs N        so many searches at once, each with one thread
+  --out FILE      adds a line for each case
+  --resume        leaves out the cases that FILE has
+  --keep FOLDER   leaves the campaigns there, and takes those that are there";
+
+/// The file in which a kept campaign has its strength.
+const STRENGTH: &str = "strength.txt";
 
 fn main() -> ExitCode {
     match run() {
@@ -28,64 +44,84 @@ fn main() -> ExitCode {
 struct Asked {
     qcar: PathBuf,
     seeds: Vec<u64>,
+    kinds: Vec<Kind>,
     only: String,
     part: (usize, usize),
-    keep: Option<PathBuf>,
+    jobs: usize,
     out: Option<PathBuf>,
+    resume: bool,
+    keep: Option<PathBuf>,
 }
 
 fn run() -> Result<(), String> {
+    let words: Vec<String> = std::env::args().skip(1).collect();
+    if let [word, file] = &words[..]
+        && word == "--table"
+    {
+        print!("{}", tables(&read(Path::new(file))?));
+        return Ok(());
+    }
+    let asked = asked(words)?;
+    let mut outcomes = match &asked.out {
+        Some(out) if asked.resume && out.exists() => read(out)?,
+        _ => Vec::new(),
+    };
+    let is_new = |case: &Case| !outcomes.iter().any(|outcome| outcome.case == case.name);
+    let cases: Vec<Case> = wanted(&asked).into_iter().filter(is_new).collect();
+    outcomes.extend(answer_all(&asked, &cases)?);
+    print!("\n{}", tables(&outcomes));
+    Ok(())
+}
+
+fn asked(words: Vec<String>) -> Result<Asked, String> {
     let mut asked = Asked {
         qcar: beside_this()?,
         seeds: vec![1],
+        kinds: Kind::ALL.to_vec(),
         only: String::new(),
         part: (1, 1),
-        keep: None,
+        jobs: 1,
         out: None,
+        resume: false,
+        keep: None,
     };
-    let mut words = std::env::args().skip(1);
+    let mut words = words.into_iter();
     while let Some(word) = words.next() {
+        if word == "--resume" {
+            asked.resume = true;
+            continue;
+        }
         let value = words.next().ok_or(format!("{word} needs a value"))?;
         match word.as_str() {
             "--qcar" => asked.qcar = value.into(),
             "--seeds" => asked.seeds = value.split(',').map(number).collect::<Result<_, _>>()?,
+            "--kinds" => asked.kinds = value.split(',').map(kind).collect::<Result<_, _>>()?,
             "--only" => asked.only = value,
-            "--part" => {
-                let (part, of) = value.split_once('/').ok_or("--part is K/N")?;
-                asked.part = (number(part)?, number(of)?);
-                if !(1..=asked.part.1).contains(&asked.part.0) {
-                    return Err(format!("--part {value}: K counts from 1 to N"));
-                }
-            }
+            "--part" => asked.part = part(&value)?,
+            "--jobs" => asked.jobs = number(&value)?,
             "--keep" => asked.keep = Some(value.into()),
             "--out" => asked.out = Some(value.into()),
-            "--table" => {
-                print!("{}", table(&read(Path::new(&value))?));
-                return Ok(());
-            }
             _ => return Err(format!("what is {word}?")),
         }
     }
-    let all = asked.seeds.iter().flat_map(|&seed| cases(seed));
-    let wanted = all.filter(|case| case.name.contains(&asked.only) || format!("{:?}", case.kind) == asked.only);
-    let (part, of) = asked.part;
-    let mut outcomes = Vec::new();
-    for case in wanted.skip(part - 1).step_by(of) {
-        let outcome = answer(&asked.qcar, &case, asked.keep.as_deref())?;
-        println!("{}", outcome.line());
-        if let Some(out) = &asked.out {
-            let file = fs::OpenOptions::new().create(true).append(true).open(out);
-            let mut file = file.map_err(|e| format!("{}: {e}", out.display()))?;
-            writeln!(file, "{}", outcome.line()).map_err(|e| format!("{}: {e}", out.display()))?;
-        }
-        outcomes.push(outcome);
-    }
-    print!("\n{}", table(&outcomes));
-    Ok(())
+    Ok(asked)
 }
 
 fn number<T: std::str::FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("{text} is no number"))
+}
+
+fn kind(text: &str) -> Result<Kind, String> {
+    Kind::named(text).ok_or(format!("there is no kind {text}, but {:?}", Kind::ALL))
+}
+
+fn part(text: &str) -> Result<(usize, usize), String> {
+    let (part, of) = text.split_once('/').ok_or(format!("--part {text}: K/N is expected"))?;
+    let (part, of) = (number(part)?, number(of)?);
+    if !(1..=of).contains(&part) {
+        return Err(format!("--part {text}: K counts from 1 to N"));
+    }
+    Ok((part, of))
 }
 
 /// The binary that was built beside this one.
@@ -95,23 +131,86 @@ fn beside_this() -> Result<PathBuf, String> {
 }
 
 fn read(path: &Path) -> Result<Vec<Outcome>, String> {
-    let text = fs::read_to_string(path).map_err(|e| format!("{}: {e}", path.display()))?;
-    text.lines().map(Outcome::parse).collect()
+    let text = fs::read_to_string(path).map_err(|e| at(path, e))?;
+    let lines = text.lines().filter(|line| *line != HEADER);
+    let outcomes = lines.map(Outcome::parse).collect::<Result<_, _>>();
+    outcomes.map_err(|e| at(path, e))
 }
 
-fn answer(qcar: &Path, case: &Case, keep: Option<&Path>) -> Result<Outcome, String> {
+fn at(path: &Path, error: impl std::fmt::Display) -> String {
+    format!("{}: {error}", path.display())
+}
+
+fn wanted(asked: &Asked) -> Vec<Case> {
+    let all = asked.seeds.iter().flat_map(|&seed| cases(seed));
+    let of_kind = all.filter(|case| asked.kinds.contains(&case.kind));
+    let wanted = of_kind.filter(|case| case.name.contains(&asked.only) || format!("{:?}", case.kind) == asked.only);
+    let (part, of) = asked.part;
+    wanted.skip(part - 1).step_by(of).collect()
+}
+
+/// Every job takes the next case that nobody has.
+fn answer_all(asked: &Asked, cases: &[Case]) -> Result<Vec<Outcome>, String> {
+    let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    let job = || {
+        while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+            let outcome = answer(asked, case)?;
+            let mut outcomes = outcomes.lock().map_err(|e| e.to_string())?;
+            println!("{}", outcome.line());
+            if let Some(out) = &asked.out {
+                add_line(out, &outcome).map_err(|e| at(out, e))?;
+            }
+            outcomes.push(outcome);
+        }
+        Ok(())
+    };
+    thread::scope(|scope| {
+        let jobs: Vec<_> = (0..asked.jobs.max(1)).map(|_| scope.spawn(job)).collect();
+        let ends = jobs
+            .into_iter()
+            .map(|job| job.join().map_err(|_| "a job panicked".to_owned())?);
+        ends.collect::<Result<Vec<()>, String>>()
+    })?;
+    outcomes.into_inner().map_err(|e| e.to_string())
+}
+
+fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
+    let is_new = !out.exists();
+    let mut file = fs::OpenOptions::new().create(true).append(true).open(out)?;
+    if is_new {
+        writeln!(file, "{HEADER}")?;
+    }
+    writeln!(file, "{}", outcome.line())
+}
+
+fn answer(asked: &Asked, case: &Case) -> Result<Outcome, String> {
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
-    let folder = keep.map_or(passing.path().into(), |keep| {
-        keep.join(case.name.replace([' ', '/'], "_"))
-    });
-    qcar_blind::make(case.order.clone(), &folder)?;
-    let mut command = Command::new(qcar);
+    let keep = asked.keep.as_deref().unwrap_or(passing.path());
+    let folder = keep.join(case.name.replace([' ', '/'], "_"));
+    let strength = campaign(case, &folder)?;
+    let mut command = Command::new(&asked.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
+    if asked.jobs > 1 {
+        command.env("RAYON_NUM_THREADS", "1");
+    }
     let output = command.output();
-    let output = output.map_err(|e| format!("{}: {e}; build it first: cargo build --release", qcar.display()))?;
+    let output = output.map_err(|e| format!("{}; build it first: cargo build --release", at(&asked.qcar, e)))?;
     if !output.status.success() {
-        return Err(format!("{}: {}", case.name, String::from_utf8_lossy(&output.stderr)));
+        eprintln!("{}: {}", case.name, String::from_utf8_lossy(&output.stderr));
+        return Ok(Outcome::failed(case, strength));
     }
     let answer = serde_json::from_slice(&output.stdout).map_err(|e| format!("{}: {e}", case.name))?;
-    Ok(Outcome::new(case, &answer, qcar_blind::strength(case.order.clone())?))
+    Ok(Outcome::new(case, &answer, strength))
+}
+
+/// Makes a campaign, unless it is there, and says how strong what it hides is.
+fn campaign(case: &Case, folder: &Path) -> Result<f64, String> {
+    let file = folder.join(STRENGTH);
+    if let Ok(text) = fs::read_to_string(&file) {
+        return number(&text);
+    }
+    qcar_blind::make(case.order.clone(), folder)?;
+    let strength = qcar_blind::strength(case.order.clone())?;
+    fs::write(&file, strength.to_string()).map_err(|e| at(&file, e))?;
+    Ok(strength)
 }

@@ -6,9 +6,9 @@ use nalgebra::{Complex, DMatrix};
 
 use super::{Contender, State};
 use crate::campaign::{Axis, Quantity, Role};
-use crate::discover::candidate::{Added, Candidate, Change, Workshop};
+use crate::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use crate::discover::evidence::means::Means;
-use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Stimulus};
+use crate::discover::evidence::{Evidence, Kind, Passage, Recordings, Run, Series, Spread, Stimulus};
 use crate::discover::explain::{Explanation, Setting};
 use crate::discover::gap::Gap;
 use crate::discover::nuisance::{Form, Nuisance};
@@ -174,6 +174,7 @@ fn added(name: &str) -> Added {
         start: 1.0,
         range: (0.5, 2.0),
         known: false,
+        role: ParameterRole::Other,
     }
 }
 
@@ -213,11 +214,15 @@ pub fn history() -> Stimulus {
     Stimulus::History {
         inputs: Recordings {
             start: 0.0,
+            samples: 0,
             signals: vec![(point("pad"), Vec::new())],
         },
         rate: 100.0,
         band_limited: true,
         restarts: Vec::new(),
+        spread: Spread::default(),
+        band: None,
+        periodic: false,
     }
 }
 
@@ -237,6 +242,8 @@ pub fn ride() -> Stimulus {
 /// hundredth.
 pub fn evidence(ratio: f64, runs: Vec<(Role, Stimulus, usize)>) -> Evidence {
     let series = runs.iter().enumerate().map(|(run, &(.., count))| Series {
+        noise: vec![1.0; count],
+        least_discrepancy: 0.0,
         run,
         sensor: point("wheel"),
         kind: Kind::Harmonic(1),

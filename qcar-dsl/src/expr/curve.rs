@@ -1,0 +1,140 @@
+//! Curves through points: monotone cubic interpolation, and linear extrapolation with the slopes of the ends.
+//!
+//! Fritsch, F. N., Carlson, R. E.: Monotone piecewise cubic interpolation, SIAM J. Numerical Analysis 17, 1980; slopes by
+//! Fritsch, F. N., Butland, J.: A method for constructing local monotone piecewise cubic interpolants, SIAM J. Scientific
+//! and Statistical Computing 5, 1984, and at the ends as in Moler, C.: Numerical computing with MATLAB, section 3.6, 2004.
+
+use super::{Expr, Graph};
+
+/// Points with the slopes there; `T` is what a value is: an expression, or where it is found.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub struct Curve<T> {
+    /// The abscissae by their bits, so that they can be hashed; strictly increasing, two at least.
+    knots: Vec<u64>,
+    /// The ordinates.
+    pub values: Vec<T>,
+    /// dy/dx there.
+    pub slopes: Vec<T>,
+    /// True where the slopes are those that the ordinates give, false for a derivative of such a curve.
+    pub monotone: bool,
+}
+
+impl<T> Curve<T> {
+    /// The abscissae.
+    pub fn knots(&self) -> impl Iterator<Item = f64> {
+        self.knots.iter().map(|&bits| f64::from_bits(bits))
+    }
+
+    /// Ordinates, then slopes.
+    pub fn entries(&self) -> impl Iterator<Item = &T> {
+        self.values.iter().chain(&self.slopes)
+    }
+
+    /// The same curve with other entries.
+    pub fn map<U>(&self, mut f: impl FnMut(&T) -> U) -> Curve<U> {
+        Curve {
+            knots: self.knots.clone(),
+            values: self.values.iter().map(&mut f).collect(),
+            slopes: self.slopes.iter().map(&mut f).collect(),
+            monotone: self.monotone,
+        }
+    }
+
+    /// The derivative of an order from 0 to 3 at `x`. At a knot, those above the first are of the piece behind it.
+    pub fn at(&self, order: u8, x: f64, number: impl Fn(&T) -> f64) -> f64 {
+        let knot = |place: usize| f64::from_bits(self.knots[place]);
+        let (value, slope) = (|place| number(&self.values[place]), |place| number(&self.slopes[place]));
+        let behind = self.knots.partition_point(|&bits| f64::from_bits(bits) <= x);
+        let left = behind.saturating_sub(1);
+        let t = x - knot(left);
+        let [mut square, mut cube] = [0.0; 2];
+        if behind > 0 && behind < self.knots.len() {
+            let width = knot(behind) - knot(left);
+            let secant = (value(behind) - value(left)) / width;
+            square = (3.0 * secant - 2.0 * slope(left) - slope(behind)) / width;
+            cube = (slope(left) + slope(behind) - 2.0 * secant) / (width * width);
+        }
+        match order {
+            0 => value(left) + t * (slope(left) + t * (square + t * cube)),
+            1 => slope(left) + t * (2.0 * square + t * (3.0 * cube)),
+            2 => 2.0 * square + t * (6.0 * cube),
+            _ => 6.0 * cube,
+        }
+    }
+}
+
+impl Curve<Expr> {
+    /// The monotone curve through points; the abscissae increase strictly.
+    pub fn monotone(g: &mut Graph, knots: &[f64], values: Vec<Expr>) -> Self {
+        let widths: Vec<f64> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let rises = values.windows(2).zip(&widths).map(|(pair, &width)| {
+            let rise = g.sub(pair[1], pair[0]);
+            scaled(g, 1.0 / width, rise)
+        });
+        let pieces: Vec<Piece> = rises
+            .collect::<Vec<_>>()
+            .into_iter()
+            .zip(widths)
+            .map(Piece::of)
+            .collect();
+        Curve {
+            knots: knots.iter().map(|knot| knot.to_bits()).collect(),
+            slopes: slopes(g, &pieces),
+            values,
+            monotone: true,
+        }
+    }
+}
+
+/// What is between two points.
+#[derive(Clone, Copy)]
+struct Piece {
+    secant: Expr,
+    width: f64,
+}
+
+impl Piece {
+    fn of((secant, width): (Expr, f64)) -> Piece {
+        Piece { secant, width }
+    }
+}
+
+/// The slope at each point.
+fn slopes(g: &mut Graph, pieces: &[Piece]) -> Vec<Expr> {
+    let &[first, .., last] = pieces else {
+        return vec![pieces[0].secant; 2];
+    };
+    let (second, second_last) = (pieces[1], pieces[pieces.len() - 2]);
+    let mut slopes = vec![end_slope(g, first, second)];
+    slopes.extend(pieces.windows(2).map(|pair| inner_slope(g, pair[0], pair[1])));
+    slopes.push(end_slope(g, last, second_last));
+    slopes
+}
+
+/// The weighted harmonic mean of the secants on both sides; 0 where one rises and the other does not.
+fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
+    let (of_before, of_after) = (before.width + 2.0 * after.width, 2.0 * before.width + after.width);
+    let product = g.mul(before.secant, after.secant);
+    let (left, right) = (scaled(g, of_after, before.secant), scaled(g, of_before, after.secant));
+    let (above, below) = (scaled(g, of_before + of_after, product), g.add(left, right));
+    let (mean, zero) = (g.div(above, below), g.constant(0.0));
+    g.select(product, mean, zero)
+}
+
+/// The slope of the parabola through the last three points; 0 where the secant has another sign, and at most three
+/// times the secant where the curve turns behind it.
+fn end_slope(g: &mut Graph, own: Piece, next: Piece) -> Expr {
+    let share = own.width / (own.width + next.width);
+    let (near, far) = (scaled(g, 1.0 + share, own.secant), scaled(g, share, next.secant));
+    let (parabola, steepest) = (g.sub(near, far), scaled(g, 3.0, own.secant));
+    let (rises, most) = (g.mul(parabola, own.secant), g.mul(steepest, own.secant));
+    let (excess, same_way, zero) = (g.sub(rises, most), g.mul(own.secant, next.secant), g.constant(0.0));
+    let held = g.select(excess, steepest, parabola);
+    let slope = g.select(same_way, parabola, held);
+    g.select(rises, slope, zero)
+}
+
+fn scaled(g: &mut Graph, factor: f64, e: Expr) -> Expr {
+    let factor = g.constant(factor);
+    g.mul(factor, e)
+}

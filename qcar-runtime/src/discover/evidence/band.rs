@@ -1,0 +1,116 @@
+//! The band of a record that is compared: a filter of linear phase, for what was measured and what is predicted alike.
+//!
+//! Its weights are an ideal band under a Hamming window (Oppenheim and Schafer, Discrete-time signal processing, 3rd
+//! edition, section 7.5). They are centred, so that nothing is delayed, and half of their length at each end of a record
+//! is not compared, since there they would reach beyond it; a record that repeats has no ends.
+
+use std::f64::consts::{PI, TAU};
+
+use crate::spectrum::{synthesize, transform};
+
+/// A band of a record.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Band {
+    /// Centred, an odd number.
+    weights: Vec<f64>,
+    /// Hz.
+    range: (f64, f64),
+}
+
+/// Length of a Hamming window for a slope as wide as the rate.
+const HAMMING: f64 = 3.3;
+
+impl Band {
+    /// Of the frequencies from `low` to `high` (Hz), at which half of a motion passes; it falls off over the width of
+    /// `low`, or half of `high` where `low` is zero.
+    pub fn new((low, high): (f64, f64), rate: f64) -> Self {
+        let slope = if low > 0.0 { low.min(high - low) } else { high / 2.0 };
+        let half = (HAMMING * rate / slope / 2.0).ceil() as usize;
+        let weight = |k: usize| {
+            let t = (k as f64 - half as f64) / rate;
+            let window = 0.54 - 0.46 * (TAU * (k as f64 + 1.0) / (2 * half + 2) as f64).cos();
+            window * (ideal(high, t) - ideal(low, t)) / rate
+        };
+        Band {
+            weights: (0..=2 * half).map(weight).collect(),
+            range: (low, high),
+        }
+    }
+
+    /// How many samples it reaches to either side.
+    pub fn half(&self) -> usize {
+        self.weights.len() / 2
+    }
+
+    /// True where what never changes passes.
+    pub fn holds_rest(&self) -> bool {
+        self.range.0 == 0.0
+    }
+
+    /// The share of white noise that passes, as a standard deviation.
+    pub fn of_noise(&self) -> f64 {
+        self.weights.iter().map(|w| w * w).sum::<f64>().sqrt()
+    }
+
+    /// From one sample to the next that tells something new.
+    pub fn stride(&self, rate: f64) -> usize {
+        ((rate / (2.0 * (self.range.1 - self.range.0))) as usize).max(1)
+    }
+
+    /// What passes of a signal, sample by sample; `periodic` where it goes on at its end as it began, silence else.
+    pub fn of(&self, samples: &[f64], periodic: bool) -> Vec<f64> {
+        let (count, half) = (samples.len(), self.half());
+        let length = if periodic { count } else { count + 2 * half };
+        let mut signal = samples.to_vec();
+        signal.resize(length, 0.0);
+        let mut weights = vec![0.0; length];
+        for (k, weight) in self.weights.iter().enumerate() {
+            let place = (k as i64 - half as i64).rem_euclid(length as i64);
+            weights[place as usize] += weight;
+        }
+        let lines: Vec<_> = transform(&signal)
+            .iter()
+            .zip(transform(&weights))
+            .map(|(a, b)| a * b)
+            .collect();
+        let mut passed = synthesize(&lines, length);
+        passed.truncate(count);
+        passed
+    }
+}
+
+/// The ideal low pass at time `t` (s), per second.
+fn ideal(f: f64, t: f64) -> f64 {
+    let angle = TAU * f * t;
+    if angle == 0.0 { 2.0 * f } else { angle.sin() / (PI * t) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A tone inside passes as it is, without any delay; tones beside the band and a drift do not.
+    #[test]
+    fn a_band_passes_what_is_in_it_and_nothing_else() {
+        let rate = 200.0;
+        let record = |signal: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..4000).map(|k| signal(k as f64 / rate)).collect() };
+        let tone = |f: f64| move |t: f64| (TAU * f * t + 0.3).sin();
+        let band = Band::new((2.0, 20.0), rate);
+        let whole = band.half()..4000 - band.half();
+        let most = |a: &[f64], b: &[f64]| {
+            let difference = a[whole.clone()]
+                .iter()
+                .zip(&b[whole.clone()])
+                .map(|(a, b)| (a - b).abs());
+            difference.fold(0.0, f64::max)
+        };
+        let inside = record(&tone(7.0));
+        assert!(most(&band.of(&inside, false), &inside) < 0.005);
+        let outside = record(&|t| tone(0.5)(t) + tone(30.0)(t) + 5.0 + 0.3 * t);
+        assert!(most(&band.of(&outside, false), &vec![0.0; 4000]) < 0.03);
+        // Forty periods in the record: it has no ends.
+        let tone = record(&tone(2.0 * 5.0));
+        let all = band.of(&tone, true);
+        assert!(all.iter().zip(&tone).all(|(a, b)| (a - b).abs() < 0.005));
+    }
+}

@@ -1,0 +1,25 @@
+//! Every number of discovery that is not a fact of the data, each with its source.
+
+/// Standard deviation that is expected of a discrepancy before any measurement, in parts of the signal: linear quarter-car
+/// models meet measured transmissibilities to within 5 to 10 % (thesis, section 4.4). The prior is exponential, so that
+/// zero is as likely as any other value.
+pub const EXPECTED_DISCREPANCY: f64 = 0.05;
+
+/// Correlation of the discrepancy of one sensor between two runs of one kind: what a model misses is in part a function of
+/// frequency alone, such as a missing mode, and in part of level, such as a law. Without more knowledge, half and half.
+pub const COMMON_TO_LEVELS: f64 = 0.5;
+
+/// Distance at which discrepancies of two frequencies have nothing in common, octaves: the half-power bandwidth of a mode
+/// with a damping ratio of a quarter, which is that of a wheel on its tyre.
+pub const CORRELATION_OCTAVES: f64 = 0.7;
+
+/// Rate of false alarms: the threshold of the screening is where one clean campaign in a hundred has a candidate above it.
+/// Of `m` candidates the largest gain in the logarithm of the likelihood exceeds `ln(m / rate)` by chance in at most this
+/// share of draws (Chernoff's bound of the χ² distribution with one degree of freedom, summed over the candidates).
+pub const FALSE_ALARMS: f64 = 0.01;
+
+/// Effects of a set. Three at once are what measured campaigns were ever explained by (DESIGN of the search, section 2).
+pub const MOST_EFFECTS: usize = 3;
+
+/// Probability from which an answer is given as one: the usual level of significance.
+pub const CERTAIN: f64 = 0.95;

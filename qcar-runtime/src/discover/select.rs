@@ -1,0 +1,253 @@
+//! Which effect is missing: sets of effects compared by their evidence, judged on runs that no fit has seen.
+
+// The order of the data: what can be fitted,
+pub mod assembly;
+// what each candidate would gain without a fit,
+mod screen;
+// which of them explain best,
+mod race;
+// and how probable each set is.
+mod verdict;
+
+use std::sync::Arc;
+
+use assembly::{Assembly, Place, Placed};
+use race::{Fidelity, race};
+use screen::screen;
+use verdict::{Set, judged};
+
+use super::candidate::{Candidate, Workshop};
+use super::discrepancy::Discrepancy;
+use super::evidence::{Evidence, Stimulus};
+use super::explain::Setting;
+use super::numbers::{FALSE_ALARMS, MOST_EFFECTS};
+use super::predict::PredictError;
+use super::search::{Discovery, News, Progress};
+use crate::campaign::Role;
+
+/// Searches for what is missing. `progress` is told how it goes.
+///
+/// # Errors
+/// Where the model lacks what was measured, or a parameter has no value.
+pub fn discover(
+    workshop: Box<dyn Workshop>,
+    setting: &Setting,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) -> Result<Discovery, PredictError> {
+    if evidence.of_role(Role::Fit).next().is_none() {
+        return Err(PredictError::NothingToFit);
+    }
+    progress(News::Doing("fitting the base model"));
+    let assembly = Assembly::base(Arc::from(workshop), setting, evidence)?;
+    let base = base(assembly, evidence)?;
+    progress(News::Known("the model alone is fitted", &[], &base.explanation));
+    let mut sets = vec![base];
+    // The most probable set is extended until nothing that could be added is worth it.
+    let mut next = Some(0);
+    while let Some(place) = next {
+        sets[place].extended = true;
+        let more = extensions(&sets[place], evidence, progress)?;
+        sets.extend(more);
+        let best = best(&sets);
+        tell(&sets[best], progress);
+        let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
+        next = is_open.then_some(best);
+    }
+    let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress)?;
+    sets.extend(without);
+    Ok(judged(sets, evidence))
+}
+
+/// The most probable set.
+fn best(sets: &[Set]) -> usize {
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    (0..sets.len()).max_by(order).unwrap_or(0)
+}
+
+fn tell(set: &Set, progress: Progress<'_>) {
+    let names = set
+        .assembly
+        .effects()
+        .iter()
+        .map(|own| format!("{} at {}", own.effect, own.at));
+    let names: Vec<String> = names.collect();
+    if !names.is_empty() {
+        let words = format!("with {}", names.join(" and "));
+        progress(News::Known(&words, &set.findings(), &set.explanation));
+    }
+}
+
+/// Searches for the base model: from the campaign's values, and from values spread over the ranges.
+const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
+const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
+
+/// The base model, fitted.
+fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
+    use rayon::prelude::*;
+    let looks = looks(evidence);
+    let hypothesis = assembly.hypothesis();
+    // What cannot be predicted at all is an error here, where among many it only drops out.
+    let starts = SPREAD.par_iter().map(|&spread| {
+        let from = Place {
+            named: setting_spread(&assembly, spread),
+            sides: Default::default(),
+            errors: Vec::new(),
+            discrepancy: Discrepancy::of(&looks.coarse, Role::Fit),
+        };
+        hypothesis.fit(&from, &looks.coarse, BASE[0])
+    });
+    let starts: Vec<_> = starts.collect();
+    let mut fitted = Vec::new();
+    for start in starts {
+        match start {
+            Ok(refit) => fitted.push(refit),
+            Err(error) if fitted.is_empty() => return Err(error),
+            Err(_) => {}
+        }
+    }
+    let order = |a: &super::Refit, b: &super::Refit| a.log_evidence.total_cmp(&b.log_evidence);
+    let best = fitted.into_iter().max_by(order).ok_or(PredictError::NoNumber)?;
+    let medium = hypothesis.fit(&hypothesis.place(&best), &looks.medium, BASE[1])?;
+    let fine = hypothesis.fit(&hypothesis.place(&medium), &looks.fine, BASE[2])?;
+    let explanation = hypothesis.explanation(fine, evidence)?;
+    Ok(Set::new(assembly, explanation, 0.0))
+}
+
+/// The given values, every other one moved this way towards the end of its range, and the others the other way.
+fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMap<String, f64> {
+    let moved = |(k, given): (usize, &super::explain::Given)| {
+        let (low, high) = given.range?;
+        let shift = if k.is_multiple_of(2) { spread } else { -spread };
+        let end = if shift < 0.0 { low } else { high };
+        Some((given.name.clone(), given.value + (end - given.value) * shift.abs()))
+    };
+    assembly.given().iter().enumerate().filter_map(moved).collect()
+}
+
+/// A set with one effect more each, those that are worth it.
+fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
+    let candidates = set.assembly.candidates();
+    progress(News::Doing(&format!(
+        "screening {} effects at their places",
+        candidates.len()
+    )));
+    let refit = &set.explanation.refit;
+    // What sweeps show beyond steady harmonics changes little with one effect more.
+    let steady = evidence.less(&refit.unsteady).hurried();
+    let looks = looks(&steady);
+    let begun = std::time::Instant::now();
+    let prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
+    if std::env::var_os("QCAR_TELL").is_some() {
+        eprintln!("screen {:.2} s", begun.elapsed().as_secs_f64());
+        for p in prospects.iter().take(12) {
+            let c = &candidates[p.candidate];
+            eprintln!("   {:10.1} {} at {} {:?}", p.gain(), c.effect, c.at, c.form);
+        }
+    }
+    let least = (candidates.len() as f64 / FALSE_ALARMS).ln();
+    let worth = |own: &screen::Prospect| own.gain() > least;
+    if !prospects.iter().any(worth) {
+        return Ok(Vec::new());
+    }
+    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, progress)?;
+    if std::env::var_os("QCAR_TELL").is_some() {
+        eprintln!("race {:.2} s", begun.elapsed().as_secs_f64());
+    }
+    let mut sets = Vec::new();
+    for finalist in finalists {
+        let candidate = &candidates[finalist.candidate];
+        let Some(hypothesis) = set.assembly.hypothesis_with(candidate) else {
+            continue;
+        };
+        let Ok(explanation) = hypothesis.explanation(finalist.refit, evidence) else {
+            continue;
+        };
+        let Some(assembly) = set.assembly.with(candidate) else {
+            continue;
+        };
+        let prior = set.log_prior + log_prior(candidate, &candidates);
+        sets.push(Set::new(assembly, explanation, prior));
+    }
+    for own in &mut sets {
+        own.rivals = dropped
+            .iter()
+            .take(RIVALS)
+            .map(|left| verdict::rival(&candidates[left.candidate], left.behind))
+            .collect();
+    }
+    Ok(sets)
+}
+
+/// Dropped candidates that are told of.
+const RIVALS: usize = 3;
+
+/// Logarithm of the odds of a candidate before any measurement: even odds that something is missing, equal ones for all
+/// effects, shared among the places and forms of one.
+fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
+    let of_effect = all.iter().filter(|other| other.effect == candidate.effect).count();
+    let mut effects: Vec<&str> = all.iter().map(|other| other.effect.as_str()).collect();
+    effects.sort_unstable();
+    effects.dedup();
+    -((effects.len() * of_effect) as f64).ln()
+}
+
+/// The set less one of its effects each: what is not missed was only a step on the way.
+fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
+    let effects = set.assembly.effects();
+    let mut sets = Vec::new();
+    for left_out in 0..effects.len().saturating_sub(1) {
+        progress(News::Doing(&format!(
+            "fitting without {} at {}",
+            effects[left_out].effect, effects[left_out].at
+        )));
+        let others: Vec<&Placed> = effects
+            .iter()
+            .enumerate()
+            .filter(|(k, _)| *k != left_out)
+            .map(|(_, own)| own)
+            .collect();
+        let Some(assembly) = base.assembly.with_all(&others) else {
+            continue;
+        };
+        let from = set.assembly.hypothesis().place(&set.explanation.refit);
+        let hypothesis = assembly.hypothesis();
+        let mut from = from;
+        from.errors.truncate(base.assembly.hypothesis().sensor_errors());
+        let steady = evidence.less(&set.explanation.refit.unsteady).hurried();
+        let Ok(refit) = hypothesis.fit(&from, &steady, (2, 15)) else {
+            continue;
+        };
+        let Ok(explanation) = hypothesis.explanation(refit, evidence) else {
+            continue;
+        };
+        let share = set.log_prior * others.len() as f64 / effects.len() as f64;
+        sets.push(Set::new(assembly, explanation, share));
+    }
+    Ok(sets)
+}
+
+/// Every so many-th line of the coarse and the medium look.
+const THINNED: [usize; 2] = [6, 3];
+
+/// What searches look at: rides take the time of many sweeps, and all of them only count in the end.
+fn looks(evidence: &Evidence) -> Fidelity {
+    let mut rides: Vec<usize> = (0..evidence.runs.len())
+        .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))
+        .collect();
+    rides.sort_by(|&a, &b| evidence.runs[b].level.total_cmp(&evidence.runs[a].level));
+    let keep = |run: usize| {
+        let own = &evidence.runs[run];
+        own.role == Role::Fit && (!is_ride(&own.stimulus) || rides.first() == Some(&run))
+    };
+    let few = evidence.only(keep);
+    Fidelity {
+        coarse: few.thinned(THINNED[0]),
+        medium: few.thinned(THINNED[1]),
+        fine: evidence.only(|run| evidence.runs[run].role == Role::Fit),
+    }
+}
+
+fn is_ride(stimulus: &Stimulus) -> bool {
+    matches!(stimulus, Stimulus::Cleat(_))
+}

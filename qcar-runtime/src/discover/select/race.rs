@@ -1,0 +1,256 @@
+//! Which of many candidates explain best: successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
+//!
+//! Every round has about twice the budget of the one before for half of the candidates. One that is behind stays as long
+//! as its own last steps still gained more than it is behind by.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::assembly::{Assembly, Hypothesis, Place};
+use super::screen::Prospect;
+use super::{News, Progress};
+use crate::discover::candidate::Candidate;
+use crate::discover::evidence::Evidence;
+use crate::discover::predict::PredictError;
+use crate::discover::refit::Refit;
+
+/// What the rounds look at.
+pub struct Fidelity {
+    /// A part of the lines, and one ride.
+    pub coarse: Evidence,
+    /// More of them.
+    pub medium: Evidence,
+    /// All fitted runs.
+    pub fine: Evidence,
+}
+
+/// A round.
+struct Round {
+    evidence: fn(&Fidelity) -> &Evidence,
+    /// Searches after each of which the discrepancy is learnt, and evaluations of each.
+    budget: (usize, usize),
+    /// Candidates that go on.
+    kept: usize,
+    /// Starts of each.
+    starts: usize,
+}
+
+const ROUNDS: [Round; 4] = [
+    Round {
+        evidence: |all| &all.coarse,
+        budget: (1, 3),
+        kept: 8,
+        starts: 2,
+    },
+    Round {
+        evidence: |all| &all.coarse,
+        budget: (2, 6),
+        kept: 5,
+        starts: 1,
+    },
+    Round {
+        evidence: |all| &all.medium,
+        budget: (2, 8),
+        kept: 3,
+        starts: 1,
+    },
+    Round {
+        evidence: |all| &all.fine,
+        budget: (2, 15),
+        kept: 3,
+        starts: 1,
+    },
+];
+
+/// The first of them enter with all their starts until so many run, the others with their best.
+const STARTED: usize = 12;
+/// Candidates that enter.
+const ENTRANTS: usize = 10;
+/// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
+/// thousand.
+const CLOSE: f64 = 10.0;
+/// How many times as many evaluations a linear model has: they cost little.
+const LINEAR: usize = 3;
+
+/// A candidate that was fitted to all runs.
+pub struct Finalist {
+    /// Its place among the candidates.
+    pub candidate: usize,
+    /// The fit.
+    pub refit: Refit,
+}
+
+/// A candidate that was dropped on the way.
+pub struct Dropped {
+    /// Its place among the candidates.
+    pub candidate: usize,
+    /// The logarithm of its evidence less that of the best, in the last round that it ran.
+    pub behind: f64,
+}
+
+/// One start of one candidate.
+struct Runner<'a> {
+    candidate: usize,
+    hypothesis: &'a Hypothesis<'a>,
+    place: Place,
+    refit: Option<Refit>,
+}
+
+impl Runner<'_> {
+    fn evidence(&self) -> f64 {
+        self.refit
+            .as_ref()
+            .map_or(f64::NEG_INFINITY, |refit| refit.log_evidence)
+    }
+
+    fn gained(&self) -> f64 {
+        self.refit.as_ref().map_or(0.0, |refit| refit.gained)
+    }
+}
+
+/// The best candidates, the very best first, fitted to all runs; and the others.
+///
+/// # Errors
+/// None today: a candidate that says nothing of the evidence drops out.
+pub fn race(
+    assembly: &Assembly,
+    candidates: &[Candidate],
+    prospects: &[Prospect],
+    looks: &Fidelity,
+    progress: Progress<'_>,
+) -> Result<(Vec<Finalist>, Vec<Dropped>), PredictError> {
+    let entering = entrants(candidates, prospects);
+    let hypotheses: Vec<Option<Hypothesis<'_>>> = entering
+        .iter()
+        .map(|own| assembly.hypothesis_with(&candidates[own.candidate]))
+        .collect();
+    let mut field: Vec<Runner<'_>> = Vec::new();
+    for (prospect, hypothesis) in entering.iter().zip(&hypotheses) {
+        let Some(hypothesis) = hypothesis else { continue };
+        let starts = if field.len() < STARTED {
+            prospect.starts.len()
+        } else {
+            1
+        };
+        field.extend(prospect.starts[..starts].iter().map(|(place, _)| Runner {
+            candidate: prospect.candidate,
+            hypothesis,
+            place: place.clone(),
+            refit: None,
+        }));
+    }
+    let mut dropped = Vec::new();
+    for (number, round) in ROUNDS.iter().enumerate() {
+        progress(News::Far(number, ROUNDS.len()));
+        let seen = (round.evidence)(looks);
+        field = field
+            .into_par_iter()
+            .filter_map(|runner| run(runner, seen, round))
+            .collect();
+        if std::env::var_os("QCAR_TELL").is_some() {
+            for r in field.iter() {
+                let c = &candidates[r.candidate];
+                let e = r.refit.as_ref().map_or(0, |r| r.evaluations);
+                eprintln!(
+                    "   round {number} {:10.1} gained {:9.1} {} {} at {} {:?}",
+                    r.evidence(),
+                    r.gained(),
+                    e,
+                    c.effect,
+                    c.at,
+                    c.form
+                );
+            }
+        }
+        let last = number + 1 == ROUNDS.len();
+        let (stay, left) = best(field, candidates, round, number > 0);
+        field = stay;
+        if !last {
+            dropped.splice(0..0, left);
+        }
+    }
+    let finalists = field.into_iter().filter_map(|runner| {
+        Some(Finalist {
+            candidate: runner.candidate,
+            refit: runner.refit?,
+        })
+    });
+    Ok((finalists.collect(), dropped))
+}
+
+/// The prospects that gain most, and the best of each place.
+fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<&'p Prospect> {
+    let mut places: Vec<&str> = Vec::new();
+    let enters = |(rank, prospect): &(usize, &Prospect)| {
+        let at = candidates[prospect.candidate].at.as_str();
+        let first = !places.contains(&at);
+        places.push(at);
+        *rank < ENTRANTS || first && prospect.gain() > 0.0
+    };
+    prospects
+        .iter()
+        .enumerate()
+        .filter(enters)
+        .map(|(_, prospect)| prospect)
+        .collect()
+}
+
+fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option<Runner<'a>> {
+    let (rounds, evaluations) = round.budget;
+    let times = if runner.hypothesis.model().about().linear {
+        LINEAR
+    } else {
+        1
+    };
+    let refit = runner
+        .hypothesis
+        .fit(&runner.place, evidence, (rounds, times * evaluations))
+        .ok()?;
+    if !refit.log_evidence.is_finite() {
+        return None;
+    }
+    runner.place = runner.hypothesis.place(&refit);
+    runner.refit = Some(refit);
+    Some(runner)
+}
+
+/// Who goes on, the best first, and who is dropped.
+fn best<'a>(
+    mut field: Vec<Runner<'a>>,
+    candidates: &[Candidate],
+    round: &Round,
+    late: bool,
+) -> (Vec<Runner<'a>>, Vec<Dropped>) {
+    field.sort_by(|a, b| b.evidence().total_cmp(&a.evidence()));
+    let first = field.first().map_or(0.0, Runner::evidence);
+    let mut starts: BTreeMap<usize, usize> = BTreeMap::new();
+    let mut names: Vec<(&str, &str)> = Vec::new();
+    let mut places: Vec<&str> = Vec::new();
+    let (mut stay, mut dropped) = (Vec::new(), Vec::new());
+    for runner in field {
+        let own = &candidates[runner.candidate];
+        let name = (own.effect.as_str(), own.at.as_str());
+        let known = names.contains(&name);
+        let behind = first - runner.evidence();
+        // What is behind by more than its last steps gained will not come first.
+        let improves = behind <= runner.gained().max(CLOSE);
+        let is_best_there = !late && !places.contains(&name.1);
+        let wanted = improves && (known || names.len() < round.kept) || is_best_there && names.len() < 2 * round.kept;
+        let count = starts.entry(runner.candidate).or_default();
+        if wanted && *count < round.starts {
+            *count += 1;
+            if !known {
+                names.push(name);
+            }
+            places.push(name.1);
+            stay.push(runner);
+        } else if *count == 0 {
+            dropped.push(Dropped {
+                candidate: runner.candidate,
+                behind: -behind,
+            });
+        }
+    }
+    (stay, dropped)
+}

@@ -1,0 +1,258 @@
+//! Text tables: comma, semicolon, tab, bar or spaces between columns, decimal point or comma, with or without a row of units,
+//! in UTF-8, UTF-16 or Windows-1252.
+
+use csv::{ReaderBuilder, StringRecord, Trim};
+
+use crate::bytes::text;
+use crate::error::{Fault, Place, Read};
+use crate::signal::Recording;
+use crate::table::{Cell, Column, Filled, Layout};
+
+/// How many rows are looked at to tell how a table is written and where its numbers begin.
+const HEAD: usize = 200;
+
+/// Reads a table of numbers with names.
+pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
+    let text = decoded(bytes)?;
+    let delimiter = delimiter(&text);
+    let head = head(&text, delimiter)?;
+    let decimals = Decimals::of(&head, delimiter)?;
+    let cells: Vec<Vec<Cell>> = head
+        .iter()
+        .map(|(_, row)| row.iter().map(|cell| decimals.cell(cell)).collect())
+        .collect();
+    let Some(layout) = Layout::find(&cells) else {
+        let found = format!("no row of numbers among the first {} lines", head.len());
+        let remedy = "export the table with one row a sample; separators may be , ; tab | or spaces";
+        return Err(Fault::new(Place::File, found, "names and columns of numbers", remedy));
+    };
+    let (first_line, names_line) = (head[layout.first].0, head[..layout.first].last().map_or(1, |row| row.0));
+    let (filled, lines) = fill(&text, delimiter, decimals, layout.columns, first_line)?;
+    let mut recording = Recording::new("text table");
+    let place = |column: &Column, row: Option<usize>| {
+        let line = row.and_then(|row| lines.get(row)).copied().unwrap_or(names_line);
+        Place::Cell(line, column.name.clone())
+    };
+    filled.add_to(&mut recording, "", &place)?;
+    Ok(recording)
+}
+
+/// The text, without its byte order mark.
+fn decoded(bytes: &[u8]) -> Read<String> {
+    let utf16 = |order: fn([u8; 2]) -> u16| {
+        let units = bytes[2..].chunks_exact(2).map(|two| order([two[0], two[1]]));
+        char::decode_utf16(units)
+            .collect::<Result<String, _>>()
+            .map_err(|_| Fault::damaged(Place::File, "a UTF-16 text with half a character", "whole characters"))
+    };
+    match bytes {
+        [0xff, 0xfe, ..] => utf16(u16::from_le_bytes),
+        [0xfe, 0xff, ..] => utf16(u16::from_be_bytes),
+        [0xef, 0xbb, 0xbf, rest @ ..] => Ok(text(rest)),
+        _ => Ok(text(bytes)),
+    }
+}
+
+/// What stands between columns: the first of these that most lines have. A comma comes last, since it may stand in numbers;
+/// spaces where there is nothing else.
+fn delimiter(text: &str) -> u8 {
+    let lines: Vec<&str> = text.lines().filter(|line| !line.trim().is_empty()).take(HEAD).collect();
+    let has_most = |delimiter: &char| 2 * lines.iter().filter(|line| line.contains(*delimiter)).count() > lines.len();
+    [';', '\t', '|', ',']
+        .into_iter()
+        .find(has_most)
+        .map_or(b' ', |delimiter| delimiter as u8)
+}
+
+type Numbered = (u64, StringRecord);
+
+/// The rows with their lines. Columns that spaces keep apart may have several between them.
+fn rows(text: &str, delimiter: u8) -> impl Iterator<Item = Read<Numbered>> {
+    let mut reader = ReaderBuilder::new();
+    let reader = reader
+        .delimiter(delimiter)
+        .has_headers(false)
+        .flexible(true)
+        .trim(Trim::All);
+    reader.from_reader(text.as_bytes()).into_records().map(move |row| {
+        let row = row.map_err(|error| {
+            let line = error.position().map_or(0, |position| position.line());
+            Fault::damaged(Place::Line(line), error.to_string(), "a row of cells")
+        })?;
+        let line = row.position().map_or(0, |position| position.line());
+        let row = match delimiter {
+            b' ' => row.iter().filter(|cell| !cell.is_empty()).collect(),
+            _ => row,
+        };
+        Ok((line, row))
+    })
+}
+
+fn head(text: &str, delimiter: u8) -> Read<Vec<Numbered>> {
+    rows(text, delimiter).take(HEAD).collect()
+}
+
+/// The columns of numbers from a line on, and the line of each row.
+fn fill(text: &str, delimiter: u8, decimals: Decimals, columns: Vec<Column>, first: u64) -> Read<(Filled, Vec<u64>)> {
+    let mut numbers = vec![Vec::new(); columns.len()];
+    let mut lines = Vec::new();
+    for row in rows(text, delimiter).skip_while(|row| row.as_ref().is_ok_and(|(line, _)| *line < first)) {
+        let (line, row) = row?;
+        let width = columns.last().map_or(0, |column| column.index + 1);
+        if row.iter().all(str::is_empty) {
+            continue;
+        }
+        if row.len() < width || row.iter().skip(width).any(|cell| !cell.is_empty()) {
+            let found = format!("{} columns", row.len());
+            let remedy = "complete the row, or delete what is no part of the table";
+            return Err(Fault::new(
+                Place::Line(line),
+                found,
+                format!("{width} columns as above"),
+                remedy,
+            ));
+        }
+        for (column, numbers) in columns.iter().zip(&mut numbers) {
+            numbers.push(decimals.number(&row[column.index]).ok_or_else(|| {
+                let place = Place::Cell(line, column.name.clone());
+                let remedy = "correct the cell, or leave it empty";
+                Fault::new(place, format!("`{}`", &row[column.index]), decimals.expected(), remedy)
+            })?);
+        }
+        lines.push(line);
+    }
+    Ok((Filled { columns, numbers }, lines))
+}
+
+/// How numbers are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Decimals {
+    /// 1234.5 or 1,234.5
+    Point,
+    /// 1234,5 or 1.234,5
+    Comma,
+}
+
+impl Decimals {
+    /// What the numbers of the upper rows can be read as. Where both are possible, a lone comma or point is the decimal one.
+    fn of(head: &[Numbered], delimiter: u8) -> Read<Decimals> {
+        if delimiter == b',' {
+            return Ok(Decimals::Point);
+        }
+        let mut comma = None;
+        let mut point = None;
+        for (line, cell) in head
+            .iter()
+            .flat_map(|(line, row)| row.iter().map(move |cell| (line, cell)))
+        {
+            match (Decimals::Point.number(cell), Decimals::Comma.number(cell)) {
+                (None, Some(_)) => comma = comma.or(Some((*line, cell))),
+                (Some(_), None) => point = point.or(Some((*line, cell))),
+                _ => {}
+            }
+        }
+        match (comma, point) {
+            (Some((line, comma)), Some((other, point))) => {
+                let found = format!("`{comma}`, and `{point}` in line {other}");
+                let remedy = "export all numbers with the same decimal sign";
+                Err(Fault::new(
+                    Place::Line(line),
+                    found,
+                    "decimal commas or decimal points",
+                    remedy,
+                ))
+            }
+            (Some(_), None) => Ok(Decimals::Comma),
+            (None, Some(_)) => Ok(Decimals::Point),
+            (None, None) => {
+                let numbers = || {
+                    head.iter()
+                        .flat_map(|(_, row)| row.iter())
+                        .filter(|cell| looks_like_a_number(cell))
+                };
+                let only_commas = numbers().any(|cell| cell.contains(',')) && !numbers().any(|cell| cell.contains('.'));
+                Ok(if only_commas { Decimals::Comma } else { Decimals::Point })
+            }
+        }
+    }
+
+    fn cell(self, cell: &str) -> Cell {
+        match self.number(cell) {
+            Some(number) if number.is_nan() => Cell::Missing,
+            Some(number) => Cell::Number(number),
+            None => Cell::Text(cell.into()),
+        }
+    }
+
+    /// The number in a cell, not a number for a missing one; nothing where the cell holds anything else.
+    fn number(self, cell: &str) -> Option<f64> {
+        let cell = cell.trim();
+        if is_missing(cell) {
+            return Some(f64::NAN);
+        }
+        if !looks_like_a_number(cell) {
+            return None;
+        }
+        let (decimal, thousands) = match self {
+            Decimals::Point => ('.', ','),
+            Decimals::Comma => (',', '.'),
+        };
+        if !cell.contains(thousands) {
+            return cell.replace(decimal, ".").parse().ok();
+        }
+        let (whole, fraction) = cell.split_once(decimal).unwrap_or((cell, ""));
+        let digits = whole.trim_start_matches(['+', '-']);
+        let mut groups = digits.split(thousands);
+        let leading = groups.next().unwrap_or("");
+        let grouped = (1..=3).contains(&leading.len()) && leading != "0" && groups.all(|group| group.len() == 3);
+        let plain = format!("{}.{fraction}", whole.replace(thousands, ""));
+        grouped.then(|| plain.parse().ok()).flatten()
+    }
+
+    fn expected(self) -> &'static str {
+        match self {
+            Decimals::Point => "a number with a decimal point, or an empty cell",
+            Decimals::Comma => "a number with a decimal comma, or an empty cell",
+        }
+    }
+}
+
+/// Made of digits, signs, separators and an exponent.
+fn looks_like_a_number(cell: &str) -> bool {
+    cell.contains(|c: char| c.is_ascii_digit())
+        && cell.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ','))
+        && cell
+            .chars()
+            .all(|c| c.is_ascii_digit() || matches!(c, '+' | '-' | '.' | ',' | 'e' | 'E'))
+}
+
+fn is_missing(cell: &str) -> bool {
+    matches!(
+        cell.to_ascii_lowercase().as_str(),
+        "" | "nan" | "na" | "n/a" | "#n/a" | "#nv" | "null" | "-" | "--"
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Decimals::{Comma, Point};
+
+    #[test]
+    fn numbers_are_read_as_they_are_written() {
+        let cases = [
+            (Comma, "1.812,8", Some(1812.8)),
+            (Comma, "-80,00", Some(-80.0)),
+            (Comma, "12.5", None),
+            (Comma, "1.234", Some(1234.0)),
+            (Point, "1,234.5", Some(1234.5)),
+            (Point, "1.234", Some(1.234)),
+            (Point, "12,5", None),
+            (Point, "-1.5E-3", Some(-1.5e-3)),
+            (Point, "05.03.2024", None),
+            (Point, "12 mm", None),
+        ];
+        for (decimals, cell, number) in cases {
+            assert_eq!(decimals.number(cell), number, "{cell}");
+        }
+    }
+}

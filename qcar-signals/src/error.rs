@@ -1,0 +1,124 @@
+//! Why a file cannot be read, and where in it.
+
+use std::fmt;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+/// A file that cannot be read.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[error("{file}{separator} {fault}", file = .file.display(), separator = .fault.separator())]
+pub struct ReadError {
+    /// The file, as it was opened.
+    pub file: PathBuf,
+    /// What is wrong with it.
+    pub fault: Box<Fault>,
+}
+
+/// One thing that is wrong with a file. The texts are fragments of one sentence, as `Display` joins them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Where in the file.
+    pub place: Place,
+    /// The channel concerned, where it is known.
+    pub channel: Option<String>,
+    /// What is there.
+    pub found: String,
+    /// What belongs there.
+    pub expected: String,
+    /// What to do about it.
+    pub remedy: String,
+}
+
+/// A place in a file. Lines count from 1, bytes from 0.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A byte of the file.
+    Byte(u64),
+    /// A line of a text file.
+    Line(u64),
+    /// A cell of a text table: its line and the name or number of its column.
+    Cell(u64, String),
+    /// A variable of a MAT file, a dataset of a UFF file or the like, by its own name.
+    Item(String),
+    /// A cell or a range of a worksheet: sheet, and cell as Excel writes it.
+    Sheet(String, String),
+}
+
+/// What readers return.
+pub(crate) type Read<T> = Result<T, Box<Fault>>;
+
+impl fmt::Display for Place {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Place::File => out.write_str("the whole file"),
+            Place::Byte(at) => write!(out, "byte {at}"),
+            Place::Line(line) => write!(out, "line {line}"),
+            Place::Cell(line, column) => write!(out, "line {line}, column `{column}`"),
+            Place::Item(name) => write!(out, "`{name}`"),
+            Place::Sheet(sheet, cell) => write!(out, "sheet `{sheet}`, cell {cell}"),
+        }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let place = (self.place != Place::File).then(|| self.place.to_string());
+        let channel = self.channel.as_ref().map(|channel| format!("channel `{channel}`"));
+        let location: Vec<String> = place.into_iter().chain(channel).collect();
+        if !location.is_empty() {
+            write!(out, "{}: ", location.join(", "))?;
+        }
+        write!(out, "found {}, expected {}; {}", self.found, self.expected, self.remedy)
+    }
+}
+
+impl Fault {
+    /// What stands between the name of the file and the fault, which may begin with a place.
+    fn separator(&self) -> char {
+        if self.place == Place::File && self.channel.is_none() {
+            ':'
+        } else {
+            ','
+        }
+    }
+
+    /// A fault that concerns no single channel; see the fields for how to word it.
+    pub(crate) fn new(
+        place: Place,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Box<Self> {
+        Box::new(Fault {
+            place,
+            channel: None,
+            found: found.into(),
+            expected: expected.into(),
+            remedy: remedy.into(),
+        })
+    }
+
+    /// The file ends before what it promises.
+    pub(crate) fn cut_off(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Box<Self> {
+        Fault::new(
+            place,
+            found,
+            expected,
+            "the file was cut off: copy it again from where it was recorded",
+        )
+    }
+
+    /// A file whose parts contradict each other.
+    pub(crate) fn damaged(place: Place, found: impl Into<String>, expected: impl Into<String>) -> Box<Self> {
+        Fault::new(place, found, expected, "the file is damaged: copy or export it again")
+    }
+
+    /// The same fault, of this channel unless one is named already.
+    pub(crate) fn of(mut self: Box<Self>, channel: &str) -> Box<Self> {
+        self.channel.get_or_insert_with(|| channel.into());
+        self
+    }
+}

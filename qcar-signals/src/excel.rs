@@ -1,0 +1,296 @@
+//! Workbooks of Excel (.xlsx): tables of numbers on their sheets, and named cells.
+
+use std::collections::{BTreeMap, HashMap};
+use std::io::Cursor;
+use std::panic::catch_unwind;
+
+use calamine::{DataRef, Reader, Xlsx, XlsxError};
+
+use crate::error::{Fault, Place, Read};
+use crate::signal::{Recording, Scalar, Value};
+use crate::table::{Cell, Column, Filled, Layout};
+
+/// What a file that is packed as ZIP begins with.
+pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
+/// What workbooks of Excel before 2007 begin with.
+pub(crate) const OLD_MAGIC: &[u8] = b"\xd0\xcf\x11\xe0";
+/// What stands before the directory at the end of a ZIP file, at most so many bytes before the end.
+const DIRECTORY_END: (&[u8], usize) = (b"PK\x05\x06", 65_557);
+/// How many rows are looked at to find where the numbers of a sheet begin.
+const HEAD: usize = 64;
+/// Columns of a sheet.
+const MOST_COLUMNS: u32 = 16_384;
+/// Cells of a table for each one that is filled.
+const MOST_EMPTY: usize = 64;
+
+/// Refuses a workbook of a kind that nothing here reads.
+pub(crate) fn refuse_old() -> Box<Fault> {
+    let remedy = "open it in Excel and save it as .xlsx";
+    Fault::new(
+        Place::File,
+        "a workbook of Excel before 2007 (.xls), or a document of that time",
+        "an .xlsx file",
+        remedy,
+    )
+}
+
+/// Reads all sheets and named cells of a workbook.
+pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
+    let (end, within) = DIRECTORY_END;
+    let tail = &bytes[bytes.len().saturating_sub(within)..];
+    if !tail.windows(end.len()).any(|window| window == end) {
+        let place = Place::Byte(bytes.len() as u64);
+        return Err(Fault::cut_off(
+            place,
+            "no ZIP directory at the end",
+            "a whole .xlsx file, which ends with one",
+        ));
+    }
+    // A few sums in that crate are not checked; what trips over them is no workbook.
+    catch_unwind(|| workbook(bytes)).unwrap_or_else(|_| {
+        let remedy = "open it in Excel and save it again as .xlsx";
+        Err(Fault::new(
+            Place::File,
+            "references to cells that do not exist",
+            "a workbook of Excel (.xlsx)",
+            remedy,
+        ))
+    })
+}
+
+fn workbook(bytes: &[u8]) -> Read<Recording> {
+    let mut workbook: Xlsx<_> = Xlsx::new(Cursor::new(bytes)).map_err(|error| unreadable(Place::File, &error))?;
+    let mut recording = Recording::new("xlsx");
+    let mut sheets = HashMap::new();
+    for name in workbook.sheet_names() {
+        let sheet = Sheet::read(&mut workbook, &name)?;
+        sheet.add_table(&mut recording)?;
+        sheets.insert(name, sheet);
+    }
+    for (name, reference) in workbook.defined_names() {
+        let Some((sheet, row, column)) = single_cell(reference) else {
+            continue;
+        };
+        if let Some(sheet) = sheets.get(&sheet) {
+            recording.scalars.push(sheet.scalar(name, row, column));
+        }
+    }
+    Ok(recording)
+}
+
+fn unreadable(place: Place, error: &XlsxError) -> Box<Fault> {
+    let remedy = "open it in Excel and save it again as .xlsx";
+    Fault::new(
+        place,
+        format!("what is no workbook: {error}"),
+        "a workbook of Excel (.xlsx)",
+        remedy,
+    )
+}
+
+/// A sheet: its cells that are filled, by row and column from 0.
+struct Sheet {
+    name: String,
+    rows: BTreeMap<u32, BTreeMap<u32, Cell>>,
+    /// Formulas whose result was never computed.
+    uncomputed: HashMap<(u32, u32), String>,
+}
+
+impl Sheet {
+    fn read(workbook: &mut Xlsx<Cursor<&[u8]>>, name: &str) -> Read<Sheet> {
+        let mut sheet = Sheet {
+            name: name.into(),
+            rows: BTreeMap::new(),
+            uncomputed: HashMap::new(),
+        };
+        let unreadable = |error| unreadable(Place::Sheet(name.into(), "A1".into()), &error);
+        let mut cells = match workbook.worksheet_cells_reader(name) {
+            Ok(cells) => cells,
+            // A chart on a sheet of its own has no cells.
+            Err(XlsxError::NotAWorksheet(_)) => return Ok(sheet),
+            Err(error) => return Err(unreadable(error)),
+        };
+        while let Some(cell) = cells.next_cell_with_formula().map_err(unreadable)? {
+            let (row, column) = cell.pos;
+            if column >= MOST_COLUMNS {
+                let found = format!("a cell in column {}", u64::from(column) + 1);
+                let place = Place::Sheet(name.into(), format!("row {}", u64::from(row) + 1));
+                return Err(Fault::damaged(
+                    place,
+                    found,
+                    format!("at most {MOST_COLUMNS} columns, as Excel allows"),
+                ));
+            }
+            let value = match cell.value {
+                DataRef::Int(number) => Cell::Number(number as f64),
+                DataRef::Float(number) => Cell::Number(number),
+                DataRef::Bool(flag) => Cell::Number(f64::from(u8::from(flag))),
+                DataRef::String(text) if !text.trim().is_empty() => Cell::Text(text),
+                DataRef::SharedString(text) if !text.trim().is_empty() => Cell::Text(text.into()),
+                DataRef::DateTimeIso(text) | DataRef::DurationIso(text) => Cell::Text(text),
+                DataRef::DateTime(time) => Cell::Text(format!("the date or time {time}")),
+                DataRef::Error(_) => Cell::Missing,
+                _ => {
+                    if let Some(formula) = cell.formula {
+                        sheet.uncomputed.insert((row, column), formula);
+                        sheet.rows.entry(row).or_default();
+                    }
+                    continue;
+                }
+            };
+            sheet.rows.entry(row).or_default().insert(column, value);
+        }
+        Ok(sheet)
+    }
+
+    fn place(&self, row: u32, column: u32) -> Place {
+        Place::Sheet(self.name.clone(), cell_name(row, column))
+    }
+
+    /// Adds the columns of the table of the sheet, if it has one. A row without cells ends it.
+    fn add_table(&self, recording: &mut Recording) -> Read<()> {
+        let head: Vec<Vec<Cell>> = self.rows.values().take(HEAD).map(dense).collect();
+        let numbers: Vec<u32> = self.rows.keys().copied().collect();
+        let Some(layout) = Layout::find(&head) else {
+            if !self.rows.is_empty() {
+                recording.pass_over(&self.name, self.place(0, 0), "no table of numbers");
+            }
+            return Ok(());
+        };
+        let first = numbers[layout.first];
+        let count = numbers[layout.first..]
+            .iter()
+            .zip(first..)
+            .take_while(|(row, expected)| *row == expected)
+            .count();
+        let filled: usize = self.rows.range(first..).take(count).map(|(_, row)| row.len()).sum();
+        if count * layout.columns.len() > MOST_EMPTY * filled {
+            let found = format!(
+                "{count} rows of {} columns with {filled} cells in them",
+                layout.columns.len()
+            );
+            return Err(Fault::damaged(self.place(first, 0), found, "a table that is filled"));
+        }
+        let filled = self.fill(layout.columns, first, count)?;
+        if let Some(&below) = numbers.get(layout.first + count) {
+            let place = self.place(below, 0);
+            recording.pass_over(&self.name, place, "what stands below the table, after an empty row");
+        }
+        filled.add_to(recording, &self.name, &|column, row| {
+            let row = row.map_or(first.saturating_sub(1), |row| first + row as u32);
+            self.place(row, column.index as u32)
+        })
+    }
+
+    fn fill(&self, columns: Vec<Column>, first: u32, count: usize) -> Read<Filled> {
+        let mut numbers = vec![Vec::with_capacity(count); columns.len()];
+        for (row, cells) in self.rows.range(first..).take(count) {
+            for (column, numbers) in columns.iter().zip(&mut numbers) {
+                let index = column.index as u32;
+                let found = match (cells.get(&index), self.uncomputed.get(&(*row, index))) {
+                    (Some(Cell::Number(number)), _) => {
+                        numbers.push(*number);
+                        continue;
+                    }
+                    (_, Some(formula)) => format!("the formula `={formula}` without a result"),
+                    (Some(Cell::Text(text)), _) => format!("the text `{text}`"),
+                    (Some(Cell::Missing) | None, None) => {
+                        numbers.push(f64::NAN);
+                        continue;
+                    }
+                };
+                let remedy = "write a number, leave the cell empty, or open and save the file in Excel to compute it";
+                return Err(Fault::new(self.place(*row, index), found, "a number", remedy).of(&column.name));
+            }
+        }
+        Ok(Filled { columns, numbers })
+    }
+
+    /// A named cell; its unit is the text to the right of it.
+    fn scalar(&self, name: &str, row: u32, column: u32) -> Scalar {
+        let cell = |column: u32| self.rows.get(&row).and_then(|cells| cells.get(&column));
+        let unit = match cell(column + 1) {
+            Some(Cell::Text(text)) => text.trim().into(),
+            _ => String::new(),
+        };
+        let value = match (cell(column), self.uncomputed.get(&(row, column))) {
+            (Some(Cell::Number(number)), _) => Value::Number(*number),
+            (Some(Cell::Text(text)), _) => Value::Text(text.clone()),
+            (_, Some(formula)) => Value::Formula(formula.clone()),
+            (_, None) => Value::Empty,
+        };
+        Scalar {
+            name: name.into(),
+            unit,
+            value,
+            place: self.place(row, column),
+        }
+    }
+}
+
+/// A row with the cells that are empty, up to the last one that is not.
+fn dense(row: &BTreeMap<u32, Cell>) -> Vec<Cell> {
+    let width = row.keys().next_back().map_or(0, |last| *last as usize + 1);
+    let mut cells = vec![Cell::Missing; width];
+    for (column, cell) in row {
+        cells[*column as usize] = cell.clone();
+    }
+    cells
+}
+
+/// As Excel writes it: B7 for row 6 and column 1.
+fn cell_name(row: u32, mut column: u32) -> String {
+    let mut letters = Vec::new();
+    loop {
+        letters.push(char::from(b'A' + (column % 26) as u8));
+        match column / 26 {
+            0 => break,
+            next => column = next - 1,
+        }
+    }
+    format!("{}{}", letters.iter().rev().collect::<String>(), u64::from(row) + 1)
+}
+
+/// Sheet, row and column of a reference such as `'Front axle'!$C$3`.
+fn single_cell(reference: &str) -> Option<(String, u32, u32)> {
+    let (sheet, cell) = reference.rsplit_once('!')?;
+    let sheet = sheet
+        .strip_prefix('\'')
+        .and_then(|sheet| sheet.strip_suffix('\''))
+        .unwrap_or(sheet);
+    let cell = cell.replace('$', "");
+    let digits = cell.find(|c: char| c.is_ascii_digit())?;
+    let (letters, row) = cell.split_at(digits);
+    let value = |letter: u8| letter.is_ascii_uppercase().then(|| u32::from(letter - b'A') + 1);
+    let column = letters
+        .bytes()
+        .try_fold(0_u32, |all, letter| all.checked_mul(26)?.checked_add(value(letter)?))?;
+    Some((
+        sheet.replace("''", "'"),
+        row.parse::<u32>().ok()?.checked_sub(1)?,
+        column.checked_sub(1)?,
+    ))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{cell_name, single_cell};
+
+    #[test]
+    fn cells_are_named_as_excel_names_them() {
+        for (row, column, name) in [
+            (0, 0, "A1"),
+            (6, 25, "Z7"),
+            (0, 26, "AA1"),
+            (99, 701, "ZZ100"),
+            (0, 702, "AAA1"),
+        ] {
+            assert_eq!(cell_name(row, column), name);
+            assert_eq!(
+                single_cell(&format!("'a b'!${name}")),
+                Some(("a b".into(), row, column))
+            );
+        }
+        assert_eq!(single_cell("Vehicle!$A$6:$D$86"), None);
+    }
+}

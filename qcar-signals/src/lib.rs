@@ -1,0 +1,32 @@
+//! Measured files: what a rig, a logger or another program wrote, read into channels.
+//!
+//! The crate knows formats and nothing of axles. Every reader works on the bytes of the file, checks each claimed size
+//! against them before it takes memory, and never panics: what cannot be read is an error with its place.
+//!
+//! The modules stand in the order of the data; a file uses only what is declared above it.
+
+pub mod error;
+// What all formats are read into.
+pub mod signal;
+// Checked access to the bytes of a file.
+mod bytes;
+// Which texts are units.
+mod units;
+// Names, units and columns of a table, whatever it is stored in.
+mod table;
+// One module a format.
+mod csv;
+// Of ASAM.
+mod mdf;
+// Of SDRC.
+mod uff;
+// Of MTS.
+mod rpc;
+// Of LabVIEW.
+mod tdms;
+// Of MATLAB.
+mod mat;
+// Of Excel.
+mod excel;
+// The door: which format it is, and its channels.
+pub mod read;

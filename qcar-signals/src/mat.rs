@@ -1,0 +1,45 @@
+//! MAT-files of MATLAB: versions 5 to 7, and 7.3, which is HDF5.
+
+// What both kinds of file hold.
+mod value;
+// Versions 5 to 7.
+mod v5;
+// Version 7.3.
+mod hdf5;
+// Channels, from the shapes in which programs store them.
+mod layout;
+
+use crate::bytes::field;
+use crate::error::{Fault, Place, Read};
+use crate::signal::Recording;
+
+/// Where the header of version 5 says its version and its byte order.
+const VERSION: usize = 124;
+/// Bytes of a header; in a file of version 7.3 HDF5 begins at byte 512.
+pub(crate) const HEADER: usize = 128;
+
+/// Whether a file begins with the header of a MAT-file of version 5 or later.
+pub(crate) fn is_mat(bytes: &[u8]) -> bool {
+    bytes.len() >= HEADER && matches!(&bytes[VERSION + 2..HEADER], b"IM" | b"MI") && bytes[..4] != [0; 4]
+}
+
+/// Whether a file is HDF5 without the header of MATLAB.
+pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
+    hdf5::superblock(bytes) == Some(0)
+}
+
+/// Reads a file that begins with a header of MATLAB, or is HDF5.
+pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
+    if let Some(at) = hdf5::superblock(bytes) {
+        let name = if at == 0 { "HDF5" } else { "MAT 7.3" };
+        return layout::recording(name, hdf5::variables(bytes, at)?);
+    }
+    match field(&bytes[..VERSION]) {
+        text if text.contains("7.3") => Err(Fault::cut_off(
+            Place::Byte(bytes.len() as u64),
+            "a header of version 7.3 and nothing of HDF5",
+            "the data behind the header",
+        )),
+        _ => layout::recording("MAT 5", v5::variables(bytes)?),
+    }
+}

@@ -1,0 +1,249 @@
+//! HDF5, as far as MATLAB uses it for version 7.3: groups of symbol tables, object headers of version 1, data in one piece or
+//! in chunks, deflated or not.
+//!
+//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. A file written for the latest version only is refused.
+
+// What the messages of an object header say.
+mod messages;
+// The bytes of a dataset.
+mod storage;
+
+use std::collections::HashSet;
+
+use crate::bytes::{Bytes, Number, Order, Origin, field, text};
+use crate::error::{Fault, Read};
+
+use super::value::{Array, Fields, Value, Variable};
+
+use messages::{Class, Header};
+
+const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+/// Groups within groups.
+const DEEPEST: usize = 16;
+
+/// The byte at which a superblock stands, if there is one where HDF5 allows it.
+pub(super) fn superblock(bytes: &[u8]) -> Option<usize> {
+    let places = std::iter::once(0).chain((9..24).map(|power| 1 << power));
+    let mut places = places.take_while(|&at| at < bytes.len());
+    places.find(|&at| bytes[at..].starts_with(SIGNATURE))
+}
+
+/// All variables of a file whose superblock stands at byte `at`.
+pub(super) fn variables(bytes: &[u8], at: usize) -> Read<Vec<Variable>> {
+    let file = Bytes {
+        data: &bytes[at..],
+        order: Order::Little,
+        origin: Origin::At(at as u64),
+    };
+    let version = file.u8(8, "the superblock")?;
+    let sizes = (file.u8(13, "the superblock")?, file.u8(14, "the superblock")?);
+    if version > 1 || sizes != (8, 8) {
+        let found = format!("a superblock of version {version}");
+        return Err(too_new(&file, 8, found));
+    }
+    let root = file.u64(if version == 0 { 64 } else { 68 }, "the root group")?;
+    let mut reader = Reader {
+        file,
+        visited: HashSet::new(),
+    };
+    let header = Header::read(&file, root)?;
+    let mut variables = Vec::new();
+    for (name, address) in reader.members(&header)? {
+        // Names of MATLAB's own begin with #.
+        if !name.starts_with('#') {
+            let value = reader.value(address, DEEPEST).map_err(|fault| fault.of(&name))?;
+            variables.push(Variable {
+                name,
+                value,
+                place: file.place(address),
+            });
+        }
+    }
+    Ok(variables)
+}
+
+fn too_new(file: &Bytes, at: u64, found: impl Into<String>) -> Box<Fault> {
+    let remedy = "save the file with MATLAB (-v7 or -v7.3), or with the earliest version of HDF5 allowed";
+    Fault::new(file.place(at), found, "HDF5 as MATLAB writes it", remedy)
+}
+
+struct Reader<'a> {
+    file: Bytes<'a>,
+    /// Objects, nodes and data that were read: none is read twice.
+    visited: HashSet<u64>,
+}
+
+impl<'a> Reader<'a> {
+    fn first_time(&mut self, at: u64) -> Read<()> {
+        if self.visited.insert(at) {
+            return Ok(());
+        }
+        let found = "a link to something that was read before";
+        Err(Fault::damaged(self.file.place(at), found, "links that lead on"))
+    }
+
+    /// The value of the object at an address.
+    fn value(&mut self, address: u64, depth: usize) -> Read<Value> {
+        self.first_time(address)?;
+        let header = Header::read(&self.file, address)?;
+        if header.symbol_table.is_some() {
+            return match depth {
+                0 => Err(Fault::damaged(
+                    self.file.place(address),
+                    "groups within groups without end",
+                    "a value",
+                )),
+                _ => self.structure(&header, depth - 1),
+            };
+        }
+        let Some(class) = header.datatype.map(|datatype| datatype.class) else {
+            return Ok(Value::Other("an object without data"));
+        };
+        let number = match class {
+            Class::Reference => return Ok(Value::Cells(self.cells(&header, depth)?)),
+            Class::Number(number) => number,
+            Class::Other => return Ok(Value::Other("data that are no real numbers")),
+        };
+        if header.is_empty {
+            return Ok(Value::Numbers(Array {
+                dimensions: vec![0],
+                numbers: Vec::new(),
+            }));
+        }
+        let (bytes, mut dimensions) = self.data(&header)?;
+        let order = header.datatype.map_or(Order::Little, |datatype| datatype.order);
+        let numbers = number.all(&bytes, order);
+        if header.matlab_class == "char" {
+            let units: Vec<u16> = numbers.iter().map(|&unit| unit as u16).collect();
+            return Ok(Value::Text(String::from_utf16_lossy(&units)));
+        }
+        // HDF5 counts its dimensions from the other end.
+        dimensions.reverse();
+        Ok(Value::Numbers(Array { dimensions, numbers }))
+    }
+
+    /// A group as a structure. Where every field is a list of references, it is a structure array of as many elements.
+    fn structure(&mut self, header: &Header<'a>, depth: usize) -> Read<Value> {
+        let mut fields = Fields::new();
+        let mut elements = 1;
+        let mut all_lists = true;
+        for (name, address) in self.members(header)? {
+            let value = self.value(address, depth).map_err(|fault| fault.of(&name))?;
+            match &value {
+                Value::Cells(cells) => elements = elements.max(cells.len()),
+                _ => all_lists = false,
+            }
+            fields.push((name, value));
+        }
+        if !all_lists || fields.is_empty() {
+            return Ok(Value::Structs(vec![fields]));
+        }
+        let mut lists: Vec<(String, std::vec::IntoIter<Value>)> = Vec::new();
+        for (name, value) in fields {
+            if let Value::Cells(cells) = value {
+                lists.push((name, cells.into_iter()));
+            }
+        }
+        let element = |_| {
+            lists
+                .iter_mut()
+                .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
+                .collect()
+        };
+        Ok(Value::Structs((0..elements).map(element).collect()))
+    }
+
+    fn cells(&mut self, header: &Header<'a>, depth: usize) -> Read<Vec<Value>> {
+        if depth == 0 || header.is_empty {
+            return Ok(Vec::new());
+        }
+        let (bytes, _) = self.data(header)?;
+        let addresses = bytes.chunks_exact(8).filter_map(|address| address.first_chunk());
+        addresses
+            .map(|&address| self.value(u64::from_le_bytes(address), depth - 1))
+            .collect()
+    }
+
+    /// Names and addresses of the members of a group, in the order of their names.
+    fn members(&mut self, header: &Header) -> Read<Vec<(String, u64)>> {
+        let Some((tree, heap)) = header.symbol_table else {
+            return Err(too_new(&self.file, 0, "a group that is no symbol table"));
+        };
+        let heap = self.file.part(heap, 32, "a heap of names")?;
+        let size = heap.u64(8, "the size of names")?;
+        let names = self.file.part(heap.u64(24, "the place of names")?, size, "names")?;
+        let mut members = Vec::new();
+        for node in self.leaves(tree, 0, 0)? {
+            let head = self.file.part(node.child, 8, "symbols")?;
+            if !head.data.starts_with(b"SNOD") {
+                return Err(Fault::damaged(
+                    head.place(0),
+                    format!("`{}`", text(&head.data[..4])),
+                    "symbols (`SNOD`)",
+                ));
+            }
+            let count = u64::from(head.u16(6, "a number of symbols")?);
+            let symbols = self.file.part(node.child + 8, 40 * count, "symbols")?;
+            for at in (0..count).map(|index| 40 * index) {
+                let name = names.data.get(symbols.u64(at, "a name")? as usize..).unwrap_or(&[]);
+                let name = field(&name[..name.len().min(LONGEST_NAME)]);
+                members.push((name, symbols.u64(at + 8, "an address")?));
+            }
+        }
+        Ok(members)
+    }
+
+    /// The leaves of a tree: `TREE`, kind 1, level 1, entries 2, neighbours 8 each, then keys and children in turn.
+    fn leaves(&mut self, root: u64, kind: u8, dimensions: u64) -> Read<Vec<Leaf>> {
+        let key = if kind == 0 { 8 } else { 8 + 8 * dimensions };
+        let mut nodes = vec![root];
+        let mut leaves = Vec::new();
+        while let Some(at) = nodes.pop() {
+            self.first_time(at)?;
+            let head = self.file.part(at, 24, "a tree")?;
+            if !head.data.starts_with(b"TREE") || head.data[4] != kind {
+                return Err(Fault::damaged(
+                    head.place(0),
+                    format!("`{}`", text(&head.data[..4])),
+                    "a tree (`TREE`)",
+                ));
+            }
+            let count = u64::from(head.u16(6, "a number of entries")?);
+            let entries = self.file.part(at + 24, count * (key + 8), "entries of a tree")?;
+            let mut children = Vec::new();
+            for entry in (0..count).map(|index| index * (key + 8)) {
+                let numbers = Number::U64.all(entries.take(entry, key, "a key")?, Order::Little);
+                let child = entries.u64(entry + key, "an address")?;
+                let size = entries.u32(entry, "the size of a chunk")?;
+                let skipped = if kind == 0 {
+                    0
+                } else {
+                    entries.u32(entry + 4, "a filter mask")?
+                };
+                let offsets = numbers.iter().skip(1).map(|&offset| offset as u64).collect();
+                children.push(Leaf {
+                    size,
+                    skipped,
+                    offsets,
+                    child,
+                });
+            }
+            match head.data[5] {
+                0 => leaves.extend(children),
+                _ => nodes.extend(children.iter().rev().map(|leaf| leaf.child)),
+            }
+        }
+        Ok(leaves)
+    }
+}
+
+/// Bytes of a name.
+const LONGEST_NAME: usize = 1024;
+
+/// An entry of a tree: a node of symbols, or a chunk of data with its bytes, the filters skipped, and where it begins.
+struct Leaf {
+    size: u32,
+    skipped: u32,
+    offsets: Vec<u64>,
+    child: u64,
+}

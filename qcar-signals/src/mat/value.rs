@@ -1,0 +1,97 @@
+//! What a variable of a MAT-file is, however the file stores it.
+
+use crate::error::Place;
+
+/// A variable with its name.
+pub(super) struct Variable {
+    pub(super) name: String,
+    pub(super) value: Value,
+    pub(super) place: Place,
+}
+
+/// What a variable is. Arrays lie column by column.
+#[derive(Clone, Debug)]
+pub(super) enum Value {
+    Numbers(Array),
+    Text(String),
+    /// Elements of a structure array: each has its fields.
+    Structs(Vec<Fields>),
+    Cells(Vec<Value>),
+    /// Anything else: what it is.
+    Other(&'static str),
+}
+
+/// An array of real numbers.
+#[derive(Clone, Debug)]
+pub(super) struct Array {
+    pub(super) dimensions: Vec<u64>,
+    pub(super) numbers: Vec<f64>,
+}
+
+pub(super) type Fields = Vec<(String, Value)>;
+
+impl Value {
+    /// What lies at a path of fields, through structures of one element.
+    pub(super) fn at(&self, path: &[&str]) -> Option<&Value> {
+        let Some((first, rest)) = path.split_first() else {
+            return Some(self);
+        };
+        match self {
+            Value::Structs(elements) => match elements.as_slice() {
+                [fields] => fields.iter().find(|(name, _)| name == first)?.1.at(rest),
+                _ => None,
+            },
+            Value::Cells(cells) if cells.len() == 1 => cells[0].at(path),
+            _ => None,
+        }
+    }
+
+    /// A field of a structure of one element, taken out.
+    pub(super) fn take(&mut self, name: &str) -> Option<Value> {
+        let Value::Structs(elements) = self else { return None };
+        let field = elements.iter_mut().flatten().find(|(own, _)| own == name);
+        field.map(|(_, value)| std::mem::replace(value, Value::Other("taken")))
+    }
+
+    /// The elements of a structure array, each as a structure of its own.
+    pub(super) fn into_elements(self) -> Vec<Value> {
+        match self {
+            Value::Structs(elements) => elements
+                .into_iter()
+                .map(|fields| Value::Structs(vec![fields]))
+                .collect(),
+            Value::Cells(cells) => cells,
+            _ => Vec::new(),
+        }
+    }
+
+    /// The numbers at a path.
+    pub(super) fn numbers(&self, path: &[&str]) -> Option<&[f64]> {
+        match self.at(path)? {
+            Value::Numbers(array) => Some(&array.numbers),
+            _ => None,
+        }
+    }
+
+    /// The single number at a path.
+    pub(super) fn number(&self, path: &[&str]) -> Option<f64> {
+        match self.numbers(path)? {
+            [number] => Some(*number),
+            _ => None,
+        }
+    }
+
+    /// The text at a path.
+    pub(super) fn text(&self, path: &[&str]) -> Option<&str> {
+        match self.at(path)? {
+            Value::Text(text) => Some(text),
+            _ => None,
+        }
+    }
+}
+
+impl Array {
+    pub(super) fn is_vector(&self) -> bool {
+        self.dimensions.iter().filter(|&&size| size != 1).count() <= 1
+    }
+}

@@ -1,0 +1,298 @@
+//! Groups and channels of MDF 4.
+
+use std::collections::HashMap;
+
+use crate::bytes::{Bytes, Order};
+use crate::error::{Fault, Place, Read};
+use crate::signal::Recording;
+
+use super::block::{Block, File};
+use super::conversion::Conversion;
+use super::field::{Field, Invalid, Kind};
+use super::{Channel, Records, Role, Visited, add_group, packed};
+
+/// Where the header block stands.
+const HEADER: u64 = 64;
+
+/// Reads a file of version 4.
+pub(super) fn read(bytes: Bytes, version: &str) -> Read<Recording> {
+    let file = File { bytes };
+    let mut recording = Recording::new(format!("MDF {version}"));
+    let mut visited = Visited::default();
+    let mut at = file.named(HEADER, b"##HD", "the header")?.link(0);
+    let mut what = "the first data group (`##DG`)";
+    while at != 0 {
+        let group = file.named(at, b"##DG", what)?;
+        visited.first_time(at)?;
+        add_data_group(&mut recording, &file, &group, &mut visited)?;
+        (at, what) = (group.link(0), "the next data group (`##DG`)");
+    }
+    Ok(recording)
+}
+
+/// A channel group: which records are its own, and its channels.
+struct Group {
+    id: u64,
+    name: String,
+    place: Place,
+    cycles: u64,
+    /// Bytes of a record without its id.
+    length: usize,
+    variable_length: bool,
+    channels: Vec<Channel>,
+}
+
+fn add_data_group(recording: &mut Recording, file: &File, data_group: &Block, visited: &mut Visited) -> Read<()> {
+    let id_size = usize::from(data_group.data.u8(0, "the size of record ids")?);
+    let mut groups = Vec::new();
+    let mut at = data_group.link(1);
+    while at != 0 {
+        let block = file.named(at, b"##CG", "a channel group")?;
+        visited.first_time(at)?;
+        groups.push(group(file, &block, visited)?);
+        at = block.link(0);
+    }
+    let data = packed::data(file, data_group.link(2))?;
+    match groups.as_slice() {
+        [only] if !only.variable_length => groups.remove(0).add_to(recording, &data, id_size),
+        _ => {
+            let mut sorted = sorted(&groups, &data, id_size, &data_group.place())?;
+            for group in groups.into_iter().filter(|group| !group.variable_length) {
+                let own = sorted.remove(&group.id).unwrap_or_default();
+                group.add_to(recording, &own, 0)?;
+            }
+            Ok(())
+        }
+    }
+}
+
+impl Group {
+    /// Adds the channels, whose records stand in `bytes` with so many bytes of an id before each.
+    fn add_to(self, recording: &mut Recording, bytes: &[u8], before: usize) -> Read<()> {
+        let records = Records::checked(
+            bytes,
+            before,
+            before + self.length,
+            self.cycles,
+            &self.name,
+            &self.place,
+        )?;
+        add_group(recording, &self.name, self.channels, &records)
+    }
+}
+
+/// The records of several groups that were stored as they came: an id, then the record.
+fn sorted(groups: &[Group], data: &[u8], id_size: usize, place: &Place) -> Read<HashMap<u64, Vec<u8>>> {
+    let mut own: HashMap<u64, Vec<u8>> = groups.iter().map(|group| (group.id, Vec::new())).collect();
+    let by_id: HashMap<u64, &Group> = groups.iter().map(|group| (group.id, group)).collect();
+    let mut rest = data;
+    while !rest.is_empty() {
+        let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte));
+        let at = data.len() - rest.len();
+        let cut = || {
+            Fault::cut_off(
+                place.clone(),
+                format!("half a record at byte {at} of the data"),
+                "whole records",
+            )
+        };
+        let (id, after) = rest
+            .split_at_checked(id_size)
+            .filter(|(id, _)| (1..=8).contains(&id.len()))
+            .ok_or_else(cut)?;
+        let id = number(id);
+        let Some(group) = by_id.get(&id) else {
+            let found = format!("a record with id {id} at byte {at} of the data");
+            return Err(Fault::damaged(
+                place.clone(),
+                found,
+                "an id of one of the channel groups",
+            ));
+        };
+        let length = if group.variable_length {
+            let length = after.get(..4).map(number).ok_or_else(cut)?;
+            usize::try_from(length)
+                .ok()
+                .and_then(|length| length.checked_add(4))
+                .ok_or_else(cut)?
+        } else {
+            group.length
+        };
+        let (record, next) = after.split_at_checked(length).ok_or_else(cut)?;
+        if let Some(records) = own.get_mut(&id).filter(|_| !group.variable_length) {
+            records.extend_from_slice(record);
+        }
+        rest = next;
+    }
+    Ok(own)
+}
+
+/// Channel group: links next, first channel, name, source, reduction, comment; data: record id 8, cycles 8, flags 2,
+/// separator 2, reserved 4, data bytes 4, invalidation bytes 4.
+fn group(file: &File, block: &Block, visited: &mut Visited) -> Read<Group> {
+    let data = block.data;
+    let (data_bytes, invalid_bytes) = (
+        data.u32(24, "the size of a record")?,
+        data.u32(28, "invalidation bytes")?,
+    );
+    let mut group = Group {
+        id: data.u64(0, "a record id")?,
+        name: file.text(block.link(2))?,
+        place: block.place(),
+        cycles: data.u64(8, "a number of records")?,
+        length: data_bytes as usize + invalid_bytes as usize,
+        variable_length: data.u16(16, "flags of a channel group")? & 1 != 0,
+        channels: Vec::new(),
+    };
+    if group.name.is_empty() {
+        group.name = format!("group at byte {}", block.at);
+    }
+    let record = Record {
+        data_bytes: data_bytes as usize,
+        length: group.length,
+    };
+    add_channels(file, block.link(1), &record, visited, &mut group.channels)?;
+    Ok(group)
+}
+
+struct Record {
+    data_bytes: usize,
+    length: usize,
+}
+
+/// The channels of a list, and those of which a channel is composed.
+fn add_channels(file: &File, first: u64, record: &Record, visited: &mut Visited, all: &mut Vec<Channel>) -> Read<()> {
+    let mut lists = vec![first];
+    while let Some(mut at) = lists.pop() {
+        while at != 0 {
+            let block = file.named(at, b"##CN", "a channel")?;
+            visited.first_time(at)?;
+            let composed = match block.link(1) {
+                0 => None,
+                parts => Some(file.block(parts, "what a channel is composed of")?),
+            };
+            match composed {
+                Some(part) if part.id == *b"##CN" => lists.push(part.at),
+                composed => all.push(channel(file, &block, record, composed.is_some())?),
+            }
+            at = block.link(0);
+        }
+    }
+    Ok(())
+}
+
+/// Channel: links next, composition, name, source, conversion, data, unit, comment; data: type 1, kind of time 1, data type 1,
+/// bit 1, byte 4, bits 4, flags 4, invalidation bit 4.
+fn channel(file: &File, block: &Block, record: &Record, is_array: bool) -> Read<Channel> {
+    let data = block.data;
+    let name = file.text(block.link(2))?;
+    let (kind, sync) = (data.u8(0, "a channel's type")?, data.u8(1, "a channel's kind of time")?);
+    let conversion_block = match block.link(4) {
+        0 => None,
+        at => Some(
+            file.named(at, b"##CC", "a conversion")
+                .map_err(|fault| fault.of(&name))?,
+        ),
+    };
+    let mut unit = file.text(block.link(6))?;
+    if let Some(conversion) = conversion_block.as_ref().filter(|_| unit.is_empty()) {
+        unit = file.text(conversion.link(1))?;
+    }
+    let conversion = conversion_block.map_or(Ok(Ok(Conversion::NONE)), |block| conversion(file, &block));
+    let field = match kind {
+        _ if is_array => Err("an array in each sample".into()),
+        0 | 2 | 4 => field(data, record)?,
+        1 => Err("values of variable length".into()),
+        3 | 6 => Ok(Field::Index),
+        _ => Err(format!("a channel of type {kind}")),
+    };
+    Ok(Channel {
+        role: match (kind, sync) {
+            (2 | 3, 1) => Role::Time,
+            _ => Role::Values,
+        },
+        conversion: conversion.map_err(|fault| fault.of(&name))?,
+        name,
+        unit,
+        field,
+        place: block.place(),
+    })
+}
+
+/// Where the values of a channel lie, or why they are passed over.
+fn field(data: Bytes, record: &Record) -> Read<Result<Field, String>> {
+    let what = "a channel";
+    let (kind, order) = match data.u8(2, what)? {
+        0 => (Kind::Unsigned, Order::Little),
+        1 => (Kind::Unsigned, Order::Big),
+        2 => (Kind::Signed, Order::Little),
+        3 => (Kind::Signed, Order::Big),
+        4 => (Kind::Float, Order::Little),
+        5 => (Kind::Float, Order::Big),
+        6..=9 => return Ok(Err("text".into())),
+        10 => return Ok(Err(format!("{} bytes a sample, not a number", data.u32(8, what)? / 8))),
+        15 | 16 => return Ok(Err("complex numbers".into())),
+        other => return Ok(Err(format!("data of type {other}, not numbers"))),
+    };
+    let flags = data.u32(12, what)?;
+    let invalid_bit = data.u32(16, what)?;
+    let invalid = match flags {
+        _ if flags & 1 != 0 => Invalid::All,
+        _ if flags & 2 != 0 => Invalid::Where {
+            byte: record.data_bytes + invalid_bit as usize / 8,
+            mask: 1 << (invalid_bit % 8),
+        },
+        _ => Invalid::None,
+    };
+    let field = Field::Bits {
+        byte: data.u32(4, what)? as usize,
+        bit: u32::from(data.u8(3, what)?.min(63)),
+        count: data.u32(8, what)?.min(65),
+        kind,
+        order,
+        invalid,
+    };
+    Ok(field.checked(record.length))
+}
+
+/// Conversion: links name, unit, comment, inverse, references; data: type 1, precision 1, flags 2, number of references 2,
+/// number of values 2, range 16, values. Inner: why the channel is passed over.
+fn conversion(file: &File, block: &Block) -> Read<Result<Conversion, String>> {
+    let kind = block.data.u8(0, "a conversion")?;
+    let count = block.data.u16(6, "a conversion")?;
+    let values = block.doubles(24, count.into())?;
+    let pairs = || values.chunks_exact(2).map(|two| (two[0], two[1])).collect::<Vec<_>>();
+    let rising = || values.chunks_exact(2).is_sorted_by(|low, high| low[0] < high[0]);
+    Ok(match (kind, values.as_slice()) {
+        (0, _) => Ok(Conversion::NONE),
+        (1, &[offset, factor, ..]) => Ok(Conversion::Linear { offset, factor }),
+        (2, &[a, b, c, d, e, f, ..]) => Ok(Conversion::Rational([a, b, c, d, e, f])),
+        (3, _) => Err("a conversion by a formula".into()),
+        (4 | 5, [_, _, ..]) if rising() => Ok(Conversion::Table {
+            pairs: pairs(),
+            interpolated: kind == 4,
+        }),
+        (4 | 5, _) => Err("a conversion table that does not rise".into()),
+        (6, _) => Ok(Conversion::Ranges {
+            ranges: values
+                .chunks_exact(3)
+                .map(|three| (three[0], three[1], three[2]))
+                .collect(),
+            otherwise: *values.chunks_exact(3).remainder().first().unwrap_or(&f64::NAN),
+        }),
+        (7, _) => labels(file, block, &values).map(Conversion::Labels).map(Ok)?,
+        (8..=10, _) => Err("a conversion by texts of ranges or of texts".into()),
+        (_, values) => Err(format!("a conversion of type {kind} with {} values", values.len())),
+    })
+}
+
+/// The texts of values; one that is not a text but a further conversion is left out.
+fn labels(file: &File, block: &Block, values: &[f64]) -> Read<Vec<(f64, String)>> {
+    let mut labels = Vec::new();
+    for (&value, &at) in values.iter().zip(block.links.iter().skip(4)) {
+        if at != 0 && file.block(at, "the text of a value")?.id == *b"##TX" {
+            labels.push((value, file.text(at)?));
+        }
+    }
+    Ok(labels)
+}

@@ -1,0 +1,180 @@
+//! What a table holds, whatever it is stored in: rows for people on top, then names and units, then columns of numbers.
+
+use crate::error::{Fault, Place, Read};
+use crate::signal::{Recording, Signal, Source, TimeBase};
+use crate::units::{bare, in_seconds, is_time, is_unit, name_and_unit, seconds};
+
+/// A cell of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Cell {
+    /// Nothing, or what stands for a missing value.
+    Missing,
+    Number(f64),
+    Text(String),
+}
+
+/// Where the numbers begin, and what they are.
+pub(crate) struct Layout {
+    /// The first row of numbers, an index into the rows that were looked at.
+    pub(crate) first: usize,
+    /// Name and unit of each column that has numbers, with the index of the column.
+    pub(crate) columns: Vec<Column>,
+}
+
+/// A column of numbers.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) index: usize,
+    pub(crate) name: String,
+    pub(crate) unit: String,
+}
+
+impl Layout {
+    /// Finds the numbers of a table from its upper rows, or nothing where there are none.
+    pub(crate) fn find(head: &[Vec<Cell>]) -> Option<Layout> {
+        let first = (0..head.len()).find(|&row| {
+            let rows = &head[row..(row + 2).min(head.len())];
+            let width = numbers(&head[row]);
+            width > 0 && rows.iter().all(|row| is_data(row) && 2 * numbers(row) >= width)
+        })?;
+        // A column may begin with missing values.
+        let body = &head[first..];
+        let body = &body[..body.iter().position(|row| !is_data(row)).unwrap_or(body.len())];
+        let width = body.iter().map(|row| filled_width(row)).max()?;
+        let headings = Headings::above(&head[..first], width);
+        let columns = (0..width).filter_map(|index| headings.column(index, body));
+        Some(Layout {
+            first,
+            columns: columns.collect(),
+        })
+    }
+}
+
+/// The rows that name the columns.
+struct Headings<'a> {
+    names: Option<&'a [Cell]>,
+    units: Option<&'a [Cell]>,
+}
+
+impl<'a> Headings<'a> {
+    fn above(rows: &'a [Vec<Cell>], width: usize) -> Self {
+        let mut above = rows.iter().rev().map(Vec::as_slice);
+        let (nearest, next) = (above.next().filter(|row| texts(row) > 0), above.next());
+        let over_units =
+            |units: &[Cell]| next.filter(|names| texts(names) >= texts(units).max(width.min(2)) && are_units(units));
+        match nearest {
+            Some(units) if over_units(units).is_some() => Headings {
+                names: next,
+                units: nearest,
+            },
+            _ => Headings {
+                names: nearest,
+                units: None,
+            },
+        }
+    }
+
+    fn column(&self, index: usize, body: &[Vec<Cell>]) -> Option<Column> {
+        let text = |row: Option<&[Cell]>| match row?.get(index)? {
+            Cell::Text(text) => Some(text.clone()),
+            Cell::Number(number) => Some(number.to_string()),
+            Cell::Missing => None,
+        };
+        let named = text(self.names);
+        let has_numbers = body.iter().any(|row| matches!(row.get(index), Some(Cell::Number(_))));
+        if named.is_none() && !has_numbers {
+            return None;
+        }
+        let (name, unit) = match (named, text(self.units)) {
+            (Some(name), Some(unit)) => (name.trim().into(), bare(&unit).into()),
+            (Some(heading), None) => name_and_unit(&heading),
+            (None, unit) => (format!("column {}", index + 1), unit.unwrap_or_default()),
+        };
+        Some(Column { index, name, unit })
+    }
+}
+
+fn numbers(row: &[Cell]) -> usize {
+    row.iter().filter(|cell| matches!(cell, Cell::Number(_))).count()
+}
+
+fn texts(row: &[Cell]) -> usize {
+    row.iter().filter(|cell| matches!(cell, Cell::Text(_))).count()
+}
+
+fn is_data(row: &[Cell]) -> bool {
+    numbers(row) > 0 && texts(row) == 0
+}
+
+fn filled_width(row: &[Cell]) -> usize {
+    row.iter()
+        .rposition(|cell| *cell != Cell::Missing)
+        .map_or(0, |last| last + 1)
+}
+
+/// Units stand in brackets, or most of them are known; no cell is longer than a unit is.
+fn are_units(row: &[Cell]) -> bool {
+    let texts: Vec<&str> = row
+        .iter()
+        .filter_map(|cell| match cell {
+            Cell::Text(text) => Some(text.trim()),
+            _ => None,
+        })
+        .collect();
+    let bracketed = |text: &&&str| bare(text) != **text;
+    let known = texts.iter().filter(|text| is_unit(text)).count();
+    texts.iter().all(|text| text.chars().count() <= 20)
+        && (texts.iter().filter(bracketed).count() == texts.len() || 2 * known > texts.len())
+}
+
+/// The columns of a table with their numbers.
+pub(crate) struct Filled {
+    pub(crate) columns: Vec<Column>,
+    /// As long as `columns`, each of the same length.
+    pub(crate) numbers: Vec<Vec<f64>>,
+}
+
+impl Filled {
+    /// Adds the columns to a recording. A column of times gives the others their time base; `place` says where a column, or a
+    /// row of it, stands.
+    pub(crate) fn add_to(
+        mut self,
+        recording: &mut Recording,
+        group: &str,
+        place: &dyn Fn(&Column, Option<usize>) -> Place,
+    ) -> Read<()> {
+        let mut time = TimeBase::Unknown;
+        if let Some(at) = self.columns.iter().position(|column| is_time(&column.name)) {
+            let (column, times) = (self.columns.remove(at), self.numbers.remove(at));
+            time = time_base(&column, times, place)?;
+        }
+        for (column, samples) in self.columns.into_iter().zip(self.numbers) {
+            let place = place(&column, None);
+            recording.signals.push(Signal {
+                name: column.name,
+                unit: column.unit,
+                time: time.clone(),
+                samples,
+                labels: Vec::new(),
+                source: Source {
+                    group: group.into(),
+                    place,
+                },
+            });
+        }
+        Ok(())
+    }
+}
+
+fn time_base(column: &Column, mut times: Vec<f64>, place: &dyn Fn(&Column, Option<usize>) -> Place) -> Read<TimeBase> {
+    let Some(factor) = seconds(&column.unit) else {
+        let found = format!("times in `{}`", column.unit);
+        let remedy = "give the time in one of these units";
+        return Err(Fault::new(place(column, None), found, "s, ms, us, ns, min or h", remedy).of(&column.name));
+    };
+    in_seconds(&mut times, factor);
+    TimeBase::from_times(times).map_err(|(row, found)| {
+        let remedy = "correct the row, or rename the column if it holds no times";
+        Fault::new(place(column, Some(row)), found, "times that never fall", remedy).of(&column.name)
+    })
+}

@@ -1,0 +1,326 @@
+//! TDMS, the format of LabVIEW: segments, each with a list of objects and their raw data, in either byte order, interleaved or
+//! not, or as DAQmx writes them.
+//!
+//! Source: "TDMS File Format Internal Structure" of National Instruments.
+
+// What is told of an object.
+mod metadata;
+// From raw to physical values.
+mod scaling;
+
+use std::collections::HashMap;
+
+use crate::bytes::{Bytes, Order};
+use crate::error::{Fault, Place, Read};
+use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
+use crate::units::{in_seconds, is_time, seconds};
+
+use metadata::{Index, Layout, Properties, Scaler, object};
+use scaling::Scaling;
+
+/// What a segment begins with.
+pub(crate) const MAGIC: &[u8] = b"TDSm";
+/// Bytes of the lead-in of a segment: tag 4, contents 4, version 4, length 8, place of raw data 8.
+const LEAD_IN: u64 = 28;
+
+const HAS_METADATA: u32 = 1 << 1;
+const NEW_LIST: u32 = 1 << 2;
+const HAS_RAW_DATA: u32 = 1 << 3;
+const INTERLEAVED: u32 = 1 << 5;
+const BIG_ENDIAN: u32 = 1 << 6;
+
+/// Reads all segments of a file.
+pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
+    let mut file = File::default();
+    let mut at = 0;
+    let mut number = 1;
+    while at < bytes.len() as u64 {
+        let lead_in = Bytes::of_file(bytes, Order::Little).part(at, LEAD_IN, "a segment's lead-in")?;
+        if !lead_in.data.starts_with(MAGIC) {
+            return Err(Fault::damaged(
+                Place::Byte(at),
+                "something else",
+                format!("segment {number} (`TDSm`)"),
+            ));
+        }
+        let contents = lead_in.u32(4, "contents")?;
+        let order = if contents & BIG_ENDIAN == 0 {
+            Order::Little
+        } else {
+            Order::Big
+        };
+        let lead_in = Bytes { order, ..lead_in };
+        let (length, raw) = (lead_in.u64(12, "a length")?, lead_in.u64(20, "the place of raw data")?);
+        let segment = segment(bytes, at, order, length, raw, number)?;
+        file.add(&segment, contents, raw, number)?;
+        at = at.saturating_add(LEAD_IN).saturating_add(length);
+        number += 1;
+    }
+    file.recording()
+}
+
+/// What follows the lead-in of a segment, which must be there in full.
+fn segment(bytes: &[u8], at: u64, order: Order, length: u64, raw: u64, number: u32) -> Read<Bytes<'_>> {
+    let there = bytes.len() as u64 - at - LEAD_IN;
+    if length > there {
+        let promised = match length {
+            u64::MAX => "an end that its writer never noted".into(),
+            _ => format!("{} bytes of data", length.saturating_sub(raw)),
+        };
+        let found = format!(
+            "{} bytes of data in segment {number}; the {} segments before it are whole",
+            there.saturating_sub(raw),
+            number - 1
+        );
+        return Err(Fault::cut_off(Place::Byte(at), found, promised));
+    }
+    Bytes::of_file(bytes, order).part(at + LEAD_IN, length, "a segment")
+}
+
+/// What was read of a file so far.
+#[derive(Default)]
+struct File {
+    objects: Vec<Object>,
+    by_path: HashMap<String, usize>,
+    /// Objects with raw data in a segment, in their order.
+    active: Vec<usize>,
+}
+
+/// A channel, a group or the file itself.
+struct Object {
+    path: String,
+    place: Place,
+    properties: Properties,
+    /// How its raw data lie in the present segment.
+    index: Option<Index>,
+    active: bool,
+    /// Raw values; of DAQmx data a list for each scaler.
+    raw: Vec<(Option<u32>, Vec<f64>)>,
+    /// Why its data are passed over.
+    unread: Option<String>,
+}
+
+impl File {
+    fn add(&mut self, segment: &Bytes, contents: u32, raw: u64, number: u32) -> Read<()> {
+        if contents & HAS_METADATA != 0 {
+            if contents & NEW_LIST != 0 {
+                self.active
+                    .drain(..)
+                    .for_each(|active| self.objects[active].active = false);
+            }
+            self.add_objects(segment, raw)?;
+        }
+        if contents & HAS_RAW_DATA == 0 {
+            return Ok(());
+        }
+        let place = segment.place(raw);
+        let length = segment.len().checked_sub(raw).ok_or_else(|| {
+            let found = format!(
+                "raw data from byte {raw} on in segment {number} of {} bytes",
+                segment.len()
+            );
+            Fault::damaged(segment.place(0), found, "raw data within the segment")
+        })?;
+        let data = segment.part(raw, length, "raw data")?;
+        let indices = self
+            .active
+            .iter()
+            .filter_map(|&at| Some((at, self.objects[at].index.clone()?)));
+        let used: Vec<(usize, Index)> = indices.filter(|(_, index)| index.count > 0).collect();
+        let interleaved = contents & INTERLEAVED != 0;
+        let has_others = used
+            .iter()
+            .any(|(_, index)| matches!(index.layout, Layout::Unread { .. }));
+        if interleaved && has_others {
+            let remedy = "export the file without interleaving";
+            return Err(Fault::new(
+                place,
+                "numbers interleaved with other data",
+                "interleaved numbers",
+                remedy,
+            ));
+        }
+        let chunk =
+            metadata::chunk(&used).ok_or_else(|| Fault::damaged(place.clone(), "sizes without end", "sizes"))?;
+        if chunk == 0 || length % chunk != 0 {
+            if length == 0 {
+                return Ok(());
+            }
+            let found = format!("{length} bytes of data in segment {number}");
+            return Err(Fault::damaged(place, found, format!("whole chunks of {chunk} bytes")));
+        }
+        for chunk in data.data.chunks_exact(chunk as usize) {
+            self.add_chunk(chunk, &used, interleaved, segment.order);
+        }
+        Ok(())
+    }
+
+    fn add_objects(&mut self, segment: &Bytes, raw: u64) -> Read<()> {
+        let metadata = segment.part(0, raw.min(segment.len()), "objects")?;
+        let mut at = 4;
+        for _ in 0..metadata.u32(0, "a number of objects")? {
+            let place = metadata.place(at);
+            let known = |path: &str| {
+                self.by_path
+                    .get(path)
+                    .and_then(|&known| self.objects[known].index.clone())
+            };
+            let new = object(&metadata, &mut at, &known)?;
+            let index = *self.by_path.entry(new.path.clone()).or_insert_with(|| {
+                self.objects.push(Object {
+                    path: new.path.clone(),
+                    place,
+                    properties: Properties::default(),
+                    index: None,
+                    active: false,
+                    raw: Vec::new(),
+                    unread: None,
+                });
+                self.objects.len() - 1
+            });
+            let object = &mut self.objects[index];
+            object.properties.extend(new.properties);
+            object.index = new.index;
+            let was_active = std::mem::replace(&mut object.active, object.index.is_some());
+            match (was_active, object.active) {
+                (false, true) => self.active.push(index),
+                (true, false) => self.active.retain(|&active| active != index),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn add_chunk(&mut self, chunk: &[u8], used: &[(usize, Index)], interleaved: bool, order: Order) {
+        let stride: u64 = used.iter().filter_map(|(_, index)| index.size()).sum();
+        let (mut at, mut column) = (0, 0);
+        for (object, index) in used {
+            let object = &mut self.objects[*object];
+            match &index.layout {
+                Layout::Plain(number) if interleaved => {
+                    object.extend(None, number.strided(&chunk[column..], stride as usize, order));
+                    column += number.size();
+                }
+                Layout::Plain(number) => {
+                    let end = at + number.size() * index.count as usize;
+                    object.extend(None, number.all(&chunk[at..end], order));
+                    at = end;
+                }
+                Layout::Unread { bytes, why } => {
+                    object.unread = Some(why.clone());
+                    at += *bytes as usize;
+                }
+                Layout::Daqmx { scalers, .. } => {
+                    for Scaler {
+                        id,
+                        number,
+                        buffer,
+                        byte,
+                    } in scalers
+                    {
+                        let Some((buffer, width)) = metadata::buffer(used, chunk, *buffer) else {
+                            continue;
+                        };
+                        let from = buffer.get(*byte as usize..).unwrap_or(&[]);
+                        object.extend(Some(*id), number.strided(from, width, order));
+                    }
+                }
+            }
+        }
+    }
+
+    fn recording(mut self) -> Read<Recording> {
+        let mut recording = Recording::new("TDMS");
+        let mut times: HashMap<String, TimeBase> = HashMap::new();
+        let mut channels = Vec::new();
+        for object in &mut self.objects {
+            let Some((group, name)) = channel_of(&object.path) else {
+                continue;
+            };
+            match object.values() {
+                Ok(samples) => channels.push((group, name, &*object, samples)),
+                Err(why) => recording.pass_over(name, object.place.clone(), why),
+            }
+        }
+        let untimed = |group: &str| {
+            channels
+                .iter()
+                .any(|(own, _, object, _)| own == group && object.step().is_none())
+        };
+        for (group, name, object, samples) in channels
+            .iter()
+            .filter(|(group, name, ..)| is_time(name) && untimed(group))
+        {
+            if let Some(factor) = seconds(&object.unit()) {
+                let mut own = samples.clone();
+                in_seconds(&mut own, factor);
+                let base = TimeBase::from_times(own).map_err(|(at, found)| {
+                    Fault::damaged(object.place.clone(), format!("{found} in sample {}", at + 1), "times").of(name)
+                })?;
+                times.insert(group.clone(), base);
+            }
+        }
+        for (group, name, object, samples) in channels {
+            let of_group = times.get(&group).filter(|_| object.step().is_none());
+            if of_group.is_some() && is_time(&name) {
+                continue;
+            }
+            let time = match (object.step(), of_group) {
+                (Some((start, step)), _) => {
+                    evenly(start, step, object.place.clone()).map_err(|fault| fault.of(&name))?
+                }
+                (None, Some(TimeBase::Times(times))) if times.len() == samples.len() => TimeBase::Times(times.clone()),
+                _ => TimeBase::Unknown,
+            };
+            recording.signals.push(Signal {
+                name,
+                unit: object.unit(),
+                time,
+                samples,
+                labels: Vec::new(),
+                source: Source {
+                    group,
+                    place: object.place.clone(),
+                },
+            });
+        }
+        Ok(recording)
+    }
+}
+
+impl Object {
+    fn extend(&mut self, scaler: Option<u32>, values: Vec<f64>) {
+        match self.raw.iter_mut().find(|(own, _)| *own == scaler) {
+            Some((_, all)) => all.extend(values),
+            None => self.raw.push((scaler, values)),
+        }
+    }
+
+    /// Physical values, or why there are none.
+    fn values(&mut self) -> Result<Vec<f64>, String> {
+        match &self.unread {
+            Some(why) => Err(why.clone()),
+            None => Scaling::of(&self.properties)?.apply(std::mem::take(&mut self.raw)),
+        }
+    }
+
+    /// Start and step of a waveform.
+    fn step(&self) -> Option<(f64, f64)> {
+        let step = self.properties.number("wf_increment").filter(|&step| step != 0.0)?;
+        Some((self.properties.number("wf_start_offset").unwrap_or(0.0), step))
+    }
+
+    fn unit(&self) -> String {
+        let text = ["unit_string", "NI_UnitDescription", "unit", "Unit"];
+        text.iter()
+            .find_map(|name| self.properties.text(name))
+            .unwrap_or("")
+            .into()
+    }
+}
+
+/// Group and channel of a path such as `/'rig'/'wheel_left_z'`; a quote within a name is doubled.
+fn channel_of(path: &str) -> Option<(String, String)> {
+    let (group, channel) = path.strip_prefix("/'")?.strip_suffix('\'')?.split_once("'/'")?;
+    Some((group.replace("''", "'"), channel.replace("''", "'")))
+}

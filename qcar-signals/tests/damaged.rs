@@ -1,0 +1,301 @@
+//! Whatever a file holds, it is read or refused: no panic, and no more memory than its bytes can pay for.
+
+#![expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
+
+use std::alloc::{GlobalAlloc, Layout, System};
+use std::cell::Cell;
+use std::fs;
+use std::io::Write as _;
+use std::panic::catch_unwind;
+use std::path::Path;
+
+use flate2::Compression;
+use flate2::write::ZlibEncoder;
+use qcar_signals::read::recognise;
+
+/// Counts what the thread of a test holds, and the most it held.
+struct Counting;
+
+thread_local! {
+    static HELD: Cell<isize> = const { Cell::new(0) };
+    static MOST: Cell<isize> = const { Cell::new(0) };
+}
+
+fn count(bytes: isize) {
+    let held = HELD.get() + bytes;
+    HELD.set(held);
+    MOST.set(MOST.get().max(held));
+}
+
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        count(layout.size() as isize);
+        unsafe { System.alloc(layout) }
+    }
+
+    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
+        count(-(layout.size() as isize));
+        unsafe { System.dealloc(place, layout) }
+    }
+}
+
+#[global_allocator]
+static ALLOCATOR: Counting = Counting;
+
+/// The most that a reader held beyond what it was given, bytes.
+fn memory_of(bytes: &[u8]) -> isize {
+    let before = HELD.get();
+    MOST.set(before);
+    let _ = recognise(bytes);
+    MOST.get() - before
+}
+
+fn sample(name: &str) -> Vec<u8> {
+    fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)).unwrap()
+}
+
+/// Numbers that look random and are the same every time (xorshift64*).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, end: usize) -> usize {
+        self.0 ^= self.0 >> 12;
+        self.0 ^= self.0 << 25;
+        self.0 ^= self.0 >> 27;
+        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % end
+    }
+}
+
+/// A few bytes changed, each to what breaks readers; or a piece taken out, doubled, or cut off.
+fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
+    let mut bytes = file.to_vec();
+    // Most of what matters stands at the beginning and at the end.
+    let place = |random: &mut Random, length: usize| match random.below(4) {
+        0 => random.below(length),
+        1 => length - 1 - random.below(length.min(600)),
+        _ => random.below(length.min(3000)),
+    };
+    match random.below(10) {
+        0 => bytes.truncate(random.below(file.len())),
+        1 => {
+            let (at, length) = (place(random, bytes.len()), random.below(300));
+            bytes.drain(at..(at + length).min(file.len()));
+        }
+        2 => {
+            let (at, length) = (place(random, bytes.len()), random.below(300));
+            let piece = bytes[at..(at + length).min(file.len())].to_vec();
+            bytes.splice(at..at, piece);
+        }
+        _ => {
+            for _ in 0..=random.below(4) {
+                let at = place(random, bytes.len());
+                let values = [
+                    0,
+                    1,
+                    0x7f,
+                    0x80,
+                    0xff,
+                    random.below(256) as u8,
+                    bytes[at].wrapping_add(1),
+                ];
+                let value = values[random.below(values.len())];
+                let end = (at + [1, 1, 2, 4, 8][random.below(5)]).min(bytes.len());
+                bytes[at..end].fill(value);
+            }
+        }
+    }
+    bytes
+}
+
+/// Bytes that a reader may hold for each byte of a file of a few hundred kilobytes, and for any file. Rows of a table of text
+/// take more than they are long while its head is looked at.
+const PER_BYTE: usize = 64;
+const ALWAYS: usize = 48 << 20;
+
+fn survives(names: &[&str], mutations: usize) {
+    let mut random = Random(0x5eed);
+    for name in names {
+        let file = sample(name);
+        for at in 0..mutations / names.len() {
+            let bytes = mutated(&file, &mut random);
+            let held = catch_unwind(|| memory_of(&bytes));
+            let held = held.unwrap_or_else(|_| panic!("mutation {at} of {name} made the reader panic"));
+            let bound = (PER_BYTE * bytes.len() + ALWAYS) as isize;
+            assert!(
+                held <= bound,
+                "mutation {at} of {name}: {held} bytes for a file of {}",
+                bytes.len()
+            );
+        }
+    }
+}
+
+#[test]
+fn tables_of_text() {
+    survives(
+        &[
+            "table/kc_semicolon_comma_latin1.csv",
+            "table/rig_units_row_bom_crlf.csv",
+        ],
+        3000,
+    );
+}
+
+#[test]
+fn mdf() {
+    let plain = [
+        "mdf/plain_3groups.mf4",
+        "mdf/v330_3groups.mdf",
+        "mdf/special_text_invalid_bits.mf4",
+    ];
+    survives(&plain, 4000);
+    survives(&["mdf/other_writer_dz.mf4", "mdf/dz_transposed_3groups.mf4"], 1000);
+}
+
+#[test]
+fn uff() {
+    survives(
+        &[
+            "uff/151_164_58_58b.uff",
+            "uff/binary8byte_58b.uff",
+            "uff/time_history_partial_line.uff",
+        ],
+        3000,
+    );
+}
+
+#[test]
+fn rpc() {
+    survives(
+        &[
+            "rpc/short_4frames_group.tim",
+            "rpc/drive_spaces_zero_channel.drv",
+            "rpc/float_1frame_group.rpc",
+        ],
+        3000,
+    );
+}
+
+#[test]
+fn tdms() {
+    survives(
+        &[
+            "tdms/waveform_2segments.tdms",
+            "tdms/int16_linear_scale_time_channel.tdms",
+        ],
+        3000,
+    );
+}
+
+#[test]
+fn mat() {
+    survives(
+        &[
+            "mat/dspace_v6.mat",
+            "mat/matlab65_struct_v6.mat",
+            "mat/labcontrol_ensaio_A1.mat",
+        ],
+        3000,
+    );
+    survives(&["mat/testlab_v73.mat", "mat/matlab74_double_v73.mat"], 3000);
+}
+
+#[test]
+fn workbooks() {
+    survives(&["table/kc_bounce.xlsx", "table/vehicle_template.xlsx"], 2000);
+}
+
+/// A file in which one number is replaced, to claim far more than there is.
+fn claiming(name: &str, at: usize, number: &[u8]) -> Vec<u8> {
+    let mut bytes = sample(name);
+    bytes[at..at + number.len()].copy_from_slice(number);
+    bytes
+}
+
+fn find(bytes: &[u8], what: &[u8]) -> usize {
+    bytes.windows(what.len()).position(|window| window == what).unwrap()
+}
+
+/// Refused with all of `parts` in the message, in less than a megabyte.
+fn refused(bytes: &[u8], parts: &[&str]) {
+    let fault = recognise(bytes).unwrap_err().to_string();
+    for part in parts {
+        assert!(fault.contains(part), "`{part}` is not in: {fault}");
+    }
+    assert!(memory_of(bytes) < 1 << 20);
+}
+
+#[test]
+fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
+    let many = 1_250_000_000_u64;
+
+    let file = sample("mdf/plain_3groups.mf4");
+    let group = find(&file, b"##CG");
+    let links = usize::from(file[group + 16]);
+    let cycles = group + 24 + 8 * links + 8;
+    refused(
+        &claiming("mdf/plain_3groups.mf4", cycles, &many.to_le_bytes()),
+        &["1250000000 records", "2000 whole records", "rig_500Hz"],
+    );
+
+    let file = sample("rpc/short_4frames_group.tim");
+    let frames = find(&file, b"FRAMES\0") + 32;
+    refused(
+        &claiming("rpc/short_4frames_group.tim", frames, b"2441406\0"),
+        &["2441406 frames", "2 groups are whole", "cut off"],
+    );
+
+    let file = sample("uff/binary8byte_58b.uff");
+    let count = find(&file, b"         4       250") + 10;
+    refused(
+        &claiming("uff/binary8byte_58b.uff", count, b"1250000000"),
+        &["10000000000 bytes", "channel `NONE`"],
+    );
+
+    let file = sample("tdms/waveform_2segments.tdms");
+    let length = file.len() - 56000 - 28;
+    let second = file[..length].windows(4).rposition(|window| window == b"TDSm").unwrap();
+    refused(
+        &claiming("tdms/waveform_2segments.tdms", second + 12, &(8 * many).to_le_bytes()),
+        &["segment 2", "the 1 segments before it are whole"],
+    );
+
+    let file = sample("mat/matlab65_struct_v6.mat");
+    let field = find(&file, &[9, 0, 0, 0, 24, 0, 0, 0]);
+    refused(
+        &claiming("mat/matlab65_struct_v6.mat", field + 4, &many.to_le_bytes()[..4]),
+        &["1250000000 bytes", "doublefield"],
+    );
+
+    let file = sample("mat/matlab74_double_v73.mat");
+    let size = 9_u64.to_le_bytes();
+    let dimension = find(&file, &[size, 1_u64.to_le_bytes()].concat());
+    refused(
+        &claiming("mat/matlab74_double_v73.mat", dimension, &many.to_le_bytes()),
+        &["10000000000 bytes", "testdouble"],
+    );
+}
+
+#[test]
+fn a_packed_block_gives_no_more_than_it_says() {
+    // A megabyte of zeros in a thousand bytes, which claim to be eight.
+    let mut packed = ZlibEncoder::new(Vec::new(), Compression::best());
+    packed.write_all(&vec![0; 1 << 20]).unwrap();
+    let packed = packed.finish().unwrap();
+    let mut file = sample("mdf/dz_transposed_3groups.mf4");
+    let block = find(&file, b"##DZ");
+    let data = block + 48;
+    file[data - 16..data - 8].copy_from_slice(&8_u64.to_le_bytes());
+    file[data - 8..data].copy_from_slice(&(packed.len() as u64).to_le_bytes());
+    file[data..data + packed.len()].copy_from_slice(&packed);
+    refused(&file, &["whole records"]);
+}
+
+#[test]
+fn what_is_of_no_known_format_is_refused() {
+    refused(b"\x7fELF\x02\x01\x01\0\0\0\0\0\0\0\0\0", &["expected"]);
+    refused(b"", &["an empty file"]);
+    refused(b"UnFinMF 4.10    ", &["did not finish"]);
+    refused(b"MDF     5.00    ", &["MDF version `5.00`"]);
+    refused(b"\xd0\xcf\x11\xe0", &[".xls", "save it as .xlsx"]);
+}

@@ -1,0 +1,143 @@
+//! Sweeps and time histories, replayed through the model and held against what was recorded.
+
+use qcar_runtime::campaign::{Campaign, Role, Run, Test};
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::beginning::beginnings;
+use qcar_runtime::discover::evidence::Stimulus;
+use qcar_runtime::discover::nuisance::Nuisance;
+use qcar_runtime::discover::predict::{Misread, PredictError, replayed};
+use qcar_runtime::error::InputError;
+use qcar_runtime::model::Model;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::transmissibility::{Point, signal};
+use serde::Serialize;
+
+use crate::failure::Failure;
+
+/// A run, measured and simulated.
+pub(super) struct Record {
+    /// Its file, as the campaign calls it.
+    pub run: String,
+    /// Hz.
+    pub rate: f64,
+    /// Time of the first sample, s.
+    pub start: f64,
+    /// What each sensor has measured, and what it would have, sample by sample; SI.
+    pub signals: Vec<(Point, [Vec<f64>; 2])>,
+    /// For each of them.
+    pub errors: Vec<RecordError>,
+}
+
+/// How far a simulated signal is from the measured one.
+#[derive(Serialize)]
+pub(super) struct RecordError {
+    /// The file of the run.
+    pub run: String,
+    /// `fit` or `held_out`.
+    pub role: &'static str,
+    /// The sensor, as location and axis.
+    pub channel: String,
+    /// What it measures.
+    pub quantity: &'static str,
+    /// Unit of both root mean squares.
+    pub unit: &'static str,
+    /// Root mean square of what was measured, without its mean.
+    pub measured_rms: f64,
+    /// Root mean square of the difference.
+    pub rms_error: f64,
+    /// The second over the first.
+    pub nrms: f64,
+}
+
+/// True for a run that is replayed.
+fn is_record(run: &Run) -> bool {
+    matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_))
+}
+
+/// Replays every sweep and time history of a campaign; none where it has none.
+///
+/// # Errors
+/// Runs that cannot be read or say nothing of the model.
+pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -> Result<Vec<Record>, Failure> {
+    if !campaign.runs.iter().any(is_record) {
+        return Ok(Vec::new());
+    }
+    let mut alike = campaign.clone();
+    alike.runs.retain(is_record);
+    // No run judges here: each is on its own from its beginning to its end.
+    alike.runs.iter_mut().for_each(|run| run.role = Role::Fit);
+    let evidence = Evidence::from_campaign(&alike, model.about())?;
+    let simulated = simulated(model, values, &evidence)
+        .map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    let mut records = Vec::new();
+    for (own, simulated) in evidence.runs.iter().zip(simulated) {
+        let run = campaign.runs.iter().find(|run| run.file == own.name);
+        records.push(record(
+            campaign,
+            (run.expect("the evidence is of this campaign"), &own.stimulus),
+            simulated,
+        )?);
+    }
+    Ok(records)
+}
+
+/// What the sensors of each run would have recorded.
+fn simulated(
+    model: &dyn Model,
+    values: &Values,
+    evidence: &Evidence,
+) -> Result<Vec<Vec<(Point, Vec<f64>)>>, PredictError> {
+    let nuisance = Nuisance::of(evidence);
+    let right = vec![0.0; nuisance.len()];
+    let mut misread = Misread::default();
+    beginnings(model, values, (&nuisance, &right), evidence, Role::Fit, &mut misread)?;
+    let runs = 0..evidence.runs.len();
+    runs.map(|run| replayed(model, values, &misread, evidence, run))
+        .collect()
+}
+
+/// A run, of which the band and the samples are held against each other that a search would compare.
+fn record(
+    campaign: &Campaign,
+    (run, stimulus): (&Run, &Stimulus),
+    simulated: Vec<(Point, Vec<f64>)>,
+) -> Result<Record, InputError> {
+    let history = campaign.history(run)?;
+    let cut = stimulus.cut();
+    let (mut signals, mut errors) = (Vec::new(), Vec::new());
+    for (sensor, simulated) in simulated {
+        let measured = stimulus.of_band(&signal(&history, &sensor)?);
+        let inside = |signal: Vec<f64>| signal[cut..signal.len() - cut].to_vec();
+        let (measured, simulated) = (inside(measured), inside(simulated));
+        errors.push(error(run, &sensor, &measured, &simulated));
+        signals.push((sensor, [measured, simulated]));
+    }
+    Ok(Record {
+        run: run.file.clone(),
+        rate: history.sample_rate,
+        start: history.start + cut as f64 / history.sample_rate,
+        signals,
+        errors,
+    })
+}
+
+fn error(run: &Run, sensor: &Point, measured: &[f64], simulated: &[f64]) -> RecordError {
+    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+    let rms =
+        |values: &mut dyn Iterator<Item = f64>| (values.map(|y| y * y).sum::<f64>() / measured.len() as f64).sqrt();
+    let measured_rms = rms(&mut measured.iter().map(|y| y - mean));
+    let rms_error = rms(&mut measured
+        .iter()
+        .zip(simulated)
+        .map(|(measured, simulated)| simulated - measured));
+    RecordError {
+        run: run.file.clone(),
+        role: if run.role == Role::Fit { "fit" } else { "held_out" },
+        channel: format!("{}_{}", sensor.location, sensor.axis.name()),
+        quantity: sensor.quantity.name(),
+        unit: sensor.quantity.unit(),
+        measured_rms,
+        rms_error,
+        nrms: rms_error / measured_rms,
+    }
+}

@@ -1,0 +1,120 @@
+//! Effects in another form than the catalogue's, and which of its names are of their family.
+
+use super::entries::{Entry, entry};
+
+/// The laws, each with the names that count as it at the same place.
+pub const OTHER_LAWS: [(Entry, &str); 13] = [
+    (
+        entry(
+            "lugre_friction",
+            "damper",
+            "c",
+            &[
+                ("f_coulomb", [30.0, 60.0, 150.0]),
+                ("static_ratio", [1.2, 1.35, 1.6]),
+                ("v_stribeck", [0.01, 0.006, 0.004]),
+                ("sigma0", [300e3, 600e3, 1.2e6]),
+                ("sigma1", [200.0, 300.0, 400.0]),
+            ],
+        ),
+        "coulomb_friction|bouc_wen_hysteresis",
+    ),
+    (
+        entry(
+            "arctan_friction",
+            "damper",
+            "a",
+            &[("f_coulomb", [30.0, 60.0, 150.0]), ("v_slip", [0.002, 0.002, 0.004])],
+        ),
+        "coulomb_friction|bouc_wen_hysteresis",
+    ),
+    (
+        entry(
+            "slip_stack",
+            "damper",
+            "c",
+            &[("f_slip", [30.0, 80.0, 200.0]), ("k_stick", [100e3, 200e3, 400e3])],
+        ),
+        "coulomb_friction|bouc_wen_hysteresis",
+    ),
+    (
+        entry(
+            "foam_stop",
+            "spring",
+            "c",
+            &[
+                ("gap", [0.02, 0.012, 0.008]),
+                ("k_stop", [60e3, 100e3, 150e3]),
+                ("power", [1.8, 2.2, 2.6]),
+            ],
+        ),
+        "bump_stop|progressive_spring",
+    ),
+    (
+        entry("sinh_spring", "spring", "c", &[("length", [0.04, 0.025, 0.015])]),
+        "progressive_spring",
+    ),
+    (
+        entry(
+            "power_damper",
+            "damper",
+            "c",
+            &[("exponent", [0.9, 0.75, 0.6]), ("v_same", [0.15, 0.15, 0.15])],
+        ),
+        "digressive_damper|segmented_polynomial_damper",
+    ),
+    (
+        entry(
+            "table_damper",
+            "damper",
+            "a",
+            &[("digression", [0.3, 0.6, 0.9]), ("asymmetry", [1.1, 1.4, 1.8])],
+        ),
+        "digressive_damper|segmented_polynomial_damper|asymmetric_damper",
+    ),
+    (
+        entry("soft_play", "damper", "c", &[("gap", [0.001, 0.002, 0.004])]),
+        "free_play",
+    ),
+    (
+        entry("exponential_tire", "tire", "c", &[("length", [0.12, 0.06, 0.03])]),
+        "tire_progressive_stiffness",
+    ),
+    (
+        entry(
+            "two_branch_tire",
+            "tire",
+            "a",
+            &[("stiffness_ratio", [1.2, 1.4, 1.8]), ("frequency", [4.0, 4.0, 4.0])],
+        ),
+        "tire_dynamic_stiffness",
+    ),
+    (
+        entry(
+            "fractional_mount",
+            "top_mount",
+            "c",
+            &[("k_middle", [60e3, 120e3, 250e3]), ("frequency", [8.0, 8.0, 8.0])],
+        ),
+        "bushing_relaxation",
+    ),
+    (
+        entry(
+            "cubic_bushing",
+            "wheel_bushing_x",
+            "c",
+            &[("travel", [0.006, 0.004, 0.0025])],
+        ),
+        "bushing_saturation",
+    ),
+    (
+        entry("quadratic_drag", "body", "c", &[("c2", [400.0, 1000.0, 2500.0])]),
+        "drag_to_ground",
+    ),
+];
+
+/// The names, with bars between them, that count as a law; a law of the catalogue counts as itself.
+pub fn family(name: &str) -> &str {
+    let own = OTHER_LAWS.iter().find(|(entry, _)| entry.name == name);
+    own.map_or(name, |(_, names)| names)
+}

@@ -1,0 +1,256 @@
+//! Laws in another form than the catalogue has for the same thing, and laws that it has in no form.
+//!
+//! A corner hides one of them at most; `inner` are its states.
+
+use std::f64::consts::{FRAC_2_PI, TAU};
+
+/// States that a law may have.
+pub const INNER: usize = 3;
+
+/// One of the laws, by its names and parameters in the matrix.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Other {
+    /// Bristles with a Stribeck peak (Canudas de Wit, C., Olsson, H., Åström, K. J., Lischinsky, P.: A new model for control
+    /// of systems with friction, IEEE Trans. Automatic Control 40, 1995).
+    LuGre {
+        f_coulomb: f64,
+        f_static: f64,
+        v_stribeck: f64,
+        sigma0: f64,
+        sigma1: f64,
+    },
+    /// Friction as a smooth function of velocity (Andersson, S., Söderberg, A., Björklund, S.: Friction models for sliding
+    /// dry, boundary and mixed lubricated contacts, Tribology Int. 40, 2007).
+    Arctan { f_coulomb: f64, v_slip: f64 },
+    /// Parallel elements that stick and slip (Iwan, W. D.: A distributed-element model for hysteresis, J. Appl. Mech. 33,
+    /// 1966).
+    SlipStack { f_slip: f64, k_stick: f64 },
+    /// A stop of foam: a power of its compression, `k_stop` its rate at 10 mm.
+    FoamStop { gap: f64, k_stop: f64, power: f64 },
+    /// A spring that stiffens like a hyperbolic sine of its travel over a length.
+    SinhSpring { length: f64 },
+    /// A damper whose force is a power of its velocity, and the given one at `v_same`.
+    PowerDamper { exponent: f64, v_same: f64 },
+    /// A damper by a table of forces with straight lines between: it digresses, and rebound is stronger.
+    TableDamper { digression: f64, asymmetry: f64 },
+    /// Play that a damper comes out of softly.
+    SoftPlay { gap: f64 },
+    /// A tyre that stiffens exponentially over a length.
+    ExponentialTire { length: f64 },
+    /// A tyre with two Maxwell branches, five times apart in frequency.
+    TwoBranchTire { stiffness_ratio: f64, frequency: f64 },
+    /// Rubber of nearly fractional order by three Maxwell branches, five times apart (Schiessel, H., Blumen, A.:
+    /// Hierarchical analogues to fractional relaxation equations, J. Phys. A 26, 1993).
+    FractionalMount { k_middle: f64, frequency: f64 },
+    /// A bushing along x that stiffens with the square of its travel: at `travel` its force has doubled.
+    CubicBushing { travel: f64 },
+    /// Drag of the body by the square of its velocity.
+    QuadraticDrag { c2: f64 },
+    /// In no form in the catalogue: a damper whose damping grows with the square of its travel, doubled at `travel`.
+    PositionDamper { travel: f64 },
+    /// In no form in the catalogue: a hydraulic stop, whose damping grows beyond a travel in rebound alone.
+    HydraulicStop { gap: f64, c_per_metre: f64 },
+}
+
+/// Slopes of a table damper change at these velocities, m/s.
+const KNEES: [f64; 3] = [0.03, 0.12, 0.4];
+/// The foam's rate is quoted at this compression, m.
+const FOAM: f64 = 0.01;
+/// Below this velocity a power of it is rounded off, m/s.
+const ROUNDED: f64 = 0.005;
+
+impl Other {
+    /// The law of a name, if it is one of these, with its parameters.
+    pub fn named(name: &str, get: impl Fn(&str) -> f64) -> Option<Self> {
+        Some(match name {
+            "lugre_friction" => Self::LuGre {
+                f_coulomb: get("f_coulomb"),
+                f_static: get("f_coulomb") * get("static_ratio"),
+                v_stribeck: get("v_stribeck"),
+                sigma0: get("sigma0"),
+                sigma1: get("sigma1"),
+            },
+            "arctan_friction" => Self::Arctan {
+                f_coulomb: get("f_coulomb"),
+                v_slip: get("v_slip"),
+            },
+            "slip_stack" => Self::SlipStack {
+                f_slip: get("f_slip"),
+                k_stick: get("k_stick"),
+            },
+            "foam_stop" => Self::FoamStop {
+                gap: get("gap"),
+                k_stop: get("k_stop"),
+                power: get("power"),
+            },
+            "sinh_spring" => Self::SinhSpring { length: get("length") },
+            "power_damper" => Self::PowerDamper {
+                exponent: get("exponent"),
+                v_same: get("v_same"),
+            },
+            "table_damper" => Self::TableDamper {
+                digression: get("digression"),
+                asymmetry: get("asymmetry"),
+            },
+            "soft_play" => Self::SoftPlay { gap: get("gap") },
+            "exponential_tire" => Self::ExponentialTire { length: get("length") },
+            "two_branch_tire" => Self::TwoBranchTire {
+                stiffness_ratio: get("stiffness_ratio"),
+                frequency: get("frequency"),
+            },
+            "fractional_mount" => Self::FractionalMount {
+                k_middle: get("k_middle"),
+                frequency: get("frequency"),
+            },
+            "cubic_bushing" => Self::CubicBushing { travel: get("travel") },
+            "quadratic_drag" => Self::QuadraticDrag { c2: get("c2") },
+            "position_damper" => Self::PositionDamper { travel: get("travel") },
+            "hydraulic_stop" => Self::HydraulicStop {
+                gap: get("gap"),
+                c_per_metre: get("c_per_metre"),
+            },
+            _ => return None,
+        })
+    }
+
+    /// Whether it sticks, which takes shorter steps.
+    pub fn is_dry(&self) -> bool {
+        matches!(self, Self::LuGre { .. } | Self::Arctan { .. } | Self::SlipStack { .. })
+    }
+
+    /// Friction beside the damper, N, over its velocity.
+    pub fn friction(&self, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
+        match *self {
+            Self::LuGre {
+                f_coulomb,
+                f_static,
+                v_stribeck,
+                sigma0,
+                sigma1,
+            } => {
+                let slipping = f_coulomb + (f_static - f_coulomb) * (-(v / v_stribeck).powi(2)).exp();
+                rate[0] = v - sigma0 * v.abs() * inner[0] / slipping;
+                sigma0 * inner[0] + sigma1 * rate[0]
+            }
+            Self::Arctan { f_coulomb, v_slip } => f_coulomb * FRAC_2_PI * (v / v_slip).atan(),
+            Self::SlipStack { f_slip, k_stick } => {
+                for (k, (force, stiffness)) in [(0.2, 0.5), (0.3, 0.3), (0.5, 0.2)].into_iter().enumerate() {
+                    let part = inner[k] / (force * f_slip);
+                    let slips = if part * v > 0.0 { part.powi(6) } else { 0.0 };
+                    rate[k] = stiffness * k_stick * v * (1.0 - slips);
+                }
+                inner.iter().sum()
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// What a spring of rate `k` has beyond it, N, over its stretch.
+    pub fn spring(&self, k: f64, s: f64) -> f64 {
+        match *self {
+            Self::FoamStop { gap, k_stop, power } => {
+                let pressed = (-s - gap).max(0.0) / FOAM;
+                -k_stop * FOAM / power * pressed.powf(power)
+            }
+            Self::SinhSpring { length } => k * (length * (s / length).sinh() - s),
+            _ => 0.0,
+        }
+    }
+
+    /// Force of the damper, N, in place of `c v`.
+    pub fn damper(&self, c: f64, s: f64, v: f64) -> Option<f64> {
+        match *self {
+            Self::PowerDamper { exponent, v_same } => Some(c * v * (v.hypot(ROUNDED) / v_same).powf(exponent - 1.0)),
+            Self::TableDamper { digression, asymmetry } => {
+                let side = if v > 0.0 { asymmetry } else { 1.0 };
+                Some(c * 2.0 * side / (1.0 + asymmetry) * table(digression, v.abs()) * v.signum())
+            }
+            Self::SoftPlay { gap } => Some(c * v * (1.0 - (-(2.0 * s / gap).powi(2)).exp())),
+            Self::PositionDamper { travel } => Some(c * v * (1.0 + (s / travel).powi(2))),
+            Self::HydraulicStop { gap, c_per_metre } => {
+                let beyond = if v > 0.0 { (s - gap).max(0.0) } else { 0.0 };
+                Some((c + c_per_metre * beyond) * v)
+            }
+            _ => None,
+        }
+    }
+
+    /// What a tyre of rate `k` has beyond it, N, over its compression from rest.
+    pub fn tire(&self, k: f64, compression: f64) -> f64 {
+        match *self {
+            Self::ExponentialTire { length } => k * (length * ((compression / length).exp() - 1.0) - compression),
+            _ => 0.0,
+        }
+    }
+
+    /// What relaxes in the tyre, N.
+    pub fn tire_memory(&self, inner: &[f64]) -> f64 {
+        match self {
+            Self::TwoBranchTire { .. } => inner[0] + inner[1],
+            _ => 0.0,
+        }
+    }
+
+    /// How that changes in a tyre of rate `k`.
+    pub fn tire_relaxes(&self, k: f64, compression_rate: f64, inner: &[f64], rate: &mut [f64]) {
+        if let Self::TwoBranchTire {
+            stiffness_ratio,
+            frequency,
+        } = *self
+        {
+            let added = 0.5 * (stiffness_ratio - 1.0) * k;
+            maxwell(
+                &[(added, frequency), (added, 5.0 * frequency)],
+                compression_rate,
+                inner,
+                rate,
+            );
+        }
+    }
+
+    /// What relaxes in the top mount, N.
+    pub fn top_mount(&self, v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
+        match *self {
+            Self::FractionalMount { k_middle, frequency } => {
+                let branch = |power: f64| (k_middle * 1.6_f64.powf(power), frequency * 5_f64.powf(power));
+                maxwell(&[-1.0, 0.0, 1.0].map(branch), v, inner, rate)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// What a bushing along x of rate `k` has beyond it, N.
+    pub fn bushing(&self, k: f64, s: f64) -> f64 {
+        match *self {
+            Self::CubicBushing { travel } => k * s * (s / travel).powi(2),
+            _ => 0.0,
+        }
+    }
+
+    /// Drag on the body, N.
+    pub fn drag(&self, v: f64) -> f64 {
+        match *self {
+            Self::QuadraticDrag { c2 } => c2 * v * v.abs(),
+            _ => 0.0,
+        }
+    }
+}
+
+/// Integral of the slopes of a table damper, as shares of its damping, from rest to a velocity.
+fn table(digression: f64, v: f64) -> f64 {
+    let starts = [0.0, KNEES[0], KNEES[1], KNEES[2]];
+    let ends = [KNEES[0], KNEES[1], KNEES[2], f64::INFINITY];
+    let segment = |(k, (start, end)): (u8, (f64, f64))| {
+        let slope = 1.0 + digression * (0.8 - 0.6 * f64::from(k));
+        slope * (v.min(end) - start).max(0.0)
+    };
+    (0..).zip(starts.into_iter().zip(ends)).map(segment).sum()
+}
+
+/// Force of parallel Maxwell branches, each by stiffness and frequency; `inner` are their forces.
+fn maxwell(branches: &[(f64, f64)], v: f64, inner: &[f64], rate: &mut [f64]) -> f64 {
+    for (i, (k, frequency)) in branches.iter().enumerate() {
+        rate[i] = k * v - TAU * frequency * inner[i];
+    }
+    inner[..branches.len()].iter().sum()
+}

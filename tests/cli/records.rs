@@ -1,0 +1,414 @@
+//! Campaigns of time histories alone, as small as shows what is tested.
+
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::{qcar, succeeds};
+
+/// Samples of every record, and their rate in Hz.
+const SAMPLES: usize = 2000;
+const RATE: f64 = 200.0;
+
+/// A mass of 2 kg on a spring of 800 N/m and a damper of 3 N s/m under a force, by steps far shorter than a sample.
+fn mass(begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
+    mass_for(SAMPLES, begin, force)
+}
+
+fn mass_for(count: usize, begin: [f64; 2], force: impl Fn(f64) -> f64) -> Vec<f64> {
+    const FINER: usize = 50;
+    let [m, c, k] = [2.0, 3.0, 800.0];
+    let (h, [mut z, mut v]) = (1.0 / (RATE * FINER as f64), begin);
+    let mut samples = Vec::new();
+    for step in 0..count * FINER {
+        if step % FINER == 0 {
+            samples.push(z);
+        }
+        // Leapfrog with the damper taken at the middle of the step.
+        let push = force((step as f64 + 0.5) * h);
+        let middle = z + 0.5 * h * v;
+        v += h * (push - k * middle - c * v) / (m + 0.5 * h * c);
+        z = middle + 0.5 * h * v;
+    }
+    samples
+}
+
+/// Columns of a run, by the names of their channels.
+type Columns<'a> = &'a [(&'a str, Vec<f64>)];
+
+/// Writes a campaign of the shipped model of one mass: parameters and further keys of the runs as in `campaign.toml`, and
+/// a run for each set of columns, the last of them held out where there are several.
+fn campaign(folder: &Path, model: &str, parameters: &str, keys: &str, runs: &[Columns]) {
+    let mut text = format!("format = 1\nname = \"c\"\nmodel = \"{model}\"\n\n{parameters}\n");
+    for (name, location, quantity, unit) in [("push", "f", "force", "N"), ("z", "body", "displacement", "m")] {
+        text += &format!(
+            "[[channel]]\nname = \"{name}\"\nlocation = \"{location}\"\nside = \"centre\"\naxis = \"z\"\n\
+             quantity = \"{quantity}\"\nunit = \"{unit}\"\n\n"
+        );
+    }
+    for (place, columns) in runs.iter().enumerate() {
+        let role = if place > 0 && place + 1 == runs.len() {
+            "held_out"
+        } else {
+            "fit"
+        };
+        text += &format!(
+            "[[run]]\nkind = \"time_history\"\nfile = \"run_{place}.csv\"\nrole = \"{role}\"\nsample_rate = {RATE}\n{keys}\n\n"
+        );
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        let mut table = format!("time,{}\n", names.join(","));
+        for sample in 0..columns[0].1.len() {
+            let row: Vec<String> = columns.iter().map(|(_, values)| values[sample].to_string()).collect();
+            table += &format!("{},{}\n", sample as f64 / RATE, row.join(","));
+        }
+        fs::write(folder.join(format!("run_{place}.csv")), table).unwrap();
+    }
+    fs::write(folder.join("campaign.toml"), text).unwrap();
+}
+
+fn parameter(name: &str, value: f64, unit: &str, range: &str) -> String {
+    format!("[parameters.{name}]\nvalue = {value:?}\nunit = \"{unit}\"\n{range}fit = true\n\n")
+}
+
+/// A force that is held between samples.
+fn push(t: f64) -> f64 {
+    let sample = (t * RATE).floor() / RATE;
+    (7.0 * sample).sin() + (23.0 * sample).sin() + (41.0 * sample).cos()
+}
+
+fn pushed() -> Vec<(&'static str, Vec<f64>)> {
+    let force = (0..SAMPLES).map(|k| push((k as f64 + 0.5) / RATE)).collect();
+    vec![("push", force), ("z", mass([0.0, 0.0], push))]
+}
+
+fn discovered(campaign: &str) -> Value {
+    serde_json::from_str(&succeeds(&["discover", campaign, "--format", "json"])).unwrap()
+}
+
+/// Every verb that estimates must say so rather than leave such a parameter at its start.
+#[test]
+fn what_is_to_be_fitted_without_any_range_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let shipped = fs::read_to_string("models/axles/one_mass.axle").unwrap();
+    fs::write(folder.path().join("open.axle"), shipped.replace(" in 1e-9..1e9", "")).unwrap();
+    let [mass, spring] = [("m_body", 2.0, "kg"), ("k_body", 700.0, "N/m")]
+        .map(|(name, value, unit)| parameter(name, value, unit, "range = [0.5, 2000.0]\n"));
+    let parameters = format!("{mass}{}{spring}", parameter("c_body", 2.0, "N s/m", ""));
+    let path = folder.path().to_str().unwrap();
+    campaign(
+        folder.path(),
+        "./open.axle",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let line = fs::read_to_string(folder.path().join("campaign.toml")).unwrap();
+    let line = 1 + line.lines().position(|line| line == "[parameters.c_body]").unwrap();
+    for verb in ["fit", "discover", "study"] {
+        let out = folder.path().join("out");
+        let more: &[&str] = if verb == "study" {
+            &["--out", out.to_str().unwrap()]
+        } else {
+            &[]
+        };
+        let ran = qcar(&[&[verb, path], more].concat());
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{verb}");
+        let said = format!("campaign.toml, line {line}, column 13, `parameters.c_body`");
+        for said in [&said, "`range = [lower, upper]`", "`fit = false`"] {
+            assert!(
+                ran.stderr.contains(said),
+                "{verb}: expected `{said}` in\n{}",
+                ran.stderr
+            );
+        }
+    }
+    assert_eq!(qcar(&["fit", path, "--fix", "c_body", "--starts", "1"]).status, 0);
+    // The shipped model has ranges of its own.
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let ran = qcar(&["discover", path, "--out", folder.path().join("found").to_str().unwrap()]);
+    assert_eq!(ran.status, 0, "{}", ran.stderr);
+    let found = fs::read_to_string(folder.path().join("found/parameters.toml")).unwrap();
+    let found = found.lines().find_map(|line| line.strip_prefix("c_body = ")).unwrap();
+    assert!((found.parse::<f64>().unwrap() - 3.0).abs() < 0.03, "{found}");
+}
+
+/// A mass that is let go, or struck: nothing drives it, and no sensor shows how fast it is at first.
+#[test]
+fn a_record_that_starts_in_motion_needs_no_input() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let parameters = parameter("c_body", 2.0, "N s/m", "range = [0.5, 20.0]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n")
+        + &parameter("m_body", 2.0, "kg", "").replace("true", "false");
+    let decay = |begin| vec![("z", mass(begin, |_| 0.0))];
+    let runs = [decay([0.02, 0.3]), decay([-0.03, 0.1]), decay([0.0, -0.5])];
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(folder.path(), "one_mass", &parameters, "band_limited = false", &runs);
+    let answer = discovered(path);
+    assert_eq!(answer["verdict"], "none", "{answer}");
+    for role in ["fit", "held_out"] {
+        let gap = answer["gap"][role]["before"].as_f64().unwrap();
+        assert!(gap < 0.1, "{role}: {gap}");
+    }
+    assert!(answer["notices"].to_string().contains("no input"), "{answer}");
+    let found = succeeds(&["discover", path, "--out", folder.path().join("out").to_str().unwrap()]);
+    let values = fs::read_to_string(folder.path().join("out/parameters.toml")).unwrap();
+    for (name, truth) in [("c_body", 3.0), ("k_body", 800.0)] {
+        let own = values.lines().find_map(|line| line.strip_prefix(&format!("{name} = ")));
+        let value: f64 = own.unwrap().split('#').next().unwrap().trim().parse().unwrap();
+        assert!((value / truth - 1.0).abs() < 0.002, "{name} = {value}\n{found}");
+    }
+}
+
+/// Of the sensor where the model has none; a force that shifts the mass for good is the same to every sensor.
+#[test]
+fn an_offset_is_told_and_counted_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = parameter("m_body", 2.0, "kg", "").replace("true", "false");
+    let parameters = known
+        + &parameter("c_body", 2.0, "N s/m", "range = [0.5, 20.0]\n")
+        + &parameter("k_body", 700.0, "N/m", "range = [100.0, 2000.0]\n");
+    let mut columns = pushed();
+    columns[1].1.iter_mut().for_each(|z| *z += 2e-4);
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&columns],
+    );
+    let answer = discovered(path);
+    let own = &answer["offsets"][0];
+    assert_eq!((&own["channel"], &own["unit"]), (&"body_z".into(), &"m".into()));
+    let (offset, error) = (own["offset"].as_f64().unwrap(), own["stderr"].as_f64().unwrap());
+    assert!((offset - 2e-4).abs() < 3.0 * error && error < 4e-5, "{own}");
+    let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    assert!(said.contains("what the sensors of records read at zero"), "{said}");
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    assert!(file.contains("# offset of body_z displacement: "), "{file}");
+    let parameters = parameters + &parameter("f_offset", 0.0, "N", "range = [-10.0, 10.0]\n");
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&columns],
+    );
+    let answer = discovered(path);
+    assert_eq!(answer["offsets"], serde_json::json!([]), "{answer}");
+    assert!(
+        answer["notices"]
+            .to_string()
+            .contains("`f_offset` of the model stands for the offset"),
+        "{answer}"
+    );
+}
+
+/// Two runs of the true mass, the second from a start in motion: nothing is left of either, and 5 % of a spring shows.
+#[test]
+fn records_are_replayed_and_what_is_left_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = [
+        ("m_body", 2.0, "kg"),
+        ("c_body", 3.0, "N s/m"),
+        ("k_body", 800.0, "N/m"),
+    ];
+    let known = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
+    let parameters = known.concat().replace("true", "false");
+    let moving: Vec<(&str, Vec<f64>)> = vec![pushed().remove(0), ("z", mass([0.02, 0.2], push))];
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed(), &moving],
+    );
+    let simulated = |more: &[&str]| -> Value {
+        let arguments = [&["simulate", path, "--format", "json"], more].concat();
+        serde_json::from_str(&succeeds(&arguments)).unwrap()
+    };
+    let truth = simulated(&["--out", out.to_str().unwrap()]);
+    for (place, role) in ["fit", "held_out"].into_iter().enumerate() {
+        let own = &truth["records"][place];
+        assert_eq!((&own["role"], &own["channel"]), (&role.into(), &"body_z".into()));
+        assert!(own["nrms"].as_f64().unwrap() < 1e-3, "{own}");
+        let columns = fs::read_to_string(out.join(format!("run_{place}.csv"))).unwrap();
+        assert!(columns.starts_with("time,body_z_displacement_measured,body_z_displacement_simulated\n"));
+        assert_eq!(columns.lines().count(), SAMPLES + 1);
+        assert!(
+            fs::read_to_string(out.join(format!("run_{place}.svg")))
+                .unwrap()
+                .contains("time, s")
+        );
+    }
+    let off = simulated(&["--set", "k_body=840"]);
+    let error = &off["records"][0];
+    let (rms, left) = (
+        error["measured_rms"].as_f64().unwrap(),
+        error["rms_error"].as_f64().unwrap(),
+    );
+    let measured = mass([0.0, 0.0], push);
+    let mean = measured.iter().sum::<f64>() / SAMPLES as f64;
+    let scatter = (measured.iter().map(|z| (z - mean).powi(2)).sum::<f64>() / SAMPLES as f64).sqrt();
+    assert!((rms / scatter - 1.0).abs() < 1e-6, "{error}");
+    assert!(
+        (error["nrms"].as_f64().unwrap() - left / rms).abs() < 1e-9 && left > 0.02 * rms,
+        "{error}"
+    );
+    assert!(succeeds(&["simulate", path]).contains("nrms_%"));
+    assert!(
+        succeeds(&["simulate", path, "--format", "csv"]).starts_with("run,role,channel,quantity,unit,measured_rms")
+    );
+}
+
+/// Ten periods that repeat, recorded with a slow drift of the sensor that is none of the mass's: a band leaves it out.
+#[test]
+fn a_band_and_a_steady_state_are_compared_as_the_campaign_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    let known = [
+        ("m_body", 2.0, "kg"),
+        ("c_body", 3.0, "N s/m"),
+        ("k_body", 800.0, "N/m"),
+    ];
+    let parameters = known.map(|(name, value, unit)| parameter(name, value, unit, ""));
+    let parameters = parameters.concat().replace("true", "false");
+    let tone = |t: f64| (std::f64::consts::TAU * 2.0 * t).sin() + (std::f64::consts::TAU * 4.0 * t).cos();
+    let held = |t: f64| tone((t * RATE).floor() / RATE);
+    let force: Vec<f64> = (0..SAMPLES).map(|k| tone(k as f64 / RATE)).collect();
+    // Begun ten seconds earlier, as long as twenty of its time constants.
+    let z = |count: usize| -> Vec<f64> { mass_for(3 * SAMPLES, [0.0, 0.0], held)[2 * SAMPLES..][..count].to_vec() };
+    let nrms = |keys: &str, z: Vec<f64>| {
+        let keys = format!("band_limited = false\n{keys}");
+        let columns = vec![("push", force.clone()), ("z", z)];
+        campaign(folder.path(), "one_mass", &parameters, &keys, &[&columns]);
+        let result: Value = serde_json::from_str(&succeeds(&["simulate", path, "--format", "json"])).unwrap();
+        result["records"][0]["nrms"].as_f64().unwrap()
+    };
+    assert!(nrms("periodic = true", z(SAMPLES)) < 1e-3);
+    let drifting = |k: usize| 0.01 * k as f64 / SAMPLES as f64;
+    let drifted: Vec<f64> = z(SAMPLES).iter().enumerate().map(|(k, z)| z + drifting(k)).collect();
+    assert!(nrms("", drifted.clone()) > 0.5);
+    assert!(nrms("band = [1.0, 20.0]", drifted.clone()) < 0.02);
+    let refused = |keys: &str, said: &str| {
+        let keys = format!("band_limited = false\n{keys}");
+        let columns = vec![("push", force.clone()), ("z", drifted.clone())];
+        campaign(folder.path(), "one_mass", &parameters, &keys, &[&columns]);
+        let ran = qcar(&["simulate", path]);
+        assert!(ran.status == 2 && ran.stderr.contains(said), "{}", ran.stderr);
+    };
+    refused("band = [1.0, 100.0]", "below half the sample rate, 100 Hz");
+    refused("band = [20.0, 1.0]", "the lower bound below the upper");
+    refused("band = [0.01, 20.0]", "longer than the");
+}
+
+/// A damper that may not be as hard as it is: seconds are told as seconds, and the end of its range as one.
+#[test]
+fn bounds_and_spans_of_time_are_told_as_such() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, out) = (folder.path().to_str().unwrap(), folder.path().join("out"));
+    let known = ["m_body", "k_body"].into_iter().zip([(2.0, "kg"), (800.0, "N/m")]);
+    let known: String = known
+        .map(|(name, (value, unit))| parameter(name, value, unit, ""))
+        .collect();
+    let parameters = known.replace("true", "false") + &parameter("c_body", 1.0, "N s/m", "range = [0.5, 1.5]\n");
+    campaign(
+        folder.path(),
+        "one_mass",
+        &parameters,
+        "band_limited = false",
+        &[&pushed()],
+    );
+    let answer = discovered(path);
+    let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    if answer["verdict"] == "unknown" {
+        assert_eq!(answer["at_bound"], serde_json::json!({"c_body": "upper"}), "{answer}");
+        assert!(said.contains("c_body stands at the upper end of its range"), "{said}");
+    }
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    assert_eq!(
+        file.contains("c_body = 1.5 # at the upper end"),
+        answer["at_bound"]["c_body"] == "upper",
+        "{file}"
+    );
+    assert!(!said.contains("_Hz"), "{said}");
+}
+
+/// The force of an actuator between two masses, with a gain of its own, and a second input that only one run has.
+#[test]
+fn an_input_between_two_masses_has_a_gain_and_what_is_not_recorded_rests() {
+    const GAIN: f64 = 1.3;
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().to_str().unwrap();
+    fs::write(folder.path().join("pair.axle"), PAIR).unwrap();
+    let wind = |t: f64| (11.0 * (t * RATE).floor() / RATE).sin();
+    // Each swings on its own, one with the actuator, the other against it.
+    let run = |blown: f64| {
+        let of =
+            |force: &dyn Fn(f64) -> f64| -> Vec<f64> { (0..SAMPLES).map(|k| force((k as f64 + 0.5) / RATE)).collect() };
+        let mut columns = vec![
+            ("push", of(&push)),
+            ("z", mass([0.0; 2], |t| GAIN * push(t) + blown * wind(t))),
+        ];
+        columns.push(("z_other", mass([0.0; 2], |t| -GAIN * push(t))));
+        if blown > 0.0 {
+            columns.push(("wind", of(&wind)));
+        }
+        columns
+    };
+    let runs = [run(1.0), run(0.0), run(2.0)];
+    let runs: Vec<Columns> = runs.iter().map(Vec::as_slice).collect();
+    campaign(folder.path(), "./pair.axle", "", "band_limited = false", &runs);
+    let manifest = folder.path().join("campaign.toml");
+    let more = "[[channel]]\nname = \"z_other\"\nlocation = \"other\"\nside = \"centre\"\naxis = \"z\"\n\
+                quantity = \"displacement\"\nunit = \"m\"\n\n[[channel]]\nname = \"wind\"\nlocation = \"g\"\n\
+                side = \"centre\"\naxis = \"z\"\nquantity = \"force\"\nunit = \"N\"\n\n[[run]]";
+    let text = fs::read_to_string(&manifest).unwrap().replacen("[[run]]", more, 1);
+    fs::write(&manifest, text).unwrap();
+    let simulated = succeeds(&[
+        "simulate", path, "--set", "gain=1.3", "--set", "k=800", "--set", "c=3", "--format", "json",
+    ]);
+    let simulated: Value = serde_json::from_str(&simulated).unwrap();
+    let errors = simulated["records"].as_array().unwrap();
+    assert_eq!(errors.len(), 6);
+    assert!(
+        errors.iter().all(|own| own["nrms"].as_f64().unwrap() < 2e-3),
+        "{simulated}"
+    );
+    let out = folder.path().join("out");
+    succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
+    let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
+    let gain = file.lines().find_map(|line| line.strip_prefix("gain = ")).unwrap();
+    assert!((gain.parse::<f64>().unwrap() / GAIN - 1.0).abs() < 0.005, "{file}");
+}
+
+/// A massless point on which a force acts passes it on, by the lever of the link that holds it.
+const PAIR: &str = "axle pair {
+    \"Two masses, an actuator between them and a force on one\"
+    known param m: kg = 2 in 0.1..10 \"Each mass\";
+    param k: N/m = 700 in 100..4000 \"Each spring\";
+    param c: N s/m = 4 in 0.1..50 \"Each damper\";
+    param gain: 1 = 0.9 in 0.2..5 \"Force of the actuator over its signal\";
+    direction z {
+        mass body = m;
+        mass other = m;
+        node rod;
+        force f on rod;
+        force g on body;
+        link left: body { spring k; damper c; }
+        link right: other { spring k; damper c; }
+        link actuator: rod - gain*(body - other) { spring 1 kN/mm; }
+        output body.position;
+        output other.position;
+    }
+}
+";
