@@ -4,6 +4,7 @@ use std::ops::Deref;
 use std::path::Path;
 
 use models::Shipped;
+use qcar_dsl::check::Unseen;
 use qcar_dsl::compile::compile as compile_text;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::compile_file;
@@ -18,12 +19,13 @@ use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 use crate::inertias::Inertias;
-use crate::parameters::check_vehicle;
+use crate::parameters::check_campaign;
 
 /// A model that can run.
 pub struct Loaded {
     program: Program,
     inertias: Inertias,
+    unseen: Vec<Unseen>,
 }
 
 /// Compiled into qcar, or interpreted.
@@ -39,6 +41,13 @@ impl Loaded {
     /// Every mass that is not above zero.
     pub fn check_inertias(&self, p: &[f64]) -> Result<(), InputError> {
         self.inertias.check(&self.about().name, p)
+    }
+}
+
+impl Loaded {
+    /// What no measurement can tell of the model.
+    pub fn unseen(&self) -> &[Unseen] {
+        &self.unseen
     }
 }
 
@@ -81,6 +90,7 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
     Ok(Loaded {
         program,
         inertias: Inertias::of(&compiled),
+        unseen: compiled.model.unseen().to_vec(),
     })
 }
 
@@ -91,7 +101,7 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// that nobody knows.
 pub fn of_campaign(campaign: &Campaign, wanted: Option<&str>) -> Result<Loaded, Failure> {
     let model = load(&named_by(campaign, wanted)?)?;
-    check_vehicle(model.about(), campaign)?;
+    check_campaign(model.about(), campaign)?;
     Ok(model)
 }
 

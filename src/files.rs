@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{fs, process};
 
+use qcar_runtime::bounded;
 use qcar_runtime::error::{InputError, Place, Problem};
 
 /// Reads a text file, or says why it cannot.
@@ -11,7 +12,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 /// # Errors
 /// A file that is missing, a folder, or not UTF-8.
 pub fn read_text(file: &Path) -> Result<String, InputError> {
-    fs::read_to_string(file).map_err(|error| {
+    bounded::text(file).map_err(|error| {
         let remedy = "correct the path, or put the file there";
         Problem::new(file, Place::File, error.to_string(), "a readable text file", remedy).into()
     })

@@ -13,6 +13,7 @@ use qcar_runtime::campaign::{self, Campaign, FACTS, dimension};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
+use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::spelling;
 
 use file::{ParameterFile, numbers};
@@ -63,13 +64,21 @@ fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<
     InputError::unless_empty(problems, values.ok())
 }
 
-/// What a campaign knows of the vehicle is of use to somebody.
+/// What a campaign knows of the vehicle is of use to somebody, and the masses that it names are those of the model.
 ///
 /// # Errors
-/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model.
-pub fn check_vehicle(about: &About, campaign: &Campaign) -> Result<(), InputError> {
+/// Every key of its `[vehicle]` that is neither one of [`FACTS`] nor a parameter of the model, and a name in its `[roles]`
+/// that is no mass on the tyre's axis.
+pub fn check_campaign(about: &About, campaign: &Campaign) -> Result<(), InputError> {
     let file = ParameterFile::read(&campaign.manifest())?;
-    InputError::unless_empty(unknown_facts(about, &file), Some(()))
+    let mut problems = unknown_facts(about, &file);
+    if let Err(RoleError::NoSuchMass { name, axis, masses, .. }) = Roles::of(about, &campaign.roles) {
+        let (place, found) = (Place::Name("roles".into()), format!("`{name}`"));
+        let expected = format!("a mass of model `{}` along {axis}", about.name);
+        let remedy = format!("write one of {}", masses.join(", "));
+        problems.push(Problem::new(campaign.manifest(), place, found, expected, remedy));
+    }
+    InputError::unless_empty(problems, Some(()))
 }
 
 /// The same for two models, of which each takes what it has: a name is wrong that neither of them knows.
@@ -210,17 +219,18 @@ pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &C
     InputError::unless_empty(problems, Some(()))
 }
 
-/// What is computed from parameter values is a number.
+/// What is computed from parameter values of the model called `model` is a number.
 ///
 /// # Errors
 /// Where it is not.
-pub fn require_finite<'a>(mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
+pub fn require_finite<'a>(model: &str, mut computed: impl Iterator<Item = &'a f64>) -> Result<(), InputError> {
     match computed.find(|value| !value.is_finite()) {
         None => Ok(()),
         Some(value) => {
             let (place, found) = (Place::Name("parameters".into()), format!("a result that is {value}"));
             let remedy = "correct the values, of which one is too large or makes the model divide by zero";
-            Err(Problem::new("command line", place, found, "values that give finite numbers", remedy).into())
+            let expected = "parameter values that give finite numbers";
+            Err(Problem::new(format!("model {model}"), place, found, expected, remedy).into())
         }
     }
 }

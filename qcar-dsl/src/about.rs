@@ -28,6 +28,8 @@ pub struct About {
     pub channels: Vec<Channel>,
     /// The force elements; `LinkId` counts them.
     pub links: Vec<Link>,
+    /// The inertias.
+    pub masses: Vec<Mass>,
     /// The tyre link that can roll over a profile.
     pub contact: Option<Contact>,
     /// How many values `prepare` computes.
@@ -190,6 +192,21 @@ pub struct Link {
     pub axis: String,
     /// The coordinates it acts between, in the order of its stretch.
     pub ends: Vec<String>,
+    /// The parameters on which its law depends, by their places, in that order.
+    pub parameters: Vec<u16>,
+}
+
+/// An inertia: a mass that moves along an axis, or a moment of inertia that turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mass {
+    /// What moves.
+    pub location: String,
+    /// `z`, `x`.
+    pub axis: String,
+    /// True for what turns.
+    pub angle: bool,
+    /// The parameters of which it is made, by their places, in that order.
+    pub parameters: Vec<u16>,
 }
 
 /// The tyre link that can roll over a profile: the first whose stretch joins a mass to a road.

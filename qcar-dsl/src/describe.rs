@@ -1,13 +1,13 @@
 //! Stages to [`About`]: names for what stands at each place of the vectors.
 
 use crate::about::{
-    About, Channel, Contact, ContactAxis, Excitation, Input, InputKind, Link, Output, Parameter, ResponseLayout,
+    About, Channel, Contact, ContactAxis, Excitation, Input, InputKind, Link, Mass, Output, Parameter, ResponseLayout,
     Signal, SignalKind, Source, State, StateKind,
 };
 use crate::check::Checked;
-use crate::expr::{CoordinateId, LinkId, Symbol};
+use crate::expr::{CoordinateId, Expr, LinkId, Symbol};
 use crate::linear::Linear;
-use crate::model::{self, Coordinate, CoordinateKind, Quantity};
+use crate::model::{self, Coordinate, CoordinateKind, Quantity, Term};
 use crate::motion::{Motion, RollingTyre};
 use crate::response::{Response, sources};
 use crate::units::Unit;
@@ -44,6 +44,7 @@ pub fn describe(
             .map(|channel| self::channel(model, channel))
             .collect(),
         links: model.links.iter().map(|link| self::link(model, link)).collect(),
+        masses: model.coordinates.iter().filter_map(|c| mass(model, c)).collect(),
         contact: tyre.map(|tyre| contact(model, motion, tyre)),
         constants,
         linear: linear.linear,
@@ -280,11 +281,37 @@ fn link(model: &Checked, link: &model::Link) -> Link {
         .iter()
         .map(|&(c, _)| coordinate(model, c).name.clone())
         .collect();
+    let term = |term: &Term| match *term {
+        Term::Spring(e) | Term::Damper(e) | Term::Inerter(e) | Term::Force(e) => e,
+    };
+    let rates = link.law.inner.iter().map(|inner| inner.rate);
     Link {
         name: link.name.clone(),
         axis: link.direction.0.clone(),
         ends,
+        parameters: parameters_of(model, link.law.terms.iter().map(term).chain(rates)),
     }
+}
+
+fn mass(model: &Checked, c: &Coordinate) -> Option<Mass> {
+    let CoordinateKind::Mass(inertia) = c.kind else {
+        return None;
+    };
+    Some(Mass {
+        location: c.name.clone(),
+        axis: c.direction.0.clone(),
+        angle: c.angle,
+        parameters: parameters_of(model, [inertia]),
+    })
+}
+
+/// The places of the parameters on which expressions depend.
+fn parameters_of(model: &Checked, of: impl IntoIterator<Item = Expr>) -> Vec<u16> {
+    let place = |symbol| match symbol {
+        Symbol::Parameter(place) => Some(place),
+        _ => None,
+    };
+    model.graph.symbols(of).into_iter().filter_map(place).collect()
 }
 
 fn contact(model: &Checked, motion: &Motion, tyre: &RollingTyre) -> Contact {

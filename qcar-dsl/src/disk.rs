@@ -69,7 +69,7 @@ impl Files {
     }
 
     fn read(&self, path: PathBuf, written: &str) -> Result<Source, String> {
-        let text = std::fs::read_to_string(self.folder.join(&path)).map_err(|error| error.to_string())?;
+        let text = text(&self.folder.join(&path))?;
         let source = Source {
             name: path.display().to_string(),
             text,
@@ -79,5 +79,19 @@ impl Files {
             source: source.clone(),
         });
         Ok(source)
+    }
+}
+
+/// Bytes of the longest model file.
+const MOST: u64 = 4 << 20;
+
+/// The text of a file, which is neither a pipe nor a device, since these might never end.
+fn text(path: &Path) -> Result<String, String> {
+    let about = std::fs::metadata(path).map_err(|error| error.to_string())?;
+    match (about.is_file(), about.len()) {
+        (false, _) if about.is_dir() => Err("a folder".into()),
+        (false, _) => Err("a pipe or device".into()),
+        (true, length) if length > MOST => Err(format!("{length} bytes, more than any model has")),
+        (true, _) => std::fs::read_to_string(path).map_err(|error| error.to_string()),
     }
 }

@@ -42,7 +42,7 @@ pub use start::ParameterRole;
 pub use watch::watched;
 
 use crate::check::Checked;
-use crate::diagnostic::{Diagnostic, Report, effects};
+use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::check_text;
 use crate::source::Source;
 use crate::syntax::{Effect, Name};
@@ -184,7 +184,7 @@ impl Patch {
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
         let at = |place: &Place| -> Vec<Patched> {
-            let made = forms.iter().map(|form| form.made(&base, &roles, place, values));
+            let made = forms.iter().map(|form| form.made(model, &base, &roles, place, values));
             made.filter_map(Result::ok).collect()
         };
         places.iter().flat_map(at).collect()
@@ -194,8 +194,8 @@ impl Patch {
     /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
     ///
     /// # Errors
-    /// A place where the effect does not apply, names that the model has already, and every rule of the compiler that
-    /// the patched model breaks.
+    /// A place where the effect does not apply, names that the model has already, every rule of the compiler that the
+    /// patched model breaks, and parameters that no output of it can tell apart, since effects are there to be found.
     pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
@@ -206,7 +206,7 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(&base, &roles, place, values)
+        self.made(model, &base, &roles, place, values)
     }
 
     fn report(&self, diagnostics: Refused) -> Report {
@@ -216,14 +216,30 @@ impl Patch {
         }
     }
 
-    fn made(&self, base: &Base, roles: &Roles, place: &Place, values: Values) -> Result<Patched, Report> {
+    fn made(
+        &self,
+        before: &Checked,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Result<Patched, Report> {
         let made = self.tree(base, roles, place, values);
         let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
         let text = Source {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
         };
+        let seen_before = before.unseen();
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+        if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
+            let mut report = model.warnings().clone();
+            report
+                .diagnostics
+                .iter_mut()
+                .for_each(|found| found.severity = Severity::Error);
+            return Err(report);
+        }
         Ok(Patched {
             effect: self.effect.name.text.clone(),
             place: place.label.clone(),

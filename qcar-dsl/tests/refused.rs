@@ -87,6 +87,8 @@ fn warnings_do_not_refuse() {
         Code::UnusedLet,
         Code::GravityPullsNothing,
         Code::NothingMoves,
+        Code::ParameterNotSeen,
+        Code::OnlyTogether,
     ];
     for &code in Code::ALL {
         let refused = report(code).refuses();

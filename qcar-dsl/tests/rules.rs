@@ -240,3 +240,63 @@ fn hints_say_what_to_write() {
     assert!(hint("axle case { param k: N/m = 3 in 3..3; }").contains("`= 3`"));
     assert!(hint("axle case {\n/// Stiffness\n}").contains("`// …`"));
 }
+
+/// A mistake in a declaration is told there, and not at each use again.
+#[test]
+fn one_mistake_is_told_once() {
+    let sound = "element stop(k: N/m, tau: s) { state f: N; rate f = k*v - f/tau; force = f; }
+        axle case {
+            known param m: kg = 1; known param k: N/m = 1; known param c: N s/m = 1; known param j: kg m^2 = 1;
+            known param arm: m = 1; known param area: m^2 = 1; known param tau: s = 1;
+            let twice = 2*k;
+            direction z {
+                road p; mass a = m; mass b = m; inertia pitch = j; node n;
+                point nose = a;
+                force f on b;
+                link tire: b - p { spring k; damper c; stop(k, tau); }
+                link strut: a - b { spring twice; damper c; stop(k, tau); }
+                link lever: arm*pitch - b { spring k; }
+                link roll: pitch { spring k*area; damper c*area; }
+                link upper: n - a { spring k; }
+                link lower: n - b { damper c; }
+                output nose.acceleration; output b.acceleration; output strut.force; output tire.force;
+                channel over = a.acceleration / p.acceleration;
+            }
+        }";
+    assert_eq!(codes(&sound), [], "the model without a mistake");
+    let cases = [
+        ("known param k: N/m", "known param k: N/mx", UnknownUnit),
+        ("known param k: N/m", "known param kk: N/m", UnknownName),
+        (
+            "known param tau: s",
+            "known param k: N/m = 2; known param tau: s",
+            DuplicateName,
+        ),
+        ("mass b = m;", "mass b = m; inertia b = j;", DuplicateName),
+        ("known param k:", "known parm k:", UnknownStatement),
+        ("let twice = 2*k;", "let twice = 2 + k;", UnitsDiffer),
+        ("let twice = 2*k;", "let twice = sqrt(-1)*k;", NotFinite),
+        ("let twice = 2*k;", "let double = 2*k;", UnknownName),
+        ("element stop", "element stopp", UnknownElement),
+        ("state f: N;", "state f: Nx;", UnknownUnit),
+        ("rate f = k*v", "rate f = kk*v", UnknownName),
+        ("rate f = k*v", "rate f = k*s", UnitsDiffer),
+        ("force = f;", "force = f*tau;", WrongUnit),
+        ("road p;", "", UnknownName),
+        ("road p;", "raod p;", UnknownStatement),
+        ("mass a = m;", "mass a = k;", WrongUnit),
+        ("mass a = m;", "mass aa = m;", UnknownName),
+        ("mass b = m;", "", UnknownName),
+        ("inertia pitch = j;", "inertia pich = j;", UnknownName),
+        ("inertia pitch = j;", "inertia pitch = m;", WrongUnit),
+        ("node n;", "", UnknownName),
+        ("link strut:", "link strutt:", UnknownName),
+        ("link strut: a - b", "link strut: a - j", StretchHasConstant),
+        ("direction z {", "directon z {", UnknownStatement),
+    ];
+    for (right, wrong, expected) in cases {
+        assert!(sound.contains(right), "{right}");
+        let found = codes(&sound.replacen(right, wrong, 1));
+        assert_eq!(found, [expected], "`{wrong}` in place of `{right}`");
+    }
+}

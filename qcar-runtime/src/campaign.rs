@@ -21,7 +21,8 @@ mod curve;
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, FACTS, Parameter, Quantity, Recording, Road, Role, Run, Side, Spacing, Sweep, Test,
+    Axis, Campaign, Channel, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep,
+    Test,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
 pub use history::History;

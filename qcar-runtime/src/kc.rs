@@ -13,7 +13,8 @@ mod regression;
 mod rig;
 
 pub use regression::Estimate;
-pub use rig::{Slope, gradient, value_for};
+pub(crate) use rig::of_unit_force;
+pub use rig::{Slope, gradient, parameter_for, value_for};
 
 use crate::campaign::DynamicCurve;
 
@@ -69,6 +70,11 @@ pub enum KcError {
     TooFew { found: usize, expected: usize },
     #[error("the curve does not determine its gradients; expected travel in both directions")]
     OneWay,
+    #[error(
+        "the force does not grow with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
+         expected both positive in compression, or forwards"
+    )]
+    NoSlope { slope: f64, error: f64 },
 }
 
 /// Share of the travel, in its middle, that is taken for linear.
@@ -77,11 +83,14 @@ const LINEAR_SHARE: f64 = 0.5;
 const SLOW_SHARE: f64 = 0.1;
 /// The direction of travel is that over so many parts of the curve before and behind a sample.
 const DIRECTION_PARTS: usize = 100;
+/// A slope of fewer standard errors is none.
+const CLEAR: f64 = 3.0;
 
 /// Stiffness and friction of a quasi-static cycle: displacement in m, force in N, one value a sample each.
 ///
 /// # Errors
-/// Columns of unlike length, too few samples in the middle of the travel, travel in one direction only.
+/// Columns of unlike length, too few samples in the middle of the travel, travel in one direction only, a force that does
+/// not grow with the displacement.
 pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
     same_length(displacement, force)?;
     let (low, high) = extent(displacement);
@@ -91,6 +100,10 @@ pub fn cycle(displacement: &[f64], force: &[f64]) -> Result<Cycle, KcError> {
         .map(|i| [1.0, displacement[i] - middle, direction(displacement, i), force[i]])
         .collect();
     let [_, stiffness, friction] = regression::huber(&rows)?;
+    let (slope, error) = (stiffness.value, stiffness.standard_error);
+    if slope <= CLEAR * error {
+        return Err(KcError::NoSlope { slope, error });
+    }
     Ok(Cycle { stiffness, friction })
 }
 

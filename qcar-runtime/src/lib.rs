@@ -13,10 +13,14 @@ pub mod generated;
 pub mod error;
 // What a misspelt name was meant to be.
 pub mod spelling;
+// Files that are read no further than a limit.
+pub mod bounded;
 // How far long work is.
 pub mod progress;
 // The measurement as it lies on disk.
 pub mod campaign;
+// Which part of a model is the wheel, its road and its body.
+pub mod roles;
 // From time histories to transmissibilities.
 pub mod spectrum;
 // Sweeps to transmissibilities, with their uncertainty.

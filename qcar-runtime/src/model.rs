@@ -148,6 +148,8 @@ pub struct About {
     pub channels: Cow<'static, [Channel]>,
     /// The force elements.
     pub links: Cow<'static, [Link]>,
+    /// The inertias.
+    pub masses: Cow<'static, [Mass]>,
     /// The tyre link that can roll over a profile.
     pub contact: Option<ContactAbout>,
     /// Length of `constants`.
@@ -327,6 +329,21 @@ pub struct Link {
     pub axis: Cow<'static, str>,
     /// The coordinates it acts between, in the order of its stretch.
     pub ends: Cow<'static, [Cow<'static, str>]>,
+    /// The parameters on which its law depends, by their places, in that order.
+    pub parameters: Cow<'static, [u16]>,
+}
+
+/// An inertia: a mass that moves along an axis, or a moment of inertia that turns.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mass {
+    /// What moves.
+    pub location: Cow<'static, str>,
+    /// `z`, `x`.
+    pub axis: Cow<'static, str>,
+    /// True for what turns.
+    pub angle: bool,
+    /// The parameters of which it is made, by their places, in that order.
+    pub parameters: Cow<'static, [u16]>,
 }
 
 /// The tyre link that can roll over a profile: the one whose stretch joins a mass to a road.

@@ -93,10 +93,14 @@ impl Road {
     /// Columns of unlike length, too few samples, a number that is not finite, x that decreases, a slope that
     /// contradicts the heights at two samples in succession, and a road rougher than its sampling: one that changes by
     /// more than a quarter of its standard deviation (root mean square) when each sample is replaced by the line
-    /// through its neighbours. A sine has that share at about nine samples a wavelength.
+    /// through its neighbours. A sine has that share at about nine samples a wavelength. Few points at uneven distances, whose
+    /// slopes lead exactly from one to the next, are the corners of a profile and not samples of a curve: a cleat may be given by
+    /// these.
     pub fn from_samples(x: &[f64], z: &[f64], slope: &[f64]) -> Result<Self, RoadError> {
         let points = samples::points(x, z, slope)?;
-        samples::check_roughness(&points)?;
+        if !samples::are_corners(x, &points, slope) {
+            samples::check_roughness(&points)?;
+        }
         Ok(Self::through(samples::simplify(&points, samples::RESOLUTION)))
     }
 

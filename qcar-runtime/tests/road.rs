@@ -247,3 +247,24 @@ fn roads_that_make_no_sense_are_refused() {
         assert!(found.contains(message), "`{found}` does not say `{message}`");
     }
 }
+
+/// A plank with ramps of 10 mm, by its corners: no sampling has made these, so none can be too coarse.
+#[test]
+fn a_cleat_may_be_given_by_its_corners() {
+    let corners = [
+        [0.0, 0.0],
+        [2.0, 0.0],
+        [2.01, 0.02],
+        [2.05, 0.02],
+        [2.06, 0.0],
+        [30.0, 0.0],
+    ];
+    let [x, z] = [0, 1].map(|axis| corners.map(|corner| corner[axis]).to_vec());
+    let slope = [0.0, 2.0, 0.0, -2.0, 0.0, 0.0];
+    let road = Road::from_samples(&x, &z, &slope).unwrap();
+    assert_eq!(road.vertices(), corners);
+    // The same heights at even distances are samples, and too few of them.
+    let x: Vec<f64> = (0..6).map(|i| 0.01 * f64::from(i)).collect();
+    let sampled = Road::from_samples(&x, &z, &slope);
+    assert!(matches!(sampled, Err(RoadError::Rough { .. })), "{sampled:?}");
+}

@@ -18,6 +18,7 @@ pub(super) fn about(about: &dsl::About) -> runtime::About {
         excitations: list(&about.excitations, excitation),
         channels: list(&about.channels, channel),
         links: list(&about.links, link),
+        masses: list(&about.masses, mass),
         contact: about.contact.as_ref().map(contact),
         constants: about.constants,
         linear: about.linear,
@@ -129,6 +130,16 @@ fn link(of: &dsl::Link) -> runtime::Link {
         name: text(&of.name),
         axis: text(&of.axis),
         ends: list(&of.ends, |end| text(end)),
+        parameters: Cow::Owned(of.parameters.clone()),
+    }
+}
+
+fn mass(of: &dsl::Mass) -> runtime::Mass {
+    runtime::Mass {
+        location: text(&of.location),
+        axis: text(&of.axis),
+        angle: of.angle,
+        parameters: Cow::Owned(of.parameters.clone()),
     }
 }
 

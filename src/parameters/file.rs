@@ -125,7 +125,8 @@ impl Reader<'_> {
                 );
             }
         }
-        if !table.contains_key("parameters") && self.problems.is_empty() {
+        let says = |name: &str| table.contains_key(name);
+        if !says("parameters") && !says("vehicle") && self.problems.is_empty() {
             let remedy = "write the values below a line [parameters]";
             let problem = Problem::new(
                 self.path,

@@ -22,13 +22,15 @@ use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
-use crate::parameters::{bound, check_vehicle, own};
+use crate::parameters::{bound, check_campaign, own};
 use crate::progress::Showing;
-use crate::verbs::Format;
+use crate::verbs::{Format, kc};
 use crate::workshop::Bench;
 
 // Where something would explain the gap.
 pub(crate) mod places;
+// What a model leaves of each sensor.
+mod left;
 // The answer as text and JSON.
 pub(crate) mod render;
 // The gap as a figure.
@@ -120,7 +122,11 @@ pub(crate) fn answer(
 ) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
-    check_vehicle(bench.model().about(), campaign)?;
+    check_campaign(bench.model().about(), campaign)?;
+    if kc::has_curves(campaign) {
+        // A curve in a wrong unit would be evidence of an effect that is not there.
+        kc::gradients(campaign)?;
+    }
     let setting = setting(campaign, bench.model().about())?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));

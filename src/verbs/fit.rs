@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use qcar_dsl::check::Unseen;
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::error::InputError;
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
@@ -37,7 +38,7 @@ pub(crate) mod files;
 /// that the campaign wants fitted, and what the model has beside them with a default and a range, but for what it calls
 /// known. A parameter that no fitted channel depends on takes its value from the K&C curve that measures it, where the
 /// campaign has one.
-/// The exit status is 1 where the search does not end at a minimum.
+/// The exit status is 1 where the search does not end at a minimum, or where every parameter ends at a bound of its range.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/silverbox --format json"
@@ -87,6 +88,11 @@ impl Choices {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    if let Some(folder) = &arguments.out {
+        let campaign = Campaign::open(&arguments.campaign)?;
+        let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref())?;
+        files::check_folder(folder, &campaign.name, &model.about().name)?;
+    }
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         files::write(&fitted, folder)?;
@@ -95,7 +101,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         Format::Text => render::text(&fitted),
         Format::Json => render::json(&fitted),
     };
-    if fitted.fit.converged {
+    if fitted.fit.converged && notices::all_at_bounds(&fitted.fit).is_none() {
         Ok(result)
     } else {
         Err(Failure::Finding(result))
@@ -147,6 +153,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let mut campaign = Campaign::open(folder)?;
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, model.about(), choices)?;
+    refuse_unseen(&model, &plan)?;
     let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
     let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
@@ -164,7 +171,37 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         fit,
     };
     clamped::take_over(&mut fitted)?;
+    fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)
+}
+
+/// # Errors
+/// Parameters that are to be fitted together and of which no output of the model sees as many combinations.
+fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
+    let is_fitted = |name: &&String| plan.parameters.iter().any(|own| own.fit && own.name == **name);
+    let problem = |unseen: &Unseen| {
+        let fitted: Vec<String> = unseen
+            .parameters
+            .iter()
+            .filter(is_fitted)
+            .map(|name| format!("`{name}`"))
+            .collect();
+        let wrong = || {
+            Problem::new(
+                format!("model {}", model.about().name),
+                Place::Name("parameters".into()),
+                format!(
+                    "{}, of which its outputs see {} combinations",
+                    fitted.join(", "),
+                    unseen.seen
+                ),
+                "parameters that a measurement can tell apart",
+                "set `fit = false` for those that are known otherwise, or name them with --fix",
+            )
+        };
+        (fitted.len() > unseen.seen).then(wrong)
+    };
+    InputError::unless_empty(model.unseen().iter().filter_map(problem).collect(), Some(()))
 }
 
 /// The campaign's plan, with what the model has beside it, the user's choices, and a range for all that is fitted.

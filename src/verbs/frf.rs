@@ -96,7 +96,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         channels: responses.collect::<Result<_, Failure>>()?,
     };
     let values = response.channels.0.iter().map(|(_, channel)| channel);
-    parameters::require_finite(values.flat_map(|channel| channel.re.iter().chain(&channel.im)))?;
+    parameters::require_finite(
+        &model.about().name,
+        values.flat_map(|channel| channel.re.iter().chain(&channel.im)),
+    )?;
     Ok(match arguments.format {
         TableFormat::Text => text(&response, &frequency),
         TableFormat::Json => json::line(&response),

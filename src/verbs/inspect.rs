@@ -3,6 +3,8 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use qcar_runtime::bounded;
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_signals::read::read;
 use qcar_signals::signal::{Recording, Scalar, Signal, Value};
 use serde::Serialize;
@@ -34,7 +36,18 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let recording = read(&arguments.file).map_err(|error| Failure::Input(error.to_string()))?;
+    let file = &arguments.file;
+    bounded::open(file).map_err(|error| {
+        let remedy = "correct the path, or put the file there";
+        InputError::from(Problem::new(
+            file,
+            Place::File,
+            error.to_string(),
+            "a readable file",
+            remedy,
+        ))
+    })?;
+    let recording = read(file).map_err(|error| Failure::Input(error.to_string()))?;
     Ok(match arguments.format {
         Format::Text => text(&recording),
         Format::Json => json::line(&Inspected::of(&recording)),

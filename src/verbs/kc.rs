@@ -8,6 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
 use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::roles::{OnRig, Roles};
 use serde::Serialize;
 
 use crate::catalogue::{self, Loaded};
@@ -40,6 +41,12 @@ pub struct Arguments {
 /// What a curve says.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Gradient {
+    /// The curve, as the campaign calls it; of several sines the first.
+    #[serde(skip)]
+    file: String,
+    /// What of the model is like it; `None` of what gives no parameter.
+    #[serde(skip)]
+    slope: Option<Slope>,
     /// `bounce`, `dynamic_bounce` or `longitudinal`.
     pub test: &'static str,
     /// `stiffness`, `damping` or `friction`.
@@ -50,15 +57,22 @@ pub(crate) struct Gradient {
     pub uncertainty: f64,
     /// SI.
     pub unit: &'static str,
-    /// The parameter of the thesis's table 3.1 that it measures.
-    pub parameter: Option<&'static str>,
+    /// The parameter of the campaign's model that it gives.
+    pub parameter: Option<String>,
     /// The value of that parameter with which the campaign's model has this gradient, its others at their start values:
     /// larger than the gradient where a sub-frame yields.
     pub parameter_value: Option<f64>,
-    /// Why that is not known of a gradient that has a parameter.
+    /// Why that is not known of a stiffness or damping that could give a parameter.
     pub why_no_parameter_value: Option<String>,
     /// The campaign's start value of that parameter.
     pub start: Option<f64>,
+}
+
+impl Gradient {
+    /// Along which the wheel was moved.
+    fn axis(&self) -> &'static str {
+        if self.test == "longitudinal" { "x" } else { "z" }
+    }
 }
 
 /// Does it.
@@ -100,12 +114,21 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
         )
         .into());
     }
-    let asked = model(campaign);
-    let of_parameters = found.iter_mut().filter(|gradient| gradient.parameter.is_some());
-    of_parameters.for_each(|gradient| match &asked {
-        Ok((model, values)) => take_apart(gradient, model, values),
-        Err(refused) => gradient.why_no_parameter_value = Some(refused.clone()),
-    });
+    match model(campaign) {
+        Ok((model, values)) => {
+            found
+                .iter_mut()
+                .for_each(|own| take_apart(own, campaign, &model, &values));
+            let odd = found
+                .iter()
+                .filter_map(|own| out_of_scale(own, campaign, &model, &values));
+            InputError::unless_empty(odd.collect(), Some(()))?;
+        }
+        Err(refused) => {
+            let of_parameters = found.iter_mut().filter(|own| own.slope.is_some());
+            of_parameters.for_each(|own| own.why_no_parameter_value = Some(refused.clone()));
+        }
+    }
     Ok(found)
 }
 
@@ -119,7 +142,7 @@ fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, Input
     let mut found = Vec::new();
     for (done, run) in bounce.iter().enumerate() {
         told(done, all);
-        found.extend(quasi_static(campaign, run, "bounce", "k_wheel_z")?);
+        found.extend(quasi_static(campaign, run, "bounce")?);
     }
     told(bounce.len(), all);
     if !dynamic.is_empty() {
@@ -127,68 +150,55 @@ fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, Input
     }
     for (done, run) in longitudinal.iter().enumerate() {
         told(bounce.len() + dynamic.len() + done, all);
-        found.extend(quasi_static(campaign, run, "longitudinal", "k_wheel_x")?);
+        found.extend(quasi_static(campaign, run, "longitudinal")?);
     }
     Ok(found)
 }
 
-fn quasi_static(
-    campaign: &Campaign,
-    run: &Run,
-    test: &'static str,
-    parameter: &'static str,
-) -> Result<Vec<Gradient>, InputError> {
+fn quasi_static(campaign: &Campaign, run: &Run, test: &'static str) -> Result<[Gradient; 2], InputError> {
     let curve = campaign.curve(run)?;
     let cycle = cycle(&curve.displacement, &curve.force).map_err(|error| unusable(campaign, run, &error))?;
-    let gradient = |quantity, of: Estimate, unit, parameter| gradient(campaign, test, quantity, of, unit, parameter);
-    Ok(vec![
-        gradient("stiffness", cycle.stiffness, "N/m", Some(parameter)),
-        gradient("friction", cycle.friction, "N", None),
+    let gradient = |of, slope| gradient((run, test), of, slope);
+    Ok([
+        gradient(("stiffness", cycle.stiffness, "N/m"), Some(Slope::Stiffness)),
+        gradient(("friction", cycle.friction, "N"), None),
     ])
 }
 
-fn vertical_sines(campaign: &Campaign, runs: &[&Run]) -> Result<Vec<Gradient>, InputError> {
+fn vertical_sines(campaign: &Campaign, runs: &[&Run]) -> Result<[Gradient; 3], InputError> {
     let curves = runs
         .iter()
         .map(|run| campaign.dynamic_curve(run))
         .collect::<Result<Vec<_>, _>>()?;
     let samples: Vec<_> = curves.iter().map(SineSamples::from).collect();
     let sine = sines(&samples).map_err(|error| unusable(campaign, runs[0], &error))?;
-    let gradient =
-        |quantity, of: Estimate, unit, parameter| gradient(campaign, "dynamic_bounce", quantity, of, unit, parameter);
-    Ok(vec![
-        gradient("stiffness", sine.stiffness, "N/m", None),
-        gradient("damping", sine.damping, "N s/m", Some("c_wheel_z")),
-        gradient("friction", sine.friction, "N", None),
+    let gradient = |of, slope| gradient((runs[0], "dynamic_bounce"), of, slope);
+    Ok([
+        gradient(("stiffness", sine.stiffness, "N/m"), None),
+        gradient(("damping", sine.damping, "N s/m"), Some(Slope::Damping)),
+        gradient(("friction", sine.friction, "N"), None),
     ])
 }
 
 fn gradient(
-    campaign: &Campaign,
-    test: &'static str,
-    quantity: &'static str,
-    of: Estimate,
-    unit: &'static str,
-    parameter: Option<&'static str>,
+    (run, test): (&Run, &'static str),
+    (quantity, of, unit): (&'static str, Estimate, &'static str),
+    slope: Option<Slope>,
 ) -> Gradient {
-    let start = parameter
-        .and_then(|name| campaign.parameter(name))
-        .map(|parameter| parameter.value);
     Gradient {
+        file: run.file.clone(),
+        slope,
         test,
         quantity,
         value: of.value,
         uncertainty: of.uncertainty(),
         unit,
-        parameter,
+        parameter: None,
         parameter_value: None,
         why_no_parameter_value: None,
-        start,
+        start: None,
     }
 }
-
-/// What is clamped on a K&C rig.
-const CLAMPED: &str = "body";
 
 /// The campaign's model with its start values, or why there is none: curves can be read without.
 fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
@@ -202,31 +212,85 @@ fn model(campaign: &Campaign) -> Result<(Loaded, Values), String> {
     Ok((model, values))
 }
 
-/// Asks the model what the parameter of a gradient must be for it to have that.
-pub(crate) fn take_apart(gradient: &mut Gradient, model: &Loaded, values: &Values) {
-    let answer = parameter_value(gradient, model, values);
-    gradient.parameter_value = answer.as_ref().ok().copied();
-    gradient.why_no_parameter_value = answer.err();
+/// Asks the model which parameter a gradient gives, where that is not known yet, and what it must be.
+pub(crate) fn take_apart(gradient: &mut Gradient, campaign: &Campaign, model: &Loaded, values: &Values) {
+    let Some(slope) = gradient.slope else { return };
+    let roles = Roles::of(model.about(), &campaign.roles).and_then(|roles| roles.on_rig());
+    let answer = roles
+        .map_err(|error| error.to_string())
+        .and_then(|on| parameter_value(gradient, (&on, gradient.axis(), slope), model, values));
+    match answer {
+        Ok((parameter, value)) => {
+            gradient.start = campaign.parameter(&parameter).map(|own| own.value);
+            gradient.parameter = Some(parameter);
+            gradient.parameter_value = value.as_ref().ok().copied();
+            gradient.why_no_parameter_value = value.err();
+        }
+        Err(why) => {
+            gradient.parameter_value = None;
+            gradient.why_no_parameter_value = Some(why);
+        }
+    }
 }
 
-fn parameter_value(gradient: &Gradient, model: &Loaded, values: &Values) -> Result<f64, String> {
-    let axis = if gradient.test == "longitudinal" { "x" } else { "z" };
-    let slope = if gradient.quantity == "damping" {
-        Slope::Damping
-    } else {
-        Slope::Stiffness
-    };
-    let (about, name) = (model.about(), gradient.parameter.unwrap_or_default());
-    let place = about.parameters.iter().position(|own| own.name == name);
-    let place = place.ok_or_else(|| format!("model {} has no `{name}`", about.name))?;
-    let value = kc::value_for(&**model, values, place, (CLAMPED, axis, slope), gradient.value);
-    value.ok_or_else(|| {
+/// The parameter, and its value or why no value gives what was measured.
+///
+/// # Errors
+/// Why the gradient gives no parameter of this model.
+fn parameter_value(
+    gradient: &Gradient,
+    asked: (&OnRig, &str, Slope),
+    model: &Loaded,
+    values: &Values,
+) -> Result<(String, Result<f64, String>), String> {
+    let (on, axis, _) = asked;
+    let about = model.about();
+    let known = gradient.parameter.as_ref();
+    let known = known.and_then(|name| about.parameters.iter().position(|own| own.name == *name));
+    let place = known.or_else(|| kc::parameter_for(&**model, values, asked));
+    let place = place.ok_or_else(|| {
+        format!(
+            "model {} has no parameter between `{}` and what it is linked to that gives its {} along {axis} with `{}` held",
+            about.name, on.wheel, gradient.quantity, on.body
+        )
+    })?;
+    let name = about.parameters[place].name.to_string();
+    let value = kc::value_for(&**model, values, place, asked, gradient.value);
+    let value = value.ok_or_else(|| {
         let (curve, quantity) = (gradient.test, gradient.quantity);
         format!(
-            "no `{name}` within its range gives model {} the {quantity} of the {curve} curve with its {CLAMPED} held",
-            about.name
+            "no `{name}` within its range gives model {} the {quantity} of the {curve} curve with `{}` held",
+            about.name, on.body
         )
-    })
+    });
+    Ok((name, value))
+}
+
+/// By how much a gradient may differ from that of the model at its start values: beyond that a unit is wrong.
+const SCALE: f64 = 100.0;
+
+/// What is wrong with a curve whose gradient is of another order than the model's.
+fn out_of_scale(gradient: &Gradient, campaign: &Campaign, model: &Loaded, values: &Values) -> Option<Problem> {
+    let on = Roles::of(model.about(), &campaign.roles)
+        .and_then(|roles| roles.on_rig())
+        .ok()?;
+    let (p, name) = (values.as_slice(), gradient.parameter.as_ref()?);
+    let expected = kc::gradient(&**model, p, &on, gradient.axis(), gradient.slope?)?;
+    let ratio = gradient.value / expected;
+    if (1.0 / SCALE..=SCALE).contains(&ratio) {
+        return None;
+    }
+    let Gradient { quantity, unit, .. } = gradient;
+    Some(Problem::new(
+        campaign.folder.join(&gradient.file),
+        Place::File,
+        format!("a {quantity} of {} {unit}", number(gradient.value, 3)),
+        format!(
+            "about {} {unit}, that of the model at its start values",
+            number(expected, 3)
+        ),
+        format!("write displacements in m, velocities in m/s and forces in N, or correct the start value of `{name}`"),
+    ))
 }
 
 fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
@@ -259,7 +323,7 @@ fn text(of: &[Gradient]) -> String {
             gradient.unit.into(),
             number(gradient.value, 4),
             number(gradient.uncertainty, 2),
-            gradient.parameter.unwrap_or("-").into(),
+            gradient.parameter.as_deref().unwrap_or("-").into(),
             or_dash(gradient.parameter_value, 4),
             or_dash(gradient.start, 4),
         ]);
@@ -267,18 +331,21 @@ fn text(of: &[Gradient]) -> String {
     table.text() + &notes(of)
 }
 
-/// Each reason once, with the parameters that have no value by it.
+/// Each reason once, with the parameters, or the gradients without any, that have no value by it.
 fn notes(of: &[Gradient]) -> String {
-    let mut reasons: Vec<(&str, Vec<&str>)> = Vec::new();
+    let mut reasons: Vec<(&str, Vec<String>)> = Vec::new();
     for gradient in of {
-        let (Some(why), Some(name)) = (&gradient.why_no_parameter_value, gradient.parameter) else {
+        let Some(why) = &gradient.why_no_parameter_value else {
             continue;
         };
+        let unnamed = || format!("the {} {}", gradient.test, gradient.quantity);
+        let name = gradient.parameter.clone().unwrap_or_else(unnamed);
         match reasons.iter_mut().find(|(reason, _)| reason == why) {
             Some((_, names)) => names.push(name),
             None => reasons.push((why, vec![name])),
         }
     }
-    let note = |(why, names): &(&str, Vec<&str>)| format!("note: no parameter_value of {}: {why}\n", names.join(", "));
+    let note =
+        |(why, names): &(&str, Vec<String>)| format!("note: no parameter_value of {}: {why}\n", names.join(", "));
     reasons.iter().map(note).collect()
 }

@@ -35,7 +35,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let values = parameters::resolve(about, arguments.model.params.as_deref(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
     let matrices = state_space(&*model, &values, arguments.axis.as_deref());
-    parameters::require_finite(matrices.matrices.values().flatten().flatten())?;
+    parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
     Ok(match arguments.format {
         Format::Text => text(&matrices),
         Format::Json => json::line(&matrices),

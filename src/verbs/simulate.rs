@@ -171,7 +171,7 @@ pub(crate) fn drive(
     let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
     let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
-    let compared = compared::compare(model.about(), cleats, &rides)?;
+    let compared = compared::compare(model.about(), &campaign.roles, cleats, &rides)?;
     Ok(Driven { rides, compared })
 }
 

@@ -4,6 +4,7 @@ use models::axle_d::AxleD;
 use qcar_runtime::kc::{Slope, gradient, value_for};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::roles::OnRig;
 
 use crate::cleat;
 
@@ -18,8 +19,13 @@ fn of(values: &Values, name: &str) -> f64 {
     values.as_slice()[place(name)]
 }
 
+fn on(body: &str) -> OnRig {
+    let [wheel, body] = ["wheel", body].map(String::from);
+    OnRig { wheel, body }
+}
+
 fn found(values: &Values, axis: &str, slope: Slope) -> f64 {
-    gradient(&AxleD, values.as_slice(), "body", axis, slope).expect("it has a gradient")
+    gradient(&AxleD, values.as_slice(), &on("body"), axis, slope).expect("it has a gradient")
 }
 
 fn assert_close(found: f64, exact: f64) {
@@ -58,10 +64,10 @@ fn a_parameter_is_found_from_the_gradient_that_it_gives() {
         ("c_wheel_z", "z", Slope::Damping),
     ] {
         let measured = found(&values, axis, slope);
-        let value = value_for(&AxleD, &values, place(name), ("body", axis, slope), measured);
+        let value = value_for(&AxleD, &values, place(name), (&on("body"), axis, slope), measured);
         assert_close(value.expect("there is one"), of(&values, name));
         // Springs in series are never stiffer than the other one.
-        let beyond = value_for(&AxleD, &values, place(name), ("body", axis, slope), 1e9);
+        let beyond = value_for(&AxleD, &values, place(name), (&on("body"), axis, slope), 1e9);
         assert_eq!(beyond, None, "{name}");
     }
 }
@@ -69,6 +75,6 @@ fn a_parameter_is_found_from_the_gradient_that_it_gives() {
 #[test]
 fn what_is_not_there_has_no_gradient() {
     let values = cleat::parameters();
-    let of = |clamped, axis| gradient(&AxleD, values.as_slice(), clamped, axis, Slope::Stiffness);
+    let of = |body, axis| gradient(&AxleD, values.as_slice(), &on(body), axis, Slope::Stiffness);
     assert_eq!([of("roof", "z"), of("body", "y")], [None, None]);
 }

@@ -72,3 +72,30 @@ pub fn succeeds(arguments: &[&str]) -> String {
     );
     ran.stdout
 }
+
+/// A sweep of both pads from 0.5 to 30 Hz in 40 s (peak velocity in m/s), and body and wheel of both sides behind them,
+/// integrated with small steps: accelerations in m/s² under this header. `k` is the spring's stiffness in N/m, `c_tire` the
+/// tyre's damping in N s/m.
+pub fn sweep(peak_velocity: f64, header: &str, [k, c_tire]: [f64; 2]) -> String {
+    let (m_body, m_wheel, c, k_tire) = (270.0, 45.0, 1300.0, 210e3);
+    let growth = (30.0f64 / 0.5).ln() / 40.0;
+    let velocity = |t: f64| peak_velocity * (std::f64::consts::TAU * 0.5 * ((growth * t).exp() - 1.0) / growth).sin();
+    let (mut state, mut pad, dt) = ([0.0f64; 4], 0.0, 1e-4);
+    let mut text = header.to_string();
+    for step in 0..400_000 {
+        let t = step as f64 * dt;
+        let [z_body, v_body, z_wheel, v_wheel] = state;
+        let strut = k * (z_wheel - z_body) + c * (v_wheel - v_body);
+        let tire = k_tire * (pad - z_wheel) + c_tire * (velocity(t) - v_wheel);
+        let (a_body, a_wheel) = (strut / m_body, (tire - strut) / m_wheel);
+        if step % 10 == 0 {
+            let a_pad = (velocity(t + 1e-5) - velocity(t - 1e-5)) / 2e-5;
+            text += &format!("\n{t:.3},{a_pad:.6},{a_pad:.6},{a_body:.6},{a_body:.6},{a_wheel:.6},{a_wheel:.6}");
+        }
+        // Velocities first, then positions with the new ones: symplectic Euler.
+        let (v_body, v_wheel) = (v_body + dt * a_body, v_wheel + dt * a_wheel);
+        state = [z_body + dt * v_body, v_body, z_wheel + dt * v_wheel, v_wheel];
+        pad += dt * velocity(t);
+    }
+    text
+}

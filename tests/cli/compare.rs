@@ -68,7 +68,7 @@ fn an_oscillator_moves_as_its_formula_says() {
     }
     let said = found["notices"].to_string();
     assert!(
-        said.contains("no channel in common") && said.contains("no tyre that rolls"),
+        said.contains("no channel in common") && said.contains("no tyre that can roll"),
         "{said}"
     );
 }

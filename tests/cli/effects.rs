@@ -73,7 +73,7 @@ fn an_effect_says_what_each_parameter_is_to_it() {
     let words = |line: &str| line.split_whitespace().collect::<Vec<_>>().join(" ");
     let rows: Vec<String> = play.lines().map(words).collect();
     for begin in [
-        "gap centred strength, vanishes at 0 m 1 mm",
+        "gap centred strength, vanishes at 0 m 0.05*l.travel_scale",
         "gap lost_motion shape m",
         "k_joint lost_motion N/m",
     ] {

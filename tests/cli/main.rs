@@ -14,4 +14,7 @@ mod newcomer;
 mod readme;
 mod records;
 mod rides;
+mod rigs;
+mod trials;
 mod tutorial;
+mod unending;

@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use crate::common::run_line as in_folder;
+use crate::common::{run_line as in_folder, sweep};
 
 fn well(folder: &Path, line: &str) -> String {
     let ran = in_folder(folder, line);
@@ -74,8 +74,22 @@ fn a_new_campaign_says_what_to_put_where_and_fits_once_it_is_there() {
         assert!(missing.stderr.contains(hint), "{}", missing.stderr);
     }
     let to = folder.path().join("data/rig/rig");
-    fs::write(to.join("sweep_025.csv"), sweep(0.025, header)).unwrap();
-    fs::write(to.join("sweep_100.csv"), sweep(0.1, header)).unwrap();
+    fs::write(to.join("sweep_025.csv"), sweep(0.025, header, [22e3, 200.0])).unwrap();
+    fs::write(to.join("sweep_100.csv"), sweep(0.1, header, [22e3, 200.0])).unwrap();
+    // What is known of the vehicle has no value that anybody could take for known.
+    let unknown = in_folder(folder.path(), "fit data/rig --starts 2");
+    assert!(
+        unknown.status == 2 && unknown.stderr.contains("m_corner"),
+        "{}",
+        unknown.stderr
+    );
+    let manifest = folder.path().join("data/rig/campaign.toml");
+    let mut text = fs::read_to_string(&manifest).unwrap();
+    for (name, value) in [("m_corner", 315), ("m_half_vehicle", 700), ("m_wheel_other_axle", 40)] {
+        assert!(text.contains(&format!("# {name} =")), "{text}");
+        text = text.replace(&format!("# {name} ="), &format!("{name} = {value}"));
+    }
+    fs::write(&manifest, text).unwrap();
     let fitted = well(folder.path(), "fit data/rig --starts 2");
     assert!(fitted.contains("city_car fitted to rig: converged"), "{fitted}");
     let again = in_folder(folder.path(), "new campaign rig --dir data");
@@ -98,29 +112,4 @@ fn a_campaign_for_a_shipped_model_has_its_masses_as_sensors() {
         unknown.stderr
     );
     assert!(!folder.path().join("other").exists());
-}
-
-/// A sweep of the pads from 0.5 to 30 Hz in 40 s, and a body and wheel behind them, integrated with small steps.
-fn sweep(peak_velocity: f64, header: &str) -> String {
-    let (m_body, m_wheel, k, c, k_tire, c_tire) = (270.0, 45.0, 22e3, 1300.0, 210e3, 200.0);
-    let growth = (30.0f64 / 0.5).ln() / 40.0;
-    let velocity = |t: f64| peak_velocity * (std::f64::consts::TAU * 0.5 * ((growth * t).exp() - 1.0) / growth).sin();
-    let (mut state, mut pad, dt) = ([0.0f64; 4], 0.0, 1e-4);
-    let mut text = header.to_string();
-    for step in 0..400_000 {
-        let t = step as f64 * dt;
-        let [z_body, v_body, z_wheel, v_wheel] = state;
-        let strut = k * (z_wheel - z_body) + c * (v_wheel - v_body);
-        let tire = k_tire * (pad - z_wheel) + c_tire * (velocity(t) - v_wheel);
-        let (a_body, a_wheel) = (strut / m_body, (tire - strut) / m_wheel);
-        if step % 10 == 0 {
-            let a_pad = (velocity(t + 1e-5) - velocity(t - 1e-5)) / 2e-5;
-            text += &format!("\n{t:.3},{a_pad:.6},{a_pad:.6},{a_body:.6},{a_body:.6},{a_wheel:.6},{a_wheel:.6}");
-        }
-        // Velocities first, then positions with the new ones: symplectic Euler.
-        let (v_body, v_wheel) = (v_body + dt * a_body, v_wheel + dt * a_wheel);
-        state = [z_body + dt * v_body, v_body, z_wheel + dt * v_wheel, v_wheel];
-        pad += dt * velocity(t);
-    }
-    text
 }

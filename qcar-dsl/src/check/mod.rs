@@ -30,6 +30,7 @@ mod passive;
 mod visible;
 
 use slopes::{Slopes, slopes};
+pub use visible::Unseen;
 
 /// A model that has passed every rule. Every later stage takes one, and none of them fails.
 #[derive(Clone, Debug)]
@@ -37,6 +38,7 @@ pub struct Checked {
     model: Model,
     text: String,
     warnings: Report,
+    unseen: Vec<Unseen>,
 }
 
 impl Checked {
@@ -49,6 +51,7 @@ impl Checked {
             model,
             text: String::new(),
             warnings: Report::default(),
+            unseen: Vec::new(),
         }
     }
 
@@ -60,6 +63,11 @@ impl Checked {
     /// The same model with its text.
     pub(crate) fn with_text(self, text: String) -> Self {
         Checked { text, ..self }
+    }
+
+    /// Parameters that no measurement can tell from each other, or at all.
+    pub fn unseen(&self) -> &[Unseen] {
+        &self.unseen
     }
 
     /// What is likely not meant, though it compiles.
@@ -95,13 +103,13 @@ pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>
     found.extend(passive::links_are_passive(&scratch));
     found.extend(nodes::nodes_are_solvable(&scratch));
     found.extend(held::masses_are_held(&scratch));
-    if !refuses(&found) {
-        found.extend(visible::parameters_are_seen(&scratch));
-    }
     if refuses(&found) {
         return Err(found);
     }
-    Ok((Checked::trust(model), found))
+    let (unseen, warnings): (Vec<_>, Vec<_>) = visible::parameters_are_seen(&scratch).into_iter().unzip();
+    found.extend(warnings);
+    let checked = Checked::trust(model);
+    Ok((Checked { unseen, ..checked }, found))
 }
 
 fn refuses(found: &[Diagnostic]) -> bool {

@@ -18,8 +18,18 @@ struct Set {
     scale: f64,
 }
 
-/// Parameters that no output sees, and groups of which it sees a combination only.
-pub fn parameters_are_seen(scratch: &Scratch) -> Vec<Diagnostic> {
+/// Parameters that no measurement can tell from each other, or at all.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unseen {
+    /// Their names.
+    pub parameters: Vec<String>,
+    /// How many combinations of them the outputs see.
+    pub seen: usize,
+}
+
+/// Parameters that no output sees, and groups of which it sees a combination only, each with a warning: such a model has
+/// a response, but cannot be fitted.
+pub fn parameters_are_seen(scratch: &Scratch) -> Vec<(Unseen, Diagnostic)> {
     let estimated = estimated(scratch);
     let set = |kind, seed| set(scratch, Point::new(scratch.model, kind, seed), &estimated);
     let first = set(Kind::Plain, 1);
@@ -130,25 +140,23 @@ fn hidden_changes(set: &Set, group: &[usize]) -> usize {
     null_space_of_scale(rows, group.len(), set.scale).len()
 }
 
-fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> Diagnostic {
+fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> (Unseen, Diagnostic) {
     let parameter = |column: &usize| &model.parameters[usize::from(estimated[*column])];
     let named: Vec<_> = group
         .iter()
         .map(parameter)
         .map(|p| (p.declared.span, p.name.as_str()))
         .collect();
-    match named.as_slice() {
+    let hidden = sets.iter().map(|set| hidden_changes(set, group)).min();
+    let unseen = Unseen {
+        parameters: named.iter().map(|(_, name)| name.to_string()).collect(),
+        seen: group.len() - hidden.unwrap_or_default(),
+    };
+    let warning = match named.as_slice() {
         [(span, name)] => visibility::parameter_not_seen(*span, name),
-        _ => {
-            let seen = group.len()
-                - sets
-                    .iter()
-                    .map(|set| hidden_changes(set, group))
-                    .min()
-                    .unwrap_or_default();
-            visibility::only_together(&named, seen, combination(group, sets, &named).as_deref())
-        }
-    }
+        _ => visibility::only_together(&named, unseen.seen, combination(group, sets, &named).as_deref()),
+    };
+    (unseen, warning)
 }
 
 /// The combination of two parameters that stays as it is along the unseen change, at every set.

@@ -142,6 +142,8 @@ codes! {
     ArgumentHasUnit = "argument_has_unit",
     /// A power of a quantity with a unit to something that is no number.
     ExponentNotConstant = "exponent_not_constant",
+    /// A constant expression without a finite value.
+    NotFinite = "not_finite",
     /// A table with more abscissae than ordinates, or fewer.
     TableLengthsDiffer = "table_lengths_differ",
     /// A table with fewer than two points, or too many.

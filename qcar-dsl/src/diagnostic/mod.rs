@@ -57,6 +57,15 @@ pub struct Diagnostic {
 }
 
 impl Diagnostic {
+    /// True of what says the same of the same place.
+    pub(crate) fn repeats(&self, other: &Diagnostic) -> bool {
+        let place = |of: &Diagnostic| {
+            let first = of.labels.first();
+            first.map(|Label { span, .. }| (span.source, span.start, span.end))
+        };
+        self.code == other.code && place(self) == place(other) && self.message == other.message
+    }
+
     fn error(code: Code, message: impl Into<String>) -> Diagnostic {
         let (labels, hint) = (Vec::new(), String::new());
         Diagnostic {

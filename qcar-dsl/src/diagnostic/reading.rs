@@ -72,6 +72,13 @@ pub fn number_too_large(span: Span) -> Diagnostic {
         .hint("write a number below 1e308")
 }
 
+/// A number of more digits than any needs.
+pub fn number_too_long(span: Span, digits: usize) -> Diagnostic {
+    Diagnostic::error(Code::NumberTooLarge, format!("this number has {digits} digits"))
+        .label(span, "more than are read")
+        .hint("write it with an exponent, such as 25.4e3")
+}
+
 /// Something other than what the grammar expects.
 pub fn expected(span: Span, expected: &str, found: &str, example: &str) -> Diagnostic {
     Diagnostic::error(Code::Expected, format!("expected {expected}, found {found}"))

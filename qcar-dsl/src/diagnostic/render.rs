@@ -11,13 +11,13 @@ impl fmt::Display for Report {
     /// Without colour, the same on every machine.
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         let handler = GraphicalReportHandler::new_themed(GraphicalTheme::unicode_nocolor()).with_width(110);
-        for (index, diagnostic) in self.diagnostics.iter().enumerate() {
+        for (index, diagnostic) in self.diagnostics.iter().take(MOST).enumerate() {
             if index > 0 {
                 writeln!(f)?;
             }
             handler.render_report(f, &Rendered::new(diagnostic, &self.sources))?;
         }
-        Ok(())
+        f.write_str(&self.further())
     }
 }
 
@@ -25,7 +25,15 @@ impl Report {
     /// One line for each mistake: `file:line:column: message; write: …`.
     pub fn compact(&self) -> String {
         let line = |diagnostic| self.compact_line(diagnostic) + "\n";
-        self.diagnostics.iter().map(line).collect()
+        self.diagnostics.iter().take(MOST).map(line).collect::<String>() + &self.further()
+    }
+
+    /// What is left out, in words.
+    fn further(&self) -> String {
+        match self.diagnostics.len().saturating_sub(MOST) {
+            0 => String::new(),
+            more => format!("and {more} more like these; correct the first ones and try again\n"),
+        }
     }
 
     /// The line of one mistake.
@@ -53,6 +61,20 @@ fn place(source: &Source, span: Span) -> String {
     format!("{}:{line}:{column}", source.name)
 }
 
+/// So many mistakes are shown: those behind them most often follow from the first.
+const MOST: usize = 25;
+
+/// Bytes of a line that is still shown; no editor shows more, and the width of a number that is printed ends at 65 535.
+const LONGEST_LINE: usize = 2000;
+
+/// True where the lines around a place can be shown.
+fn is_shown(source: &Source, span: Span) -> bool {
+    let first = source.line_column(span.start).0;
+    let last = source.line_column(span.end).0;
+    let lines = source.text.lines().skip(first.saturating_sub(2)).take(last - first + 3);
+    !source.text.is_empty() && lines.map(str::len).all(|length| length <= LONGEST_LINE)
+}
+
 /// A diagnostic as miette wants it: one source, its labels as byte ranges, everything else in the help text.
 #[derive(Debug)]
 struct Rendered {
@@ -67,7 +89,9 @@ struct Rendered {
 impl Rendered {
     fn new(diagnostic: &Diagnostic, sources: &[Source]) -> Rendered {
         let home = diagnostic.labels.first().map_or(0, |label| label.span.source);
-        let source = sources.get(usize::from(home)).filter(|source| !source.text.is_empty());
+        let own = diagnostic.labels.iter().filter(|label| label.span.source == home);
+        let is_shown = |source: &&Source| own.clone().all(|label| is_shown(source, label.span));
+        let source = sources.get(usize::from(home)).filter(is_shown);
         let here = |label: &&Label| label.span.source == home && source.is_some();
         let elsewhere = diagnostic.labels.iter().filter(|label| !here(label));
         let notes = elsewhere.filter_map(|label| {

@@ -66,6 +66,14 @@ pub fn exponent_not_constant(span: Span, unit: &str) -> Diagnostic {
     .hint("write `(x/x_ref)^n` with a reference value, or a number as exponent")
 }
 
+/// A constant expression without a finite value, such as the root of a negative number.
+pub fn not_finite(span: Span, value: f64) -> Diagnostic {
+    let what = if value.is_nan() { "not a number" } else { "infinite" };
+    Diagnostic::error(Code::NotFinite, format!("this is {what}, whatever the parameters are"))
+        .label(span, what)
+        .hint("write an expression with a finite value, such as the root of a positive number")
+}
+
 /// A literal zero below a fraction bar.
 pub fn division_by_zero(span: Span) -> Diagnostic {
     Diagnostic::error(Code::DivisionByZero, "this divides by zero")

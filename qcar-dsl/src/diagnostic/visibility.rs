@@ -19,7 +19,7 @@ pub fn nothing_moves(span: Span) -> Diagnostic {
 
 /// A parameter that no response depends on.
 pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
-    Diagnostic::error(Code::ParameterNotSeen, format!("no output can see parameter `{name}`"))
+    Diagnostic::warning(Code::ParameterNotSeen, format!("no output can see parameter `{name}`"))
         .label(span, "changes no response")
         .hint(format!(
             "write `known param {name}: …` if it is given, or an output that depends on it"
@@ -36,7 +36,7 @@ pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Opti
     };
     let given = all_of(&names[seen.min(names.len())..]);
     let message = format!("no output can tell {} apart: it sees {what} only", all_of(&names));
-    let diagnostic = Diagnostic::error(Code::OnlyTogether, message).hint(format!(
+    let diagnostic = Diagnostic::warning(Code::OnlyTogether, message).hint(format!(
         "write `known param …` for {given} if given elsewhere, or one parameter for what is seen"
     ));
     parameters.iter().fold(diagnostic, |diagnostic, (span, _)| {

@@ -7,6 +7,9 @@ use crate::source::{Source, Span};
 /// Brackets nested deeper than this are refused, since the lexer and all that follow recurse.
 const DEEPEST: usize = 64;
 
+/// Numbers of more digits than this are refused, since to read them costs as the square: no number of 64 bits needs more.
+const LONGEST_NUMBER: usize = 1100;
+
 /// Finds what the lexer would refuse.
 pub fn scan(source: &Source, index: u16) -> Vec<Diagnostic> {
     let mut scan = Scan {
@@ -33,18 +36,20 @@ impl Scan<'_> {
     fn run(&mut self) {
         let text = self.source.text.as_str();
         let mut at = 0;
-        while let Some(character) = text[at..].chars().next() {
+        // What is too deep says all: the brackets behind it would each be a mistake again.
+        while let Some(character) = text[at..].chars().next().filter(|_| self.open.len() <= DEEPEST) {
             let rest = &text[at..];
             at += match character {
                 '/' if rest.starts_with("//") => rest.find('\n').unwrap_or(rest.len()),
                 '/' if rest.starts_with("/*") => self.comment(at, rest),
                 '"' => self.sentence(at, rest),
+                '0'..='9' => self.number(at, rest),
                 _ => self.character(at, character),
             };
         }
         self.end_line();
         let commented_out = self.found.iter().any(|found| found.code == Code::UnclosedComment);
-        if !commented_out {
+        if !commented_out && self.open.len() <= DEEPEST {
             let open = std::mem::take(&mut self.open);
             open.into_iter().for_each(|bracket| self.unclosed(bracket));
         }
@@ -80,6 +85,17 @@ impl Scan<'_> {
             self.found.push(reading::unclosed_comment(self.span(at as u32, 2)));
             rest.len()
         })
+    }
+
+    /// Returns the length of a run of digits.
+    fn number(&mut self, at: usize, rest: &str) -> usize {
+        let is_digit = |byte: &u8| byte.is_ascii_digit() || *byte == b'_';
+        let length = rest.bytes().take_while(is_digit).count();
+        if length > LONGEST_NUMBER {
+            self.found
+                .push(reading::number_too_long(self.span(at as u32, length), length));
+        }
+        length
     }
 
     fn character(&mut self, at: usize, character: char) -> usize {

@@ -2,10 +2,10 @@
 
 use super::declare::declared;
 use super::names::Thing;
-use super::{Known, Placed, Resolver};
-use crate::diagnostic::{names, units as mistakes};
+use super::{Known, Placed, Reported, Resolver};
+use crate::diagnostic::{Diagnostic, names, units as mistakes};
 use crate::expr::LinkId;
-use crate::model::{CoordinateKind, Direction, ForceInput, Link};
+use crate::model::{CoordinateKind, Direction, ForceInput, Law, Link, Term};
 use crate::syntax::{self, Dotted, LawStatement, Name, Statement};
 use crate::units::Unit;
 
@@ -78,9 +78,10 @@ impl Resolver<'_> {
     fn link(&mut self, link: &syntax::Link, direction: &str, statement: &Statement) -> Known<Link> {
         let id = LinkId(self.model.links.len() as u16);
         let stretch = self.stretch(link, direction);
-        // A law is read even where the stretch is mistaken, as that of a length.
-        let unit = stretch.as_ref().map_or(Unit::METER, |(_, unit)| *unit);
-        let law = self.law(&link.body, id, unit);
+        let law = match &stretch {
+            Ok((_, unit)) => self.law(&link.body, id, *unit),
+            Err(Reported) => self.law_of_unknown(&link.body, id),
+        };
         let ((stretch, unit), (law, rolling)) = (stretch?, law?);
         if law.terms.is_empty() {
             return Err(self.report(mistakes::empty_law(link.name.span, &link.name.text)));
@@ -100,6 +101,20 @@ impl Resolver<'_> {
             doc: link.doc.clone(),
             declared: declared(&link.name, statement),
         })
+    }
+
+    /// The law of a stretch that is mistaken: as that of a length, unless its units are right for an angle alone.
+    fn law_of_unknown(&mut self, body: &[LawStatement], id: LinkId) -> Known<(Law, Option<Vec<Term>>)> {
+        let before = self.found.len();
+        let law = self.law(body, id, Unit::METER);
+        let of_length = self.found.split_off(before);
+        // Its other mistakes are known by now.
+        let _ = self.law(body, id, Unit::ONE);
+        let of_angle = self.found.split_off(before);
+        let is_angle = !of_angle.iter().any(|mistake| mistake.code.is_of_units());
+        let stands = |mistake: &Diagnostic| !(is_angle && mistake.code.is_of_units());
+        self.found.extend(of_length.into_iter().filter(stands));
+        law
     }
 
     fn stretch(&mut self, link: &syntax::Link, direction: &str) -> Known<(Stretch, Unit)> {

@@ -19,6 +19,8 @@ struct Writing {
     rated: Vec<bool>,
     /// Inside `rolling`, where forces are new and states are not.
     rolling: bool,
+    /// Some of it is mistaken, here or where a name in it is declared.
+    mistaken: bool,
 }
 
 impl Writing {
@@ -50,7 +52,6 @@ struct Place {
 impl Resolver<'_> {
     /// The law of a link, and the terms while rolling where it has them.
     pub fn law(&mut self, body: &[LawStatement], link: LinkId, stretch: Unit) -> Known<(Law, Option<Vec<Term>>)> {
-        let before = self.found.len();
         let (terms, inner, rated) = (vec![], vec![], vec![]);
         let mut writing = Writing {
             link,
@@ -59,6 +60,7 @@ impl Resolver<'_> {
             inner,
             rated,
             rolling: false,
+            mistaken: false,
         };
         let mut place = Place {
             locals: Locals::default(),
@@ -76,11 +78,12 @@ impl Resolver<'_> {
             };
             if rolling.is_some() {
                 self.report(mistakes::second_rolling(*span));
+                writing.mistaken = true;
             }
             self.write(body, &mut place.clone(), &mut writing);
             rolling = Some(std::mem::take(&mut writing.terms));
         }
-        if self.found.len() > before {
+        if writing.mistaken {
             return Err(Reported);
         }
         Ok((
@@ -120,12 +123,13 @@ impl Resolver<'_> {
         for statement in body {
             if let LawStatement::State(name, unit) = statement {
                 let value = self.state(name, unit, place, writing);
+                writing.mistaken |= value.is_err();
                 place.locals.add(&name.text, value);
             }
         }
         for statement in body {
-            // Each mistake costs its own statement only, so the result is not needed.
-            let _ = self.write_one(statement, place, writing);
+            // Each mistake costs its own statement only.
+            writing.mistaken |= self.write_one(statement, place, writing).is_err();
         }
         self.require_rates(body, place, writing);
     }
@@ -152,6 +156,7 @@ impl Resolver<'_> {
             }
             LawStatement::Let(definition) => {
                 let value = self.value(&definition.value, &place.locals);
+                writing.mistaken |= value.is_err();
                 place.locals.add(&definition.name.text, value);
             }
             LawStatement::Rate(name, rate) => self.rate(name, rate, place, writing)?,
@@ -211,6 +216,9 @@ impl Resolver<'_> {
             };
         }
         let Some(index) = writing.state(&format!("{}{}", place.prefix, name.text)) else {
+            if matches!(place.locals.get(&name.text), Some(Err(Reported))) {
+                return Err(Reported);
+            }
             let unit = self
                 .value(rate, &place.locals)
                 .map(|rate| rate.unit.unwrap_or(Unit::ONE).times(Unit::SECOND));
@@ -241,6 +249,9 @@ impl Resolver<'_> {
     fn write_element(&mut self, used: &ElementUse, place: &Place, writing: &mut Writing) -> Known<()> {
         let name = &used.element;
         let Some(element) = self.elements.get(name.text.as_str()).copied() else {
+            if !self.names.unknown.insert(("the elements".into(), name.text.clone())) {
+                return Err(Reported);
+            }
             let known: Vec<String> = self.elements.keys().map(ToString::to_string).collect();
             return Err(self.report(names::unknown_element(name.span, &name.text, &known)));
         };

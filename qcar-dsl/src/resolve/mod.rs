@@ -123,8 +123,11 @@ impl<'a> Resolver<'a> {
         }
     }
 
+    /// Adds a mistake; that of an element once, however often it is written out.
     fn report(&mut self, mistake: Diagnostic) -> Reported {
-        self.found.push(mistake);
+        if !self.found.iter().any(|known| known.repeats(&mistake)) {
+            self.found.push(mistake);
+        }
         Reported
     }
 

@@ -61,6 +61,9 @@ pub struct Names {
     pub off: BTreeMap<String, String>,
     /// Parameters, derived quantities and elements that something uses.
     pub used: BTreeSet<String>,
+    /// Names that nothing has, with where they were looked for: the first use is reported, since one declaration is
+    /// missing or misspelt, and not each that would use it.
+    pub unknown: BTreeSet<(String, String)>,
 }
 
 impl Names {
@@ -97,9 +100,10 @@ impl Names {
 }
 
 impl Resolver<'_> {
-    /// Declares a parameter or derived quantity.
+    /// Declares a parameter or derived quantity. Which of two of a name its uses mean is not known.
     pub fn declare_global(&mut self, name: &Name, global: Global) {
-        if let Some((first, _)) = self.names.globals.get(&name.text) {
+        if let Some((first, known)) = self.names.globals.get_mut(&name.text) {
+            *known = Global::Broken;
             let mistake = mistakes::duplicate_name(name.span, *first, &name.text, "the model");
             self.report(mistake);
             return;
@@ -134,7 +138,10 @@ impl Resolver<'_> {
         }
         let home = self.names.directions.iter_mut().find(|(known, _)| known == direction);
         if let Some((_, names)) = home {
-            names.entry(name.text.clone()).or_insert((name.span, thing));
+            let known = names.entry(name.text.clone()).or_insert((name.span, thing));
+            if own.is_some() {
+                known.1 = Thing::Broken;
+            }
         }
     }
 
@@ -168,6 +175,10 @@ impl Resolver<'_> {
     fn no_value(&mut self, name: &Dotted, locals: &Locals) -> Reported {
         let (span, text) = (name.span(), name.to_string());
         let global = self.names.globals.get(&text).copied();
+        let in_model = (String::new(), text.clone());
+        if !locals.closed && self.names.unknown.contains(&in_model) {
+            return Reported;
+        }
         let mistake = if let Some((_, global)) = global {
             mistakes::element_is_closed(span, &text, &self.unit_of(global))
         } else if text == "s" || text == "v" {
@@ -180,6 +191,9 @@ impl Resolver<'_> {
             mistakes::used_before_declared(span, *declared, &text)
         } else {
             let place = if locals.closed { "the element" } else { "the model" };
+            if !locals.closed {
+                self.names.unknown.insert(in_model);
+            }
             mistakes::unknown_name(span, &text, place, &self.values_in_sight(locals))
         };
         self.report(mistake)
@@ -220,11 +234,16 @@ impl Resolver<'_> {
     pub fn no_thing(&mut self, name: &Dotted, direction: &str, expected: &str, example: &str) -> Reported {
         let (span, text) = (name.span(), name.to_string());
         let last = name.names.last().map(|name| name.text.clone()).unwrap_or_default();
+        let home = match name.names.as_slice() {
+            [home, _, ..] => &home.text,
+            _ => direction,
+        };
         let mistake = match self.names.find(name, direction) {
             Some((_, Thing::Broken)) => return Reported,
             Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
             None => match self.names.off.get(&last) {
                 Some(options) => mistakes::switched_off(span, &last, options),
+                None if !self.names.unknown.insert((home.to_string(), last)) => return Reported,
                 None => self.unknown(name, direction),
             },
         };

@@ -1,6 +1,7 @@
 //! Units and numbers as written, to values in SI.
 
 use super::{Known, Resolver};
+use crate::diagnostic::reading::number_too_large;
 use crate::diagnostic::units as mistakes;
 use crate::source::Span;
 use crate::syntax::{Number, UnitText};
@@ -52,6 +53,9 @@ impl Resolver<'_> {
     pub fn number(&mut self, number: &Number) -> Known<(f64, Option<Unit>)> {
         let symbol = self.unit(&number.unit)?;
         let value = number.value * symbol.multiply / symbol.divide;
+        if !value.is_finite() {
+            return Err(self.report(number_too_large(number.span)));
+        }
         Ok((value, (!number.unit.factors.is_empty()).then_some(symbol.unit)))
     }
 

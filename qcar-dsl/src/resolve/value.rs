@@ -66,8 +66,18 @@ impl Resolver<'_> {
         Err(self.report(mistakes::wrong_unit(span, what, &unit.to_string(), &value.unit_text())))
     }
 
-    /// An expression, whatever its unit.
+    /// An expression, whatever its unit. What is constant in it must be a number.
     pub fn value(&mut self, expression: &Expression, locals: &Locals) -> Known<Value> {
+        let value = self.any_value(expression, locals)?;
+        match self.model.graph.as_constant(value.expr) {
+            Some(constant) if !constant.is_finite() => {
+                Err(self.report(mistakes::not_finite(expression.span, constant)))
+            }
+            _ => Ok(value),
+        }
+    }
+
+    fn any_value(&mut self, expression: &Expression, locals: &Locals) -> Known<Value> {
         match &expression.kind {
             ExpressionKind::Number(number) => {
                 let (value, unit) = self.number(number)?;

@@ -1,8 +1,8 @@
 //! `static ABOUT`: what the runtime shows of a generated model.
 
 use crate::about::{
-    About, Channel, ContactAxis, Entry, Excitation, Input, InputKind, Link, Output, Parameter, ResponseLayout, Signal,
-    SignalKind, Source, State, StateKind,
+    About, Channel, ContactAxis, Entry, Excitation, Input, InputKind, Link, Mass, Output, Parameter, ResponseLayout,
+    Signal, SignalKind, Source, State, StateKind,
 };
 use crate::model::{Default, Quantity};
 
@@ -21,6 +21,7 @@ pub static ABOUT: seam::About = seam::About {{
     excitations: Borrowed(&ABOUT_EXCITATIONS),
     channels: Borrowed(&ABOUT_CHANNELS),
     links: Borrowed(&ABOUT_LINKS),
+    masses: Borrowed(&ABOUT_MASSES),
     contact: {},
     constants: CONSTANTS,
     linear: {},
@@ -42,6 +43,7 @@ pub static ABOUT: seam::About = seam::About {{
         excitations(about),
         channels(about),
         links(about),
+        masses(about),
         responses(about),
         matrices(about),
         sensitivities(about),
@@ -164,12 +166,24 @@ fn links(about: &About) -> String {
     let item = |l: &Link| {
         let ends = l.ends.iter().map(|end| text(end)).collect::<Vec<_>>().join(", ");
         format!(
-            "{{ name: {}, axis: {}, ends: Borrowed(&[{ends}]) }}",
+            "{{ name: {}, axis: {}, ends: Borrowed(&[{ends}]), parameters: Borrowed(&{:?}) }}",
             text(&l.name),
-            text(&l.axis)
+            text(&l.axis),
+            l.parameters
         )
     };
     array("ABOUT_LINKS", "Link", about.links.iter().map(item).collect())
+}
+
+fn masses(about: &About) -> String {
+    let item = |m: &Mass| {
+        let (location, axis) = (text(&m.location), text(&m.axis));
+        format!(
+            "{{ location: {location}, axis: {axis}, angle: {}, parameters: Borrowed(&{:?}) }}",
+            m.angle, m.parameters
+        )
+    };
+    array("ABOUT_MASSES", "Mass", about.masses.iter().map(item).collect())
 }
 
 fn responses(about: &About) -> String {

@@ -26,6 +26,8 @@ pub struct Campaign {
     pub model: String,
     /// What is known before any fit, corner values, SI; in the order of the file: [`FACTS`] and parameters of the model.
     pub vehicle: Vec<(String, f64)>,
+    /// What the model's masses are to the tests, where its structure leaves that open.
+    pub roles: RoleNames,
     /// Start values, in the order of the file.
     pub parameters: Vec<Parameter>,
     /// The sensors, in the order of the file.
@@ -36,6 +38,15 @@ pub struct Campaign {
     pub roads: Vec<Road>,
     /// What is odd but no error, as sentences to show to the engineer.
     pub notices: Vec<String>,
+}
+
+/// Masses of the model that a campaign names itself; see [`Roles`](crate::roles::Roles).
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct RoleNames {
+    /// What a K&C rig moves.
+    pub wheel: Option<String>,
+    /// What it holds.
+    pub body: Option<String>,
 }
 
 /// The start value of a model parameter.

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 use crate::spelling;
 
@@ -30,7 +31,7 @@ pub(super) struct Section<'a> {
 impl Document {
     /// Reads a text file, which is TOML if [`Document::parse`] says so.
     pub fn read(file: &Path) -> Result<Document, InputError> {
-        match std::fs::read_to_string(file) {
+        match bounded::text(file) {
             Ok(text) => Ok(Document {
                 file: file.into(),
                 text,
@@ -108,9 +109,14 @@ impl<'a> Section<'a> {
         self.typed(key, value.as_str().map(str::to_string), value, "a text in quotes")
     }
 
+    /// A text, `None` where the key is left out.
+    pub fn optional_text(&self, key: &'static str) -> Option<String> {
+        self.optional(key).and_then(|_| self.text(key))
+    }
+
     /// A text, empty where the key is left out.
     pub fn remark(&self, key: &'static str) -> String {
-        self.optional(key).and_then(|_| self.text(key)).unwrap_or_default()
+        self.optional_text(key).unwrap_or_default()
     }
 
     /// A finite number.

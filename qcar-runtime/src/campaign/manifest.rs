@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::contents::{
-    Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, Run, Side, Spacing, Sweep, Test,
+    Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test,
 };
 use super::fields::{Document, Section};
 use super::{table, unit};
@@ -42,6 +42,7 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         .section("vehicle")
         .map(|section| section.numbers())
         .unwrap_or_default();
+    let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
     let parameters = top
         .section("parameters")
         .map_or(Some(Vec::new()), |section| parameters(&section));
@@ -65,6 +66,7 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         description,
         model,
         vehicle,
+        roles,
         parameters,
         channels,
         runs,
@@ -109,6 +111,12 @@ fn each<'a, T>(
         members.push(member);
     }
     members.into_iter().collect()
+}
+
+fn roles(section: &Section<'_>) -> RoleNames {
+    let (wheel, body) = (section.optional_text("wheel"), section.optional_text("body"));
+    section.finish();
+    RoleNames { wheel, body }
 }
 
 fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {

@@ -1,12 +1,12 @@
 //! A CSV file, plain or gzip, as named columns of finite numbers.
 
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::{BufReader, ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder, Terminator, Trim};
 use flate2::read::MultiGzDecoder;
 
+use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
 /// A file read to its end.
@@ -122,16 +122,11 @@ fn list<T: AsRef<str>>(names: &[T]) -> String {
 }
 
 fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
-    let opened = File::open(file).and_then(|f| f.metadata().map(|about| (f, about.is_dir())));
-    let plain = match opened {
-        Ok((plain, false)) => BufReader::new(plain),
-        Ok((_, true)) => return Err(missing(file, "a folder")),
-        Err(error) => return Err(missing(file, &error.to_string())),
-    };
+    let plain = BufReader::new(bounded::open(file).map_err(|error| missing(file, &error.to_string()))?);
     let bytes: Box<dyn Read> = if file.extension().is_some_and(|e| e == "gz") {
-        Box::new(MultiGzDecoder::new(plain))
+        Box::new(bounded::limited(MultiGzDecoder::new(plain)))
     } else {
-        Box::new(plain)
+        Box::new(bounded::limited(plain))
     };
     Ok(ReaderBuilder::new()
         .flexible(true)
@@ -159,14 +154,12 @@ fn missing(file: &Path, found: &str) -> InputError {
 fn unreadable(file: &Path, last_line: Option<&u64>, error: &csv::Error) -> InputError {
     let place = last_line.map_or(Place::File, |line| Place::Line(line + 1));
     let expected = "UTF-8 comma-separated numbers (gzip-compressed where the name ends in .gz)";
-    Problem::new(
-        file,
-        place,
-        error.to_string(),
-        expected,
-        "the file is damaged or incomplete; copy or export it again",
-    )
-    .into()
+    let too_large = matches!(error.kind(), csv::ErrorKind::Io(error) if error.kind() == ErrorKind::FileTooLarge);
+    let remedy = match too_large {
+        true => "if the file is what it should be, raise the limit",
+        false => "the file is damaged or incomplete; copy or export it again",
+    };
+    Problem::new(file, place, error.to_string(), expected, remedy).into()
 }
 
 fn names(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<String>, InputError> {

@@ -12,8 +12,10 @@ use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// The most steps.
-const STEPS: usize = 6;
+/// The most steps,
+const STEPS: usize = 10;
+/// and by what factor one is taken again that was too long.
+const SHORTER: f64 = 0.25;
 /// The share of the sum of squares that the last step gained.
 const LITTLE: f64 = 1e-4;
 
@@ -40,19 +42,27 @@ pub fn beginnings(
             .collect();
         misread.begun[place] = unknown.iter().map(|(name, _)| (name.clone(), 0.0)).collect();
         let mut best = (f64::INFINITY, misread.begun[place].clone());
+        let mut step = DVector::zeros(unknown.len());
         for _ in 0..STEPS {
             let predictions = predict_begun(model, values, misread, evidence, place)?;
             let rows = Rows::of(&predictions, (nuisance, coefficients), evidence, &unknown);
-            let (cost, step) = rows.solve(&misread.begun[place], &unknown);
+            let (cost, next) = rows.solve(&misread.begun[place], &unknown);
             let gained = best.0 - cost;
-            if cost < best.0 {
-                best = (cost, misread.begun[place].clone());
+            match next.filter(|_| gained > 0.0) {
+                Some(next) => {
+                    best = (cost, misread.begun[place].clone());
+                    step = next;
+                }
+                // Too far for a law that is not linear.
+                None => step *= SHORTER,
             }
-            let (Some(step), true) = (step, gained > LITTLE * cost) else {
+            if gained > 0.0 && gained < LITTLE * cost {
                 break;
-            };
-            let begun = misread.begun[place].iter_mut();
-            begun.zip(step.iter()).for_each(|((_, value), step)| *value += step);
+            }
+            let begun = misread.begun[place].iter_mut().zip(&best.1);
+            begun
+                .zip(step.iter())
+                .for_each(|((own, best), step)| own.1 = best.1 + step);
         }
         misread.begun[place] = best.1;
     }

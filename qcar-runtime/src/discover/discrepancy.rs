@@ -5,7 +5,7 @@
 //! Gaussian process for each group of series (one sensor in one kind of run), with a standard deviation `τ` in parts of
 //! the signal (Kennedy and O'Hagan, Bayesian calibration of computer models, J. R. Stat. Soc. B 63, 2001). The fit
 //! whitens its residuals by the Cholesky factor of the covariance `diag σ² + τ² K`. Correlation ends at a distance
-//! (Wendland, Advances in Computational Mathematics 4, 1995, the function φ₃,₁), so that the factor is banded and costs
+//! (Wendland, Advances in Computational Mathematics 4, 1995), so that the factor is banded and costs
 //! little.
 //!
 //! On a clean simulated campaign every `τ` goes to zero and residuals count in units of noise; on hardware `τ` is what
@@ -38,6 +38,8 @@ struct Group {
     rows: Vec<[usize; 2]>,
     /// Rows of a value: two where it is complex.
     parts: usize,
+    /// What the evidence of each run counts: a tyre's law is wrong in all rides alike, so that all of them count as one.
+    weight: f64,
     /// The correlation, in units of the noise, for a `τ` of one.
     correlation: Banded,
     /// The least that any model misses.
@@ -257,13 +259,19 @@ impl Group {
         let correlated = |row: usize| -> Range<usize> {
             values[..row].partition_point(|other| values[row].place - other.place >= 1.0)..row + 1
         };
+        let kind = key.kind;
         let entry = |row: usize, column: usize| {
             let (a, b) = (&values[row], &values[column]);
             let levels = if a.run == b.run { 1.0 } else { COMMON_TO_LEVELS };
-            a.scale * b.scale * levels * wendland((a.place - b.place).abs())
+            a.scale * b.scale * levels * correlation(kind, (a.place - b.place).abs())
+        };
+        let weight = match kind {
+            Kind::Passage => 1.0 / runs(&values) as f64,
+            _ => 1.0,
         };
         let mut group = Self {
             key,
+            weight,
             rows: values.iter().map(|value| value.rows).collect(),
             parts: values.first().map_or(1, |value| value.parts),
             correlation: Banded::new(values.len(), correlated, entry),
@@ -286,29 +294,29 @@ impl Group {
 
     /// Half the logarithm of the determinant of the covariance of all parts.
     fn log_determinant(&self) -> f64 {
-        self.factor
-            .as_ref()
-            .map_or(0.0, |factor| self.parts as f64 * factor.log_diagonal())
+        let of_part = self.factor.as_ref().map_or(0.0, Banded::log_diagonal);
+        self.weight * self.parts as f64 * of_part
     }
 
     fn whiten(&self, column: &mut [f64]) {
-        let Some(factor) = &self.factor else { return };
+        if self.factor.is_none() && self.weight == 1.0 {
+            return;
+        }
+        let weight = self.weight.sqrt();
         for part in 0..self.parts {
             let mut values: Vec<f64> = self.rows.iter().map(|rows| column[rows[part]]).collect();
             if values.iter().all(|value| *value == 0.0) {
                 continue;
             }
-            factor.forward(&mut values);
-            self.rows
-                .iter()
-                .zip(values)
-                .for_each(|(rows, value)| column[rows[part]] = value);
+            self.factor.iter().for_each(|factor| factor.forward(&mut values));
+            let rows = self.rows.iter().map(|rows| rows[part]);
+            rows.zip(values).for_each(|(row, value)| column[row] = weight * value);
         }
     }
 
     /// Minus the logarithm of the likelihood of residuals and the prior, but for a constant.
     fn cost(&self, tau: f64, residual: &[Vec<f64>]) -> f64 {
-        let square = |values: &[f64]| values.iter().map(|value| value * value).sum::<f64>() / 2.0;
+        let square = |values: &[f64]| self.weight * values.iter().map(|value| value * value).sum::<f64>() / 2.0;
         if tau == 0.0 {
             return residual.iter().map(|part| square(part)).sum();
         }
@@ -316,7 +324,7 @@ impl Group {
         let of_part = |part: &Vec<f64>| {
             let mut values = part.clone();
             factor.forward(&mut values);
-            square(&values) + factor.log_diagonal()
+            square(&values) + self.weight * factor.log_diagonal()
         };
         residual.iter().map(of_part).sum::<f64>() + prior(tau)
     }
@@ -355,12 +363,22 @@ impl Group {
     }
 }
 
-/// Wendland's function φ₃,₁: twice continuously differentiable, positive definite, zero from one on.
-fn wendland(r: f64) -> f64 {
-    if r < 1.0 {
-        (1.0 - r).powi(4) * (4.0 * r + 1.0)
-    } else {
-        0.0
+/// Number of runs that values are of.
+fn runs(values: &[Value]) -> usize {
+    let mut runs: Vec<usize> = values.iter().map(|value| value.run).collect();
+    runs.sort_unstable();
+    runs.dedup();
+    runs.len().max(1)
+}
+
+/// How much two discrepancies have in common, by their distance: Wendland's functions, positive definite and zero from one
+/// on. A record may jump where a law does, with all its harmonics: φ₃,₀ is continuous. Anything else is smooth: φ₃,₁ is twice
+/// continuously differentiable.
+fn correlation(kind: Kind, r: f64) -> f64 {
+    match kind {
+        _ if r >= 1.0 => 0.0,
+        Kind::Time => (1.0 - r).powi(2),
+        _ => (1.0 - r).powi(4) * (4.0 * r + 1.0),
     }
 }
 

@@ -32,6 +32,7 @@ use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
 use crate::road::Road;
+use crate::roles::OnRig;
 use crate::transmissibility::Point;
 use crate::tyre::Tyre;
 
@@ -101,6 +102,8 @@ pub enum Stimulus {
     Cleat(Passage),
     /// A K&C rig that moved the wheel slowly against the body.
     Travel {
+        /// What these are in the model.
+        on: OnRig,
         /// Along which it moved.
         axis: Axis,
         /// m.
@@ -108,6 +111,8 @@ pub enum Stimulus {
     },
     /// The same as a sine.
     Sine {
+        /// What these are in the model.
+        on: OnRig,
         /// Along which it moved.
         axis: Axis,
         /// Hz.
@@ -501,7 +506,7 @@ fn has(about: &About, point: &Point) -> bool {
     excitation_of(about, point).is_some() || output_of(about, &signal_of(about, point)).is_ok()
 }
 
-/// Pads move up and down.
-fn is_pad(point: &Point) -> bool {
-    point.location == "pad" && point.axis == Axis::Z
+/// True of a sensor at a motion that drives the model.
+fn is_motion(about: &About, point: &Point) -> bool {
+    excitation_of(about, point).is_some_and(|place| !about.excitations[place].force)
 }

@@ -19,7 +19,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Run, Series, Stimulus};
-use super::nuisance::{Nuisance, STRAINED};
+use super::nuisance::{Beginning, Nuisance, STRAINED};
 use super::predict::{Free, PredictError, Prediction, predict_sides};
 use crate::campaign::Role;
 use crate::least_squares::information::Information;
@@ -128,7 +128,7 @@ impl Refit {
         &self,
         other: &dyn Model,
         values: &Values,
-        coefficients: &[f64],
+        (nuisance, coefficients): (Nuisance, &[f64]),
         fitted: &dyn Model,
         evidence: &Evidence,
     ) -> Option<DVector<f64>> {
@@ -140,7 +140,7 @@ impl Refit {
                 side.set(parameter, self.side.as_slice()[free.parameter]);
             }
         }
-        let mut posterior = Posterior::new(other, values.clone(), &[], evidence, self.nuisance.clone());
+        let mut posterior = Posterior::new(other, values.clone(), &[], evidence, nuisance);
         posterior.side = side;
         posterior.by_evidence = self.discrepancy.is_some();
         let mut residual = vec![0.0; posterior.residuals()];
@@ -164,6 +164,13 @@ impl Refit {
         let scatter = self.scatter().sqrt();
         let errors: Vec<f64> = self.coefficient_stderr.iter().map(|error| scatter * error).collect();
         self.nuisance.offsets(&self.coefficients, &errors)
+    }
+
+    /// With which states records were found to begin.
+    pub fn begun(&self) -> Vec<(Beginning, f64)> {
+        let coefficients = &self.coefficients[self.nuisance.of_sensors()..];
+        let beginnings = self.nuisance.beginnings.iter().cloned();
+        beginnings.zip(coefficients.iter().copied()).collect()
     }
 
     /// What the sensors would have shown of a prediction.
@@ -237,6 +244,8 @@ pub struct Start<'a> {
     pub values: &'a Values,
     /// The errors of sensors with the logarithms of the recorded side's factors behind them, zero beyond those that are known.
     pub errors: &'a [f64],
+    /// With which states records were found to begin; others begin as they are seen.
+    pub begun: &'a [(Beginning, f64)],
     /// Where the priors of the parameters are centred.
     pub centre: &'a Values,
     /// What the model is taken to miss at first.
@@ -256,15 +265,28 @@ pub fn fit(
     nuisance: Nuisance,
     (rounds, evaluations): (usize, usize),
 ) -> Result<Refit, PredictError> {
-    let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
-    posterior.discrepancy = Some(start.discrepancy);
-    posterior.by_evidence = true;
-    posterior.centre = start.centre.clone();
+    let (errors, factors) = start.errors.split_at(start.errors.len().min(nuisance.of_sensors()));
+    let nuisance = nuisance.beginning(model.about(), evidence);
+    let nuisance = offset::once(nuisance, model, start.values, free, evidence)?;
     let mut place: Vec<f64> = free
         .iter()
         .map(|free| start.values.as_slice()[free.parameter])
         .collect();
-    place.extend(start.errors);
+    place.extend(errors);
+    place.resize(free.len() + nuisance.of_sensors(), 0.0);
+    let begun = |own: &Beginning| {
+        let known = start
+            .begun
+            .iter()
+            .find(|(known, _)| known.run == own.run && known.state == own.state);
+        known.map_or(0.0, |(_, value)| *value)
+    };
+    place.extend(nuisance.beginnings.iter().map(begun));
+    place.extend(factors);
+    let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
+    posterior.discrepancy = Some(start.discrepancy);
+    posterior.by_evidence = true;
+    posterior.centre = start.centre.clone();
     place.resize(posterior.variables(), 0.0);
     posterior.fit(place, rounds, evaluations)
 }

@@ -75,10 +75,31 @@ pub struct Rival {
     pub early: bool,
 }
 
+/// An effect that might be missing, and how probable that is.
+#[derive(Clone, Debug, PartialEq, serde::Serialize)]
+pub struct Probable {
+    /// Its name.
+    pub effect: String,
+    /// Its place.
+    pub at: String,
+    /// Its form that explains best; `None` where it has only one.
+    pub form: Option<String>,
+    /// Probability that it is missing, given that one of the sets of effects that were fitted is the truth.
+    pub probability: f64,
+    /// Share of the excess gap of the runs that judge that it closes.
+    pub explained: f64,
+    /// By how much it raises the logarithm of the evidence.
+    pub log_evidence: f64,
+}
+
 /// What was found, and what is left.
 pub struct Discovery {
     /// The answer.
     pub verdict: Verdict,
+    /// How probable it is; `None` of a search by rules.
+    pub probability: Option<f64>,
+    /// The most probable effects, the first first; none of a search by rules.
+    pub candidates: Vec<Probable>,
     /// In the order in which they were found; of a class, what was found before it and then its members, the best first.
     pub findings: Vec<Finding>,
     /// So many of the last findings stand in each other's place: the members of a class.
@@ -148,6 +169,8 @@ pub fn discover(
             _ => Vec::new(),
         },
         verdict,
+        probability: None,
+        candidates: Vec::new(),
         findings,
         alike,
         before: before.clone(),
@@ -200,7 +223,7 @@ pub fn discover(
 }
 
 /// The gap of the runs that judge, in words.
-fn told(of: &Explanation) -> String {
+pub(super) fn told(of: &Explanation) -> String {
     let gap = if of.gap.held_out.is_finite() {
         of.gap.held_out
     } else {

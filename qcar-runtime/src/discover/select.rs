@@ -6,8 +6,10 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
-// and how probable each set is.
+// how probable each set is,
 mod verdict;
+// and which effects would have been seen.
+mod visible;
 
 use std::sync::Arc;
 
@@ -15,14 +17,15 @@ use assembly::{Assembly, Place, Placed};
 use race::{Fidelity, race};
 use screen::screen;
 use verdict::{Set, judged};
+use visible::visible;
 
 use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
 use super::explain::Setting;
-use super::numbers::{FALSE_ALARMS, MOST_EFFECTS};
+use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
-use super::search::{Discovery, News, Progress};
+use super::search::{Discovery, News, Progress, Verdict, told};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -41,7 +44,8 @@ pub fn discover(
     progress(News::Doing("fitting the base model"));
     let assembly = Assembly::base(Arc::from(workshop), setting, evidence)?;
     let base = base(assembly, evidence)?;
-    progress(News::Known("the model alone is fitted", &[], &base.explanation));
+    let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
+    progress(News::Known(&alone, &[], &base.explanation));
     let mut sets = vec![base];
     // The most probable set is extended until nothing that could be added is worth it.
     let mut next = Some(0);
@@ -56,7 +60,13 @@ pub fn discover(
     }
     let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress)?;
     sets.extend(without);
-    Ok(judged(sets, evidence))
+    let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
+    let mut discovery = judged(sets, evidence);
+    if discovery.verdict == Verdict::None {
+        let steady = evidence.less(&refit.unsteady).hurried();
+        discovery.visible = visible(&assembly, &refit, &looks(&steady).fine);
+    }
+    Ok(discovery)
 }
 
 /// The most probable set.
@@ -73,7 +83,7 @@ fn tell(set: &Set, progress: Progress<'_>) {
         .map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
-        let words = format!("with {}", names.join(" and "));
+        let words = format!("with {} it leaves {}", names.join(" and "), told(&set.explanation));
         progress(News::Known(&words, &set.findings(), &set.explanation));
     }
 }
@@ -93,6 +103,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
             named: setting_spread(&assembly, spread),
             sides: Default::default(),
             errors: Vec::new(),
+            begun: Vec::new(),
             discrepancy: Discrepancy::of(&looks.coarse, Role::Fit),
         };
         hypothesis.fit(&from, &looks.coarse, BASE[0])
@@ -150,7 +161,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
-    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, progress)?;
+    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, least, progress);
     if std::env::var_os("QCAR_TELL").is_some() {
         eprintln!("race {:.2} s", begun.elapsed().as_secs_f64());
     }
@@ -166,7 +177,12 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         let Some(assembly) = set.assembly.with(candidate) else {
             continue;
         };
-        let prior = set.log_prior + log_prior(candidate, &candidates);
+        let further = if set.assembly.effects().is_empty() {
+            1.0
+        } else {
+            FURTHER
+        };
+        let prior = set.log_prior + log_prior(candidate, &candidates) + further.ln();
         sets.push(Set::new(assembly, explanation, prior));
     }
     for own in &mut sets {

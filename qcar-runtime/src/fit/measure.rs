@@ -49,6 +49,7 @@ fn level(
 ) -> Result<Level, InputError> {
     let history = campaign.history(run)?;
     let measured = points(&history);
+    one_road_moves(&history, about)?;
     let (excitation, reference) = excitation(&history, about, &measured)?;
     let along: Vec<Point> = measured
         .into_iter()
@@ -82,6 +83,34 @@ fn level(
         excitation,
         observations: observations.collect(),
     })
+}
+
+/// A road moves if its mean square is this share of that of the road that moves most: a tenth of its amplitude.
+const MOVES: f64 = 0.01;
+
+/// # Errors
+/// Several roads that move in one run: a response is related to one of them, and would be taken for its alone.
+fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
+    let roads = about.excitations.iter().filter(|excitation| excitation.road);
+    let recorded = roads.filter_map(|road| {
+        let mut own = history.signals.iter();
+        let (_, values) = own.find(|(sensor, _)| road.name == *sensor.location && road.axis == *sensor.axis.name())?;
+        Some((&*road.name, values.iter().map(|value| value * value).sum()))
+    });
+    let recorded: Vec<(&str, f64)> = recorded.collect();
+    let most = recorded.iter().fold(0.0, |most: f64, (_, size)| most.max(*size));
+    let moving: Vec<String> = recorded
+        .iter()
+        .filter(|(_, size)| *size > MOVES * most)
+        .map(|(name, _)| format!("`{name}`"))
+        .collect();
+    if moving.len() < 2 {
+        return Ok(());
+    }
+    let found = format!("roads that move at once: {}", moving.join(", "));
+    let expected = format!("one moving road of model `{}` in a run", about.name);
+    let remedy = "drive one at a time, or take a model with one tyre";
+    Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }
 
 /// The excitation of the model that a run records, and the point where it does.

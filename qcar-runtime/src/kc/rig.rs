@@ -6,8 +6,9 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use crate::model::{About, ContactAxis, InputKind, Matrix, Model, StateKind};
+use crate::model::{About, Contact, InputKind, Matrix, Model, StateKind};
 use crate::response::parameters::Values;
+use crate::roles::{OnRig, state};
 
 /// Which gradient of the force on the wheel is meant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,16 +25,12 @@ const SLOW: f64 = 0.06;
 const REACH: f64 = 100.0;
 const HALVINGS: usize = 60;
 
-/// The gradient of the force on the wheel of a rolling tyre, moved along `axis` with the mass `clamped` held.
+/// The gradient of the force on the wheel, moved along `axis` with the body held.
 ///
 /// The model is linearised at rest, and inner states of laws stay at zero: friction is no gradient. Its road moves with
-/// the wheel. `None` where the model has no such mass, no wheel that moves along the axis, or no force on that wheel.
-pub fn gradient<M: Model + ?Sized>(model: &M, p: &[f64], clamped: &str, axis: &str, slope: Slope) -> Option<f64> {
-    let about = model.about();
-    let wheel = about.contact.as_ref()?.axes.iter().find(|found| found.axis == axis)?;
-    let mut states = about.states.iter();
-    states.find(|state| state.location == clamped && state.axis == axis)?;
-    let force = Rig::new(model, p).force(clamped, wheel)?;
+/// the wheel. `None` where one of both does not move along the axis, or where no force can be put on the wheel.
+pub fn gradient<M: Model + ?Sized>(model: &M, p: &[f64], on: &OnRig, axis: &str, slope: Slope) -> Option<f64> {
+    let force = Rig::new(model, p, on, axis)?.force()?;
     let found = match slope {
         Slope::Stiffness => force.re,
         Slope::Damping => force.im / SLOW,
@@ -49,7 +46,7 @@ pub fn value_for<M: Model + ?Sized>(
     model: &M,
     values: &Values,
     parameter: usize,
-    (clamped, axis, slope): (&str, &str, Slope),
+    (on, axis, slope): (&OnRig, &str, Slope),
     measured: f64,
 ) -> Option<f64> {
     let mut p = values.as_slice().to_vec();
@@ -61,7 +58,7 @@ pub fn value_for<M: Model + ?Sized>(
     let (mut low, mut high) = bounds.unwrap_or((own / REACH, own * REACH));
     let mut excess = |value: f64| {
         same.iter().for_each(|&i| p[i] = value);
-        gradient(model, &p, clamped, axis, slope).map(|found| found - measured)
+        gradient(model, &p, on, axis, slope).map(|found| found - measured)
     };
     if excess(low)? > 0.0 || excess(high)? < 0.0 {
         return None;
@@ -77,16 +74,109 @@ pub fn value_for<M: Model + ?Sized>(
     Some(0.5 * (low + high))
 }
 
-/// A linear model `dx/dt = A x + B u`.
+/// The parameter that a measured gradient gives: of those in the laws of the links at the wheel, other than its tyre, the
+/// one on which the model's gradient depends most. A parameter that is known, or that follows another, is none.
+///
+/// `None` where [`gradient`] says nothing, or depends on none of them.
+pub fn parameter_for<M: Model + ?Sized>(
+    model: &M,
+    values: &Values,
+    (on, axis, slope): (&OnRig, &str, Slope),
+) -> Option<usize> {
+    let p = values.as_slice();
+    let own = gradient(model, p, on, axis, slope)?;
+    let change = |&parameter: &usize| {
+        let mut moved = values.clone();
+        moved.set(parameter, p[parameter] * (1.0 + STEP));
+        let moved = gradient(model, moved.as_slice(), on, axis, slope)?;
+        let share = (moved - own).abs() / (STEP * own.abs());
+        (share > LEAST_SHARE).then_some((parameter, share))
+    };
+    let changes = at_wheel(model.about(), values, on, axis).into_iter();
+    let changes = changes.filter_map(|parameter| change(&parameter));
+    let most = changes.reduce(|most, next| if next.1 > most.1 { next } else { most });
+    most.map(|(parameter, _)| parameter)
+}
+
+/// Relative change of a parameter to see what it does, and the least relative change of a gradient for that of one.
+const STEP: f64 = 1e-3;
+const LEAST_SHARE: f64 = 1e-3;
+
+/// The parameters in the laws of the links at the wheel, in the order of the model.
+fn at_wheel(about: &About, values: &Values, on: &OnRig, axis: &str) -> Vec<usize> {
+    let tyre = about.contact.as_ref().map(|contact| usize::from(contact.link));
+    let links = about.links.iter().enumerate().filter(|(place, link)| {
+        let ends = link.ends.iter().any(|end| *end == *on.wheel);
+        Some(*place) != tyre && link.axis == axis && ends
+    });
+    let parameters = links.flat_map(|(_, link)| link.parameters.iter().map(|&place| usize::from(place)));
+    let mut own: Vec<usize> = parameters
+        .filter(|&place| values.leader(place) == place && !about.parameters[place].known)
+        .collect();
+    own.sort_unstable();
+    own.dedup();
+    own
+}
+
+/// What a force of one on a mass along an axis changes of `dx/dt` at rest: of the tyre's contact where it carries that
+/// mass, else of a force input of the model. `None` where neither acts on it.
+pub(crate) fn of_unit_force<M: Model + ?Sized>(model: &M, p: &[f64], mass: &str, axis: &str) -> Option<Vec<f64>> {
+    let about = model.about();
+    let velocity = state(about, StateKind::Velocity, mass, axis)?;
+    let mut constants = vec![0.0; about.constants];
+    model.prepare(p, &mut constants);
+    let (x, rest) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
+    let difference = |rates: &dyn Fn(f64, &mut [f64])| -> Vec<f64> {
+        let (mut pushed, mut alone) = (x.clone(), x.clone());
+        rates(1.0, &mut pushed);
+        rates(0.0, &mut alone);
+        pushed.iter().zip(alone).map(|(pushed, alone)| pushed - alone).collect()
+    };
+    let axes = about.contact.iter().flat_map(|contact| contact.axes.iter());
+    if let Some(at) = axes
+        .map(|axis| usize::from(axis.velocity))
+        .position(|at| at == velocity)
+    {
+        return Some(difference(&|force, dx| {
+            let mut contact = Contact::default();
+            contact.force[at] = force;
+            model.rolling_derivative(&constants, &x, &rest, &contact, dx);
+        }));
+    }
+    let forces = about.inputs.iter().enumerate().filter(|(_, input)| {
+        let is_force = matches!(input.kind, InputKind::Force(_));
+        is_force && input.axis == axis
+    });
+    let mut found = forces.map(|(place, _)| {
+        difference(&|force, dx| {
+            let mut u = rest.clone();
+            u[place] = force;
+            model.derivative(&constants, &x, &u, dx);
+        })
+    });
+    found.find(|of_unit| of_unit[velocity] != 0.0)
+}
+
+/// A linear model `dx/dt = A x + B u` with its wheel moved by one.
 struct Rig<'a> {
     about: &'a About,
     a: DMatrix<Complex<f64>>,
     b: DMatrix<Complex<f64>>,
+    axis: &'a str,
+    /// The acceleration of the wheel for a force of one.
+    of_unit: f64,
+    /// Velocity of the wheel.
+    moved: usize,
+    /// What the rig prescribes of each state; `None` where it is free.
+    prescribed: Vec<Option<Complex<f64>>>,
 }
 
 impl<'a> Rig<'a> {
-    fn new<M: Model + ?Sized>(model: &'a M, p: &[f64]) -> Self {
+    fn new<M: Model + ?Sized>(model: &'a M, p: &[f64], on: &OnRig, axis: &'a str) -> Option<Self> {
         let about = model.about();
+        let position = state(about, StateKind::Position, &on.wheel, axis)?;
+        let moved = state(about, StateKind::Velocity, &on.wheel, axis)?;
+        state(about, StateKind::Position, &on.body, axis)?;
         let (states, inputs) = (about.states.len(), about.inputs.len());
         let mut nonzeros = vec![0.0; about.matrices.len()];
         model.matrices(p, &vec![0.0; states], &vec![0.0; inputs], &mut nonzeros);
@@ -99,58 +189,53 @@ impl<'a> Rig<'a> {
                 Matrix::C | Matrix::D => {}
             }
         }
-        Self { about, a, b }
-    }
-
-    /// The complex force on the wheel for a displacement of one; `None` where no force can be put on it, or where
-    /// something would move without end.
-    fn force(&self, clamped: &str, wheel: &ContactAxis) -> Option<Complex<f64>> {
-        let moved = usize::from(wheel.velocity);
-        let prescribed = self.prescribed(clamped, wheel);
-        let free: Vec<usize> = (0..prescribed.len()).filter(|&i| prescribed[i].is_none()).collect();
-        let mut x = DVector::from_iterator(prescribed.len(), prescribed.iter().map(|x| x.unwrap_or_default()));
-        let u = self.inputs(wheel);
-        let missing = |x: &DVector<_>| x * Complex::new(0.0, SLOW) - &self.a * x - &self.b * &u;
-        let right = -missing(&x).select_rows(&free);
-        let rates = DMatrix::from_diagonal_element(x.len(), x.len(), Complex::new(0.0, SLOW)) - &self.a;
-        let answer = rates.select_rows(&free).select_columns(&free).lu().solve(&right)?;
-        free.iter().zip(answer.iter()).for_each(|(&i, value)| x[i] = *value);
-        Some(missing(&x)[moved] / self.b[(moved, self.handle(moved)?)])
-    }
-
-    /// The force input that accelerates the wheel.
-    fn handle(&self, moved: usize) -> Option<usize> {
-        let mut inputs = self.about.inputs.iter().enumerate();
-        let acts = |at: usize| self.b[(moved, at)] != Complex::ZERO;
-        let found = inputs.find(|(at, input)| matches!(input.kind, InputKind::Force(_)) && acts(*at));
-        found.map(|(at, _)| at)
-    }
-
-    /// What the rig prescribes of each state; `None` where it is free.
-    fn prescribed(&self, clamped: &str, wheel: &ContactAxis) -> Vec<Option<Complex<f64>>> {
-        let [position, velocity] = [wheel.position, wheel.velocity].map(usize::from);
-        let held = [clamped, &self.about.states[position].location];
-        let states = self.about.states.iter().enumerate();
+        let states = about.states.iter().enumerate();
         let prescribed = states.map(|(at, state)| {
             if at == position {
                 Some(Complex::ONE)
-            } else if at == velocity {
+            } else if at == moved {
                 Some(Complex::new(0.0, SLOW))
-            } else if state.kind == StateKind::Inner || held.contains(&&*state.location) {
+            } else if state.kind == StateKind::Inner
+                || [&on.wheel, &on.body].iter().any(|held| **held == state.location)
+            {
                 Some(Complex::ZERO)
             } else {
                 None
             }
         });
-        prescribed.collect()
+        Some(Self {
+            of_unit: of_unit_force(model, p, &on.wheel, axis)?[moved],
+            prescribed: prescribed.collect(),
+            about,
+            a,
+            b,
+            axis,
+            moved,
+        })
+    }
+
+    /// The complex force on the wheel for a displacement of one; `None` where something would move without end.
+    fn force(&self) -> Option<Complex<f64>> {
+        let prescribed = &self.prescribed;
+        let free: Vec<usize> = (0..prescribed.len()).filter(|&i| prescribed[i].is_none()).collect();
+        let mut x = DVector::from_iterator(prescribed.len(), prescribed.iter().map(|x| x.unwrap_or_default()));
+        let u = self.inputs();
+        let missing = |x: &DVector<_>| x * Complex::new(0.0, SLOW) - &self.a * x - &self.b * &u;
+        if !free.is_empty() {
+            let right = -missing(&x).select_rows(&free);
+            let rates = DMatrix::from_diagonal_element(x.len(), x.len(), Complex::new(0.0, SLOW)) - &self.a;
+            let answer = rates.select_rows(&free).select_columns(&free).lu().solve(&right)?;
+            free.iter().zip(answer.iter()).for_each(|(&i, value)| x[i] = *value);
+        }
+        Some(missing(&x)[self.moved] / self.of_unit)
     }
 
     /// The road moves with the wheel; nothing else acts.
-    fn inputs(&self, wheel: &ContactAxis) -> DVector<Complex<f64>> {
+    fn inputs(&self) -> DVector<Complex<f64>> {
         let value = |kind: InputKind| match kind {
             InputKind::Motion(excitation, quantity) => {
                 let excitation = &self.about.excitations[usize::from(excitation)];
-                let moves = excitation.road && excitation.axis == wheel.axis;
+                let moves = excitation.road && excitation.axis == self.axis;
                 let rate = Complex::new(0.0, SLOW).powi(quantity as i32);
                 if moves { rate } else { Complex::ZERO }
             }

@@ -241,9 +241,11 @@ pub(super) fn at_bound(x: &DVector<f64>, bounds: &Bounds, normal: &NormalEquatio
         let width = bounds.upper[k] - bounds.lower[k];
         gap <= BOUND_TOLERANCE * if width.is_finite() { width } else { x[k].abs().max(1.0) }
     };
+    // Of a range over many decades the whole lower part is near its end, measured by its width.
+    let is_low = |k: usize| bounds.lower[k] <= 0.0 || x[k] < 2.0 * bounds.lower[k];
     (0..x.len())
         .map(|k| match normal.gradient[k] {
-            g if g > 0.0 && near(x[k] - bounds.lower[k], k) => -1,
+            g if g > 0.0 && near(x[k] - bounds.lower[k], k) && is_low(k) => -1,
             g if g < 0.0 && near(bounds.upper[k] - x[k], k) => 1,
             _ => 0,
         })

@@ -82,6 +82,28 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
     Ok(out)
 }
 
+/// The most points that are taken for corners, and how uneven their distances are then at least.
+const MOST_CORNERS: usize = 50;
+const UNEVEN: f64 = 1.5;
+
+/// True of the corners of a profile of straight pieces, which no sampling has made: few, at uneven distances, with slopes
+/// that lead from each to the next within the resolution of such files.
+pub(super) fn are_corners(x: &[f64], points: &[[f64; 2]], slope: &[f64]) -> bool {
+    let lengths = || {
+        x.windows(2)
+            .map(|pair| pair[1] - pair[0])
+            .filter(|length| *length > 0.0)
+    };
+    let (shortest, longest) = (lengths().fold(f64::INFINITY, f64::min), lengths().fold(0.0, f64::max));
+    // Where a slope leads elsewhere, the foot of a step has been added.
+    let leads = points.len() == x.len()
+        && points.windows(2).zip(slope).all(|(pair, slope)| {
+            let [dx, dz] = [pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]];
+            dx == 0.0 || (dz - slope * dx).abs() <= RESOLUTION
+        });
+    leads && x.len() <= MOST_CORNERS && longest > UNEVEN * shortest
+}
+
 /// Refuses samples that are too far apart for what lies between them.
 pub(super) fn check_roughness(points: &[[f64; 2]]) -> Result<(), RoadError> {
     let count = points.len() as f64;

@@ -2,7 +2,9 @@
 
 use super::equilibrium::Unbalanced;
 use super::failure::SimulateError;
+use crate::campaign::RoleNames;
 use crate::model::{ContactAbout, Model};
+use crate::roles::{RoleError, Roles};
 use crate::tyre::{Geometry, Tyre};
 
 /// A model with its parameters and its tyre.
@@ -43,11 +45,10 @@ impl<M: Model + ?Sized> Car<'_, M> {
                 expected,
             });
         }
-        let model = || about.name.to_string();
-        about
-            .contact
-            .as_ref()
-            .ok_or_else(|| SimulateError::NothingRolls { model: model() })
+        let model = about.name.to_string();
+        Roles::of(about, &RoleNames::default())?;
+        let contact = about.contact.as_ref();
+        contact.ok_or(SimulateError::Role(RoleError::NoTyre { model }))
     }
 
     /// The tyre as the variant has it.

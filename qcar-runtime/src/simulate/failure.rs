@@ -1,6 +1,7 @@
 //! What keeps a simulation from being run.
 
 use crate::road::RoadError;
+use crate::roles::RoleError;
 use crate::solver::Report;
 use crate::tyre::TyreError;
 
@@ -24,8 +25,8 @@ pub enum SimulateError {
         found: usize,
         expected: usize,
     },
-    #[error("model `{model}` has no tyre that can roll; give its tyre link between a mass and a road")]
-    NothingRolls { model: String },
+    #[error(transparent)]
+    Role(#[from] RoleError),
     #[error(
         "a sample rate of {rate} Hz is too low at {speed} m/s: the contact patch is passed in {passage} s, \
          which takes at least {least} Hz to be seen"

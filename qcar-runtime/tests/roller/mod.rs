@@ -247,8 +247,10 @@ fn about() -> About {
             name: "tire".into(),
             axis: "z".into(),
             ends: vec!["wheel".into(), "pad".into()].into(),
+            parameters: Cow::Borrowed(&[]),
         }]
         .into(),
+        masses: Cow::Borrowed(&[]),
         contact: Some(ContactAbout {
             link: 0,
             axes: vec![axis("z", 1, 3), axis("x", 5, 7)].into(),

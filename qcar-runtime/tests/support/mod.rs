@@ -287,6 +287,7 @@ fn about(
         }]
         .into(),
         links: elements.iter().map(link).collect(),
+        masses: Cow::Borrowed(&[]),
         contact: None,
         constants: parameters.len(),
         linear,
@@ -359,6 +360,7 @@ fn link(element: &Element) -> Link {
         name: element.name.into(),
         axis: "z".into(),
         ends: element.ends.iter().map(|end| Cow::Borrowed(end.0)).collect(),
+        parameters: Cow::Borrowed(&[]),
     }
 }
 

@@ -288,6 +288,7 @@ fn about(parts: Parts) -> About {
         name: name.into(),
         axis: "z".into(),
         ends: vec![upper.into(), lower.into()].into(),
+        parameters: Cow::Borrowed(&[]),
     };
     let mut links = vec![
         link("tire", "wheel", "pad"),
@@ -363,6 +364,7 @@ fn about(parts: Parts) -> About {
         excitations: vec![excitation("pad", false), excitation("f_wheel_z", true)].into(),
         channels: Cow::Borrowed(&[]),
         links: links.into(),
+        masses: Cow::Borrowed(&[]),
         contact: None,
         constants: count,
         linear: !parts.friction,

@@ -165,7 +165,7 @@ function effectPart(effect, effects) {
   const rivals = effect.rivals.map((rival) => [
     `${words(rival.effect)} at ${words(rival.at)}`,
     number(rival.behind),
-    rival.early ? 'when it was left behind, before the end' : 'at the end',
+    rival.early ? 'before its fit had settled' : 'fitted to the end',
   ]);
   return h(
     'div',
@@ -189,7 +189,7 @@ function effectPart(effect, effects) {
             'Rivals, by how much worse they explain the fitted runs',
             [
               ['effect', 'text'],
-              ['behind by', 'number'],
+              ['lower in log evidence by', 'number'],
               ['judged', 'text sentence'],
             ],
             rivals,

@@ -31,7 +31,7 @@ function consequence(discover, { verdict: kind }, likely) {
   const [chosen] = best ? [best] : discover.effects;
   const rival = chosen && chosen.rivals[0];
   const next = rival
-    ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${number(rival.behind, 2)} behind in the sum of squares, scaled to the scatter that is left.`
+    ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is lower by ${number(rival.behind, 2)} in the logarithm of the evidence.`
     : '';
   const place = likely
     ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of what it leaves of the sweeps.`

@@ -2,6 +2,7 @@
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::{Campaign, Test};
+use qcar_runtime::roles::{RoleError, Roles};
 
 use super::Arguments;
 use super::gradients::{Gradient, gradients};
@@ -123,17 +124,26 @@ fn all_ratios(
 /// Facts that a rolling tyre needs.
 const TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 
+/// The wheel of a side as its own campaign says it, or the one that both are looked at with.
+fn roles(side: &Side, beside: Option<&Campaign>) -> Result<Roles, RoleError> {
+    let own = side.measured.as_ref().map(|measured| &measured.campaign);
+    let named = own.or(beside).map(|campaign| campaign.roles.clone());
+    Roles::of(side.model.about(), &named.unwrap_or_default())
+}
+
 fn all_passages(
     sides: &[Side; 2],
     both: Option<[&Measured; 2]>,
     beside: Option<&Campaign>,
     notices: &mut Vec<String>,
 ) -> Result<(&'static str, Vec<Passage>), Failure> {
-    if let Some(side) = sides.iter().find(|side| side.model.about().contact.is_none()) {
-        let name = &side.model.about().name;
-        notices.push(format!("{name} has no tyre that rolls: no cleat run is compared."));
-        return Ok(("", Vec::new()));
-    }
+    let roles = match sides.each_ref().map(|side| roles(side, beside)) {
+        [Ok(a), Ok(b)] => [a, b],
+        [Err(error), _] | [_, Err(error)] => {
+            notices.push(format!("No cleat run is compared: {error}."));
+            return Ok(("", Vec::new()));
+        }
+    };
     let lacks = |side: &Side| TYRE.into_iter().find(|fact| !side.vehicle.facts.contains_key(*fact));
     if let Some(fact) = sides.iter().find_map(lacks) {
         notices.push(format!(
@@ -145,7 +155,7 @@ fn all_passages(
     }
     let is_cleat = |campaign: &Campaign| campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. }));
     if let Some([a, b]) = both {
-        let passages = passages::of_campaigns(sides, [&a.campaign, &b.campaign])?;
+        let passages = passages::of_campaigns(sides, &roles, [&a.campaign, &b.campaign])?;
         if !passages.is_empty() {
             return Ok(("runs that both campaigns drove", passages));
         }
@@ -154,7 +164,7 @@ fn all_passages(
         );
     }
     if let Some(campaign) = beside.filter(|campaign| is_cleat(campaign)) {
-        return Ok(("runs of the campaign", passages::of_campaign(sides, campaign)?));
+        return Ok(("runs of the campaign", passages::of_campaign(sides, &roles, campaign)?));
     }
-    Ok(("standard runs", passages::standard(sides)?))
+    Ok(("standard runs", passages::standard(sides, &roles)?))
 }

@@ -4,6 +4,7 @@ use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, SignalKind};
 use qcar_runtime::progress::Told;
+use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
 
 use super::records::{Compared, Key, Record, compared};
@@ -65,27 +66,35 @@ impl Run {
 ///
 /// # Errors
 /// As [`driven`].
-pub(super) fn standard(sides: &[Side; 2]) -> Result<Vec<Passage>, InputError> {
+pub(super) fn standard(sides: &[Side; 2], roles: &[Roles; 2]) -> Result<Vec<Passage>, InputError> {
     let runs = Standard::all().expect("the standard cleats are roads");
-    driven(sides, runs.into_iter().map(Run::Standard).collect())
+    driven(sides, roles, runs.into_iter().map(Run::Standard).collect())
 }
 
 /// The runs of a campaign.
 ///
 /// # Errors
 /// A run or road that cannot be read, and as [`driven`].
-pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Passage>, InputError> {
+pub(super) fn of_campaign(
+    sides: &[Side; 2],
+    roles: &[Roles; 2],
+    campaign: &Campaign,
+) -> Result<Vec<Passage>, InputError> {
     let runs = cleats(campaign)?
         .into_iter()
         .map(|own| Run::Measured(Box::new(own), None));
-    driven(sides, runs.collect())
+    driven(sides, roles, runs.collect())
 }
 
 /// The runs that two campaigns have in common: the same speed over a cleat of the same height.
 ///
 /// # Errors
 /// A run or road that cannot be read, and as [`driven`].
-pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Campaign; 2]) -> Result<Vec<Passage>, InputError> {
+pub(super) fn of_campaigns(
+    sides: &[Side; 2],
+    roles: &[Roles; 2],
+    [a, b]: [&Campaign; 2],
+) -> Result<Vec<Passage>, InputError> {
     let mut others = cleats(b)?;
     let mut runs = Vec::new();
     for own in cleats(a)? {
@@ -93,7 +102,7 @@ pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Campaign; 2]) -> Result<
             runs.push(Run::Measured(Box::new(own), Some(Box::new(others.remove(place)))));
         }
     }
-    driven(sides, runs)
+    driven(sides, roles, runs)
 }
 
 fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
@@ -115,10 +124,13 @@ fn height(of: &Cleat) -> f64 {
 ///
 /// # Errors
 /// A vehicle without a tyre, and rides that cannot be simulated or compared.
-fn driven(sides: &[Side; 2], runs: Vec<Run>) -> Result<Vec<Passage>, InputError> {
+fn driven(sides: &[Side; 2], roles: &[Roles; 2], runs: Vec<Run>) -> Result<Vec<Passage>, InputError> {
     let [a, b] = [rides_of(&sides[0], &runs)?, rides_of(&sides[1], &runs)?];
     let passages = runs.iter().zip(a.iter().zip(&b));
-    passages.map(|(run, rides)| passage(sides, run, rides)).collect()
+    let feeling = feeling(roles);
+    passages
+        .map(|(run, rides)| passage(sides, &feeling, run, rides))
+        .collect()
 }
 
 fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
@@ -152,12 +164,12 @@ fn refused(run: &Run, error: &str) -> InputError {
     .into()
 }
 
-fn passage(sides: &[Side; 2], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passage, InputError> {
+fn passage(sides: &[Side; 2], feeling: &[Key], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passage, InputError> {
     let simulated = [simulated(&sides[0], a), simulated(&sides[1], b)];
     let cleats = run.measured();
     let measured: Vec<Record> = cleats.iter().map(|cleat| recorded(cleat)).collect();
     let rate = run.drive().sample_rate;
-    let compared = compared(&simulated, &measured, rate).map_err(|error| refused(run, &error.to_string()))?;
+    let compared = compared(&simulated, &measured, feeling, rate).map_err(|error| refused(run, &error.to_string()))?;
     let role = |cleat: &&Cleat| if cleat.run.role == Role::Fit { "fit" } else { "held_out" };
     Ok(Passage {
         name: run.name(),
@@ -166,6 +178,15 @@ fn passage(sides: &[Side; 2], run: &Run, (a, b): (&Ride, &Ride)) -> Result<Passa
         role: cleats.first().map(role),
         compared,
     })
+}
+
+/// The masses of both sides in the order in which they feel a cleat.
+fn feeling(roles: &[Roles; 2]) -> Vec<Key> {
+    let keys = |roles: &Roles| -> Vec<Key> {
+        let masses = roles.feeling();
+        masses.map(|mass| (mass.to_string(), roles.axis.clone())).collect()
+    };
+    roles.iter().flat_map(keys).collect()
 }
 
 /// The accelerations of a ride.

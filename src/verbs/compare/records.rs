@@ -14,9 +14,6 @@ pub(super) type Key = (String, String);
 /// Accelerations of a passage, m/s².
 pub(super) type Record<'a> = BTreeMap<Key, &'a [f64]>;
 
-/// What the wheel is called that feels the cleat first, and the axis.
-const FEELING: (&str, &str) = ("wheel", "z");
-
 /// Shown before the wheel feels the cleat, s.
 const RUN_IN: f64 = 0.05;
 
@@ -70,12 +67,19 @@ pub(super) struct Trace {
     pub measured: Vec<Vec<f64>>,
 }
 
-/// Compares simulated records of both sides, and measured ones with them; all have one sample rate (Hz).
+/// Compares simulated records of both sides, and measured ones with them; all have one sample rate (Hz). Of a record the
+/// first of `feeling` that it has feels the cleat first: the wheel.
 ///
 /// # Errors
 /// A wheel that does not feel the cleat, or a record that ends too early.
-pub(super) fn compared(sides: &[Record; 2], measured: &[Record], rate: f64) -> Result<Compared, CompareError> {
+pub(super) fn compared(
+    sides: &[Record; 2],
+    measured: &[Record],
+    feeling: &[Key],
+    rate: f64,
+) -> Result<Compared, CompareError> {
     let [a, b] = sides;
+    let onset = |of: &Record| onset(of, feeling);
     let felt = onset(a)?.unwrap_or(0);
     let onsets: Vec<usize> = measured
         .iter()
@@ -103,7 +107,7 @@ pub(super) fn compared(sides: &[Record; 2], measured: &[Record], rate: f64) -> R
             .map(|(own, &onset)| cut(own, key, onset))
             .collect(),
     };
-    let metrics = shared.iter().map(|key| metrics(key, sides, measured, rate));
+    let metrics = shared.iter().map(|key| metrics(key, sides, measured, (feeling, rate)));
     Ok(Compared {
         metrics: metrics.collect::<Result<_, _>>()?,
         time: curve(places.clone().map(|place| place as f64 / rate)),
@@ -111,17 +115,17 @@ pub(super) fn compared(sides: &[Record; 2], measured: &[Record], rate: f64) -> R
     })
 }
 
-/// Where the wheel feels the cleat; `None` without a wheel.
-fn onset(of: &Record) -> Result<Option<usize>, CompareError> {
-    let wheel = of.get(&(FEELING.0.to_string(), FEELING.1.to_string()));
-    wheel
+/// Where the first of `feeling` that was recorded feels the cleat; `None` without any.
+fn onset(of: &Record, feeling: &[Key]) -> Result<Option<usize>, CompareError> {
+    let first = feeling.iter().find_map(|key| of.get(key));
+    first
         .map(|wheel| Ok(Alignment::at_peak(wheel, wheel)?.onset))
         .transpose()
 }
 
-fn metrics(key: &Key, [a, b]: &[Record; 2], measured: &[Record], rate: f64) -> Result<Metrics, CompareError> {
-    let (first, second) = (sizes(a, key, rate)?, sizes(b, key, rate)?);
-    let observed = measured.iter().map(|own| sizes(own, key, rate));
+fn metrics(key: &Key, [a, b]: &[Record; 2], measured: &[Record], read: (&[Key], f64)) -> Result<Metrics, CompareError> {
+    let (first, second) = (sizes(a, key, read)?, sizes(b, key, read)?);
+    let observed = measured.iter().map(|own| sizes(own, key, read));
     let observed = observed.collect::<Result<Vec<_>, _>>()?;
     let metric = |at: usize| {
         let (a, b) = (first[at], second[at]);
@@ -141,12 +145,12 @@ fn metrics(key: &Key, [a, b]: &[Record; 2], measured: &[Record], rate: f64) -> R
 }
 
 /// Peak and after-shake of a record, each from where its own wheel feels the cleat; NaN of what it has not.
-fn sizes(of: &Record, key: &Key, rate: f64) -> Result<[f64; 2], CompareError> {
+fn sizes(of: &Record, key: &Key, (feeling, rate): (&[Key], f64)) -> Result<[f64; 2], CompareError> {
     let Some(own) = of.get(key) else {
         return Ok([f64::NAN; 2]);
     };
     let alignment = Alignment {
-        onset: onset(of)?.unwrap_or(0),
+        onset: onset(of, feeling)?.unwrap_or(0),
         delay: 0,
     };
     let errors = Errors::between(own, own, &alignment, rate, &Windows::default())?;

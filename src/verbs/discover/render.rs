@@ -7,11 +7,12 @@ use std::fmt::Write;
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::gap::Tile;
-use qcar_runtime::discover::search::{Finding, Rival, Verdict, Visible};
+use qcar_runtime::discover::search::{Finding, Probable, Rival, Verdict, Visible};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
 use super::Answer;
+use super::left::{Left, left};
 use super::places::{self, Missing};
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
@@ -20,6 +21,12 @@ use crate::table::{Table, number, or_dash};
 #[derive(Serialize)]
 pub(crate) struct Result<'a> {
     verdict: Verdict,
+    /// How probable the answer is.
+    probability: Option<f64>,
+    /// The most probable effects.
+    candidates: &'a [Probable],
+    /// What is left of each sensor on the runs that judge.
+    left: Vec<Left>,
     effects: Vec<Effect<'a>>,
     r#where: Vec<Where>,
     places: Vec<Missing>,
@@ -68,8 +75,8 @@ struct Seen<'a> {
 
 #[derive(Serialize)]
 struct Evidence {
-    /// Fall of the sum of squares of the fitted runs.
-    chi2_lowered_by: f64,
+    /// Rise of the logarithm of the evidence with all that was found; of a search by rules the fall of the sum of squares.
+    log_evidence: f64,
     /// Share of the excess of the held-out gap.
     gap_closed: f64,
     /// Of what any effect at this place could explain of the sweeps, the share that is explained; `null` of several effects.
@@ -123,6 +130,9 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
     Result {
         verdict: of.discovery.verdict,
+        probability: of.discovery.probability,
+        candidates: &of.discovery.candidates,
+        left: left(&of.evidence, [&of.discovery.before, &of.discovery.after]),
         effects: of
             .discovery
             .findings
@@ -181,7 +191,7 @@ fn effect<'a>(
             .collect(),
         units,
         evidence: Evidence {
-            chi2_lowered_by: finding.evidence,
+            log_evidence: finding.evidence,
             gap_closed: finding.closed,
             of_ceiling: places::of_ceiling(of, &finding.at).filter(|_| alone),
         },
@@ -210,7 +220,7 @@ fn place(tile: &Tile) -> Where {
     }
 }
 
-fn channel(sensor: &Point) -> String {
+pub(super) fn channel(sensor: &Point) -> String {
     let axis = format!("{:?}", sensor.axis).to_lowercase();
     format!("{}_{axis}", sensor.location)
 }
@@ -309,6 +319,11 @@ pub(super) fn text(of: &Answer) -> String {
         gaps.row(vec![name.into(), number(before, 3), number(after, 3)]);
     }
     out += &gaps.text();
+    if let Some(probability) = of.discovery.probability {
+        let _ = writeln!(out, "\nprobability of this answer: {probability:.3}");
+    }
+    out += &candidates(&of.discovery.candidates);
+    out += &remaining(of);
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         out += &format!("\n{}{}", choice(of, place), described(finding, units));
     }
@@ -335,6 +350,34 @@ pub(super) fn text(of: &Answer) -> String {
         let _ = writeln!(out, "\nthe model with it: {}", file.display());
     }
     out
+}
+
+/// The most probable effects as a table; nothing without any.
+fn candidates(all: &[Probable]) -> String {
+    if all.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(["candidate", "at", "probability", "explains_%", "log_evidence"]);
+    for own in all {
+        table.row(vec![
+            own.effect.clone(),
+            own.at.clone(),
+            format!("{:.3}", own.probability),
+            number(100.0 * own.explained, 3),
+            number(own.log_evidence, 4),
+        ]);
+    }
+    format!("\n{}", table.text())
+}
+
+/// What is left of each sensor.
+fn remaining(of: &Answer) -> String {
+    let mut table = Table::new(["left_in_%_of_signal", "run", "before", "after"]);
+    for own in left(&of.evidence, [&of.discovery.before, &of.discovery.after]) {
+        let (before, after) = (number(own.before_percent, 3), number(own.after_percent, 3));
+        table.row(vec![own.channel, own.kind.into(), before, after]);
+    }
+    format!("\n{}", table.text())
 }
 
 /// The verdict in words.
@@ -392,13 +435,12 @@ fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
         let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
     }
     for rival in finding.rivals.iter().take(4) {
-        let when = if rival.early { ", when it was left behind" } else { "" };
         let _ = writeln!(
             out,
-            "behind it by {}: {} at {}{when}",
-            number(rival.behind, 3),
+            "less likely: {} at {}, lower by {} in log evidence",
             rival.effect,
-            rival.at
+            rival.at,
+            number(rival.behind, 3)
         );
     }
     out

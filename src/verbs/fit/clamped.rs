@@ -27,11 +27,8 @@ pub(super) fn take_over(fitted: &mut Fitted) -> Result<(), InputError> {
         return Ok(());
     }
     for mut gradient in kc::gradients(&fitted.campaign)? {
-        if gradient
-            .parameter
-            .is_some_and(|name| open.iter().any(|open| open == name))
-        {
-            kc::take_apart(&mut gradient, &fitted.model, &fitted.values());
+        if gradient.parameter.as_ref().is_some_and(|name| open.contains(name)) {
+            kc::take_apart(&mut gradient, &fitted.campaign, &fitted.model, &fitted.values());
             if let Err(why) = adopt(fitted, &gradient) {
                 fitted.campaign.notices.push(why);
             }
@@ -47,7 +44,7 @@ fn is_open(parameter: &ParameterFit) -> bool {
 /// # Errors
 /// Why the parameter keeps its start value.
 fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
-    let name = gradient.parameter.unwrap_or_default();
+    let name = gradient.parameter.as_deref().unwrap_or_default();
     let kept = |why: &str| format!("{name} keeps its start value: {why}");
     let unknown = gradient.why_no_parameter_value.as_deref().unwrap_or_default();
     let value = gradient.parameter_value.ok_or_else(|| kept(unknown))?;
@@ -77,13 +74,13 @@ fn partners(fitted: &Fitted, gradient: &Gradient, value: f64) -> Vec<String> {
     let moves = |at: usize| {
         let (mut values, mut moved) = (fitted.values(), gradient.clone());
         values.set(at, DOUBT * values.as_slice()[at]);
-        kc::take_apart(&mut moved, &fitted.model, &values);
+        kc::take_apart(&mut moved, &fitted.campaign, &fitted.model, &values);
         moved
             .parameter_value
             .is_none_or(|moved| (moved - value).abs() > gradient.uncertainty)
     };
     let others = fitted.fit.parameters.iter().enumerate();
-    let others = others.filter(|(_, other)| is_open(other) && Some(other.name.as_str()) != gradient.parameter);
+    let others = others.filter(|(_, other)| is_open(other) && Some(&other.name) != gradient.parameter.as_ref());
     others
         .filter(|(at, _)| moves(*at))
         .map(|(_, other)| other.name.clone())

@@ -1,7 +1,21 @@
 //! What is odd about a fit, but no error.
 
 use qcar_runtime::campaign::Campaign;
-use qcar_runtime::fit::Level;
+use qcar_runtime::fit::{Fit, Level};
+
+/// A sentence where every parameter that was fitted rests on a bound: no minimum of the cost lies within the ranges.
+pub(super) fn all_at_bounds(fit: &Fit) -> Option<String> {
+    let fitted: Vec<_> = fit.parameters.iter().filter(|own| own.fitted).collect();
+    let at_bounds = !fitted.is_empty() && fitted.iter().all(|own| own.at_bound.is_some());
+    let names: Vec<&str> = fitted.iter().map(|own| own.name.as_str()).collect();
+    at_bounds.then(|| {
+        format!(
+            "every fitted parameter ends at a bound of its range ({}): the values mean nothing; check the sensors' units and \
+             places, the model, and the ranges",
+            names.join(", ")
+        )
+    })
+}
 
 /// A sentence for each run that records what drives the model and nothing that moves.
 pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> {

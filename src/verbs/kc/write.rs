@@ -15,7 +15,7 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
     let mut text = read_text(&file)?;
     let mut problems = Vec::new();
     for gradient in gradients.iter().filter(|gradient| gradient.start.is_some()) {
-        let name = gradient.parameter.unwrap_or_default();
+        let name = gradient.parameter.as_deref().unwrap_or_default();
         let exact = gradient.parameter_value.unwrap_or(gradient.value);
         let value: f64 = format!("{exact:.4e}").parse().unwrap_or(exact);
         match campaign.parameter(name).and_then(|parameter| parameter.range) {

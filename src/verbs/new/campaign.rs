@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
         "{folder}/campaign.toml written. Now\n\
          1. export the sweeps of the rig to {folder}/rig/sweep_025.csv and sweep_100.csv, with the header line\n     \
          {columns}\n\
-         2. correct values, sensors and runs in campaign.toml\n\
+         2. give what is known of the vehicle, and correct values, sensors and runs in campaign.toml\n\
          3. qcar fit {folder}\n"
     ))
 }
@@ -168,8 +168,13 @@ fn line(key: &str, value: Option<f64>) -> String {
     value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
 }
 
+/// What is known has no value to begin with but the model's own: a guess would be taken for known.
 fn of_vehicle(of: &Parameter) -> String {
-    let (value, hint) = guess(of);
+    let value = match of.default {
+        Default::Value(value) => Some(value),
+        Default::None | Default::Same(_) => None,
+    };
+    let hint = if value.is_none() { "; give yours" } else { "" };
     format!("{} # {}, {}{hint}", line(&of.name, value), of.unit, of.doc)
 }
 

@@ -2,15 +2,13 @@
 
 use std::collections::BTreeMap;
 
-use qcar_runtime::campaign::{Axis, Quantity, Role};
+use qcar_runtime::campaign::{Axis, Channel, Quantity, Role, RoleNames};
 use qcar_runtime::compare::{Alignment, CompareError, Errors, Summary, Windows};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, SignalKind};
+use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Cleat, Ride};
 use serde::Serialize;
-
-/// What the wheel is called whose peak aligns the records (thesis section 3.6.2).
-const ALIGNING: (&str, Axis) = ("wheel", Axis::Z);
 
 /// All runs, and the size of their errors.
 #[derive(Debug, Serialize)]
@@ -19,6 +17,8 @@ pub struct Compared {
     pub runs: Vec<Difference>,
     /// Over all runs, by `mass_axis`.
     pub summary: BTreeMap<String, Sizes>,
+    /// What was measured and is not compared, as sentences.
+    pub notices: Vec<String>,
 }
 
 /// A mass along an axis in a run.
@@ -55,16 +55,85 @@ pub struct Sizes {
     pub after_shake: Option<Summary>,
 }
 
-pub(super) fn compare(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Result<Compared, InputError> {
+pub(super) fn compare(
+    about: &About,
+    named: &RoleNames,
+    cleats: &[Cleat],
+    rides: &[Ride],
+) -> Result<Compared, InputError> {
     let mut runs = Vec::new();
     for (cleat, ride) in cleats.iter().zip(rides) {
-        let of_run = differences(about, cleat, ride).map_err(|error| incomparable(cleat, &error))?;
+        let of_run = differences(about, named, cleat, ride).map_err(|error| incomparable(cleat, &error))?;
+        if of_run.is_empty() {
+            return Err(nothing_in_common(about, cleat).into());
+        }
         runs.extend(of_run);
     }
+    let mut notices: Vec<String> = cleats.iter().flat_map(|cleat| not_simulated(about, cleat)).collect();
+    notices.sort_unstable();
+    notices.dedup();
     Ok(Compared {
         summary: summary(&runs),
         runs,
+        notices,
     })
+}
+
+/// The output of a model that a sensor measures.
+fn output(about: &About, sensor: &Channel) -> Option<usize> {
+    let kind = SignalKind::Motion(model::Quantity::Acceleration);
+    let is = |signal: &model::Signal| {
+        signal.location == *sensor.location && signal.axis == *sensor.axis.name() && signal.kind == kind
+    };
+    about.outputs.iter().position(|output| is(&output.signal))
+}
+
+/// The sensors of acceleration of a run.
+fn accelerometers(cleat: &Cleat) -> impl Iterator<Item = &(Channel, Vec<f64>)> {
+    let signals = cleat.measured.signals.iter();
+    signals.filter(|(sensor, _)| sensor.quantity == Quantity::Acceleration)
+}
+
+fn not_simulated(about: &About, cleat: &Cleat) -> Vec<String> {
+    let unknown = accelerometers(cleat).filter(|(sensor, _)| output(about, sensor).is_none());
+    let say = |(sensor, _): &(Channel, Vec<f64>)| {
+        let (mass, axis) = (&sensor.location, sensor.axis.name());
+        format!(
+            "`{mass}` along {axis} is measured and not compared: its acceleration is no output of model `{}`; add \
+             `output {mass}.acceleration;` to its direction {axis}",
+            about.name
+        )
+    };
+    unknown.map(say).collect()
+}
+
+fn nothing_in_common(about: &About, cleat: &Cleat) -> Problem {
+    let measured: Vec<String> = accelerometers(cleat)
+        .map(|(sensor, _)| format!("`{}` along {}", sensor.location, sensor.axis.name()))
+        .collect();
+    let outputs: Vec<String> = about
+        .outputs
+        .iter()
+        .map(|output| format!("`{}`", output.name))
+        .collect();
+    let list = |names: Vec<String>| {
+        if names.is_empty() {
+            "none".into()
+        } else {
+            names.join(", ")
+        }
+    };
+    Problem::new(
+        &cleat.measured.file,
+        Place::File,
+        format!("no acceleration that the model gives (measured: {})", list(measured)),
+        format!(
+            "at least one of the outputs of model `{}`: {}",
+            about.name,
+            list(outputs)
+        ),
+        "name the channel's location as the model does, or add an `output` to the model",
+    )
 }
 
 fn incomparable(cleat: &Cleat, error: &CompareError) -> Problem {
@@ -78,9 +147,9 @@ fn incomparable(cleat: &Cleat, error: &CompareError) -> Problem {
     )
 }
 
-fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Difference>, CompareError> {
+fn differences(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> Result<Vec<Difference>, CompareError> {
     let pairs = pairs(about, cleat, ride);
-    let Some(alignment) = alignment(&pairs)? else {
+    let Some(alignment) = alignment(about, named, &pairs)? else {
         return Ok(Vec::new());
     };
     let difference = |pair: &Pair| {
@@ -102,13 +171,19 @@ fn differences(about: &About, cleat: &Cleat, ride: &Ride) -> Result<Vec<Differen
     pairs.iter().map(difference).collect()
 }
 
-/// How the two records of a run lie to each other; `None` where no wheel was measured and simulated.
+/// How the two records of a run lie to each other: by the peaks (thesis section 3.6.2) of the wheel or, where that was not
+/// measured and simulated, of the mass nearest to the tyre. `None` where no mass on the tyre's axis was.
 ///
 /// # Errors
-/// A wheel that does not feel an obstacle.
-pub(crate) fn alignment(pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
-    let wheel = pairs.iter().find(|pair| (pair.mass, pair.axis) == ALIGNING);
-    wheel
+/// A mass that does not feel an obstacle.
+pub(crate) fn alignment(about: &About, named: &RoleNames, pairs: &[Pair]) -> Result<Option<Alignment>, CompareError> {
+    let roles = Roles::of(about, named).ok();
+    let first = roles.and_then(|roles| {
+        let is = |pair: &&Pair, mass: &str| pair.mass == mass && pair.axis.name() == roles.axis;
+        let mut feeling = roles.feeling();
+        feeling.find_map(|mass| pairs.iter().find(|pair| is(pair, mass)))
+    });
+    first
         .map(|wheel| Alignment::at_peak(wheel.measured, wheel.simulated))
         .transpose()
 }
@@ -127,27 +202,12 @@ pub(crate) struct Pair<'a> {
 
 /// All accelerations of a run that were measured and simulated.
 pub(crate) fn pairs<'a>(about: &About, cleat: &'a Cleat, ride: &'a Ride) -> Vec<Pair<'a>> {
-    let accelerations = cleat
-        .measured
-        .signals
-        .iter()
-        .filter(|(sensor, _)| sensor.quantity == Quantity::Acceleration);
-    let simulated = |location: &str, axis: Axis| {
-        let kind = SignalKind::Motion(model::Quantity::Acceleration);
-        let is =
-            |signal: &model::Signal| signal.location == *location && signal.axis == *axis.name() && signal.kind == kind;
-        about
-            .outputs
-            .iter()
-            .position(|output| is(&output.signal))
-            .map(|at| ride.outputs[at].as_slice())
-    };
-    let both = accelerations.filter_map(|(sensor, measured)| {
+    let both = accelerometers(cleat).filter_map(|(sensor, measured)| {
         Some(Pair {
             mass: &sensor.location,
             axis: sensor.axis,
             measured,
-            simulated: simulated(&sensor.location, sensor.axis)?,
+            simulated: &ride.outputs[output(about, sensor)?],
         })
     });
     both.collect()

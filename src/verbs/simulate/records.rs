@@ -81,12 +81,11 @@ pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -
     Ok(records)
 }
 
+/// The samples of each sensor of a run.
+type Signals = Vec<(Point, Vec<f64>)>;
+
 /// What the sensors of each run would have recorded.
-fn simulated(
-    model: &dyn Model,
-    values: &Values,
-    evidence: &Evidence,
-) -> Result<Vec<Vec<(Point, Vec<f64>)>>, PredictError> {
+fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<Vec<Signals>, PredictError> {
     let nuisance = Nuisance::of(evidence);
     let right = vec![0.0; nuisance.len()];
     let mut misread = Misread::default();

@@ -41,6 +41,7 @@ struct Json<'a> {
     runs: &'a [Difference],
     summary: Option<&'a BTreeMap<String, Sizes>>,
     records: Vec<&'a RecordError>,
+    notices: &'a [String],
 }
 
 impl Result<'_> {
@@ -52,6 +53,7 @@ impl Result<'_> {
             runs: self.cleats.map_or(&[], |cleats| &cleats.runs),
             summary: self.cleats.map(|cleats| &cleats.summary),
             records: self.errors().collect(),
+            notices: self.cleats.map_or(&[], |cleats| &cleats.notices),
         })
     }
 
@@ -142,7 +144,23 @@ fn text(of: &Compared) -> String {
         let cells = [size.peak, size.after_shake].into_iter().flat_map(median_and_worst);
         sizes.row(std::iter::once(name.clone()).chain(cells).collect());
     }
-    format!("{}\n{}", runs.text(), sizes.text())
+    let notices: String = of
+        .notices
+        .iter()
+        .map(|notice| {
+            format!(
+                "
+note: {notice}
+"
+            )
+        })
+        .collect();
+    format!(
+        "{}
+{}{notices}",
+        runs.text(),
+        sizes.text()
+    )
 }
 
 fn note(guessed: &[String]) -> String {
@@ -150,7 +168,7 @@ fn note(guessed: &[String]) -> String {
         [] => String::new(),
         names => format!(
             "\nnote: at the campaign's start values: {}; what depends on them is as good as these. `qcar discover --out` \
-             finds those that cleat runs with the role fit determine\n",
+             finds those that runs with the role fit determine\n",
             names.join(", ")
         ),
     }

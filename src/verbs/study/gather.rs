@@ -7,6 +7,7 @@ use qcar_dsl::schedule::Compiled;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::InputError;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Cleat, Variant};
 
 use crate::catalogue::{self, Loaded};
@@ -122,7 +123,7 @@ fn after(campaign: &Campaign, answer: &Answer) -> Result<Option<After>, Failure>
 fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Track>, Failure> {
     let campaign = &fitted.campaign;
     let is_cleat = |test: &Test| matches!(test, Test::Cleat { .. });
-    let rolls = fitted.model.about().contact.is_some();
+    let rolls = Roles::of(fitted.model.about(), &campaign.roles).is_ok();
     if !rolls || !campaign.runs.iter().any(|run| is_cleat(&run.test)) {
         return Ok(None);
     }

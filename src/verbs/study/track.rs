@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use qcar_runtime::campaign::{Role, Test};
+use qcar_runtime::campaign::{Role, RoleNames, Test};
 use qcar_runtime::compare::{Histogram, Windows};
 use qcar_runtime::model::About;
 use qcar_runtime::simulate::{Cleat, Ride};
@@ -71,6 +71,7 @@ const RUN_IN: f64 = 0.05;
 pub fn track(of: &Study) -> Option<Track<'_>> {
     let track = of.track.as_ref()?;
     let models = Models {
+        named: &of.fitted.campaign.roles,
         before: of.fitted.model.about(),
         best: of
             .after
@@ -90,14 +91,15 @@ pub fn track(of: &Study) -> Option<Track<'_>> {
     })
 }
 
-/// What the outputs of the rides mean.
+/// What the outputs of the rides mean, and which mass the campaign calls the wheel.
 struct Models<'a> {
+    named: &'a RoleNames,
     before: &'a About,
     best: &'a About,
 }
 
 fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> Option<Run> {
-    let of = |about, driven: &'_ Driven| Aligned::new(about, cleat, &driven.rides[place]);
+    let of = |about, driven: &'_ Driven| Aligned::new(about, models.named, cleat, &driven.rides[place]);
     let before = of(models.before, &track.before)?;
     let after = track.after.as_ref().and_then(|driven| of(models.best, driven));
     let (locked, vertical) = (of(models.best, &track.locked)?, of(models.best, &track.vertical)?);
@@ -134,9 +136,9 @@ struct Aligned {
 }
 
 impl Aligned {
-    fn new(about: &About, cleat: &Cleat, ride: &Ride) -> Option<Self> {
+    fn new(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> Option<Self> {
         let pairs = pairs(about, cleat, ride);
-        let alignment = alignment(&pairs).ok()??;
+        let alignment = alignment(about, named, &pairs).ok()??;
         let (rate, windows) = (cleat.measured.sample_rate, Windows::default());
         let samples = |seconds: f64| (seconds * rate).round() as usize;
         let from = alignment.onset.saturating_sub(samples(RUN_IN));

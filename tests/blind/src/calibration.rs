@@ -114,5 +114,10 @@ mod tests {
             );
             assert!(phase.abs() > 1e-3);
         }
+        let (low, high) = curve.extremes();
+        assert!(
+            (low - 0.98).abs() < 1e-3 && (high - 1.02).abs() < 1e-3,
+            "{low} to {high}"
+        );
     }
 }

@@ -6,6 +6,7 @@ use crate::corner::{
 use crate::enveloping::Felt;
 use crate::integrate::step;
 use crate::programme::CleatRun;
+use crate::radial::Radial;
 use crate::rig::RATE;
 use crate::road::Road;
 
@@ -103,47 +104,94 @@ fn towards_centre(moment: [f64; 2], scale: f64) -> [f64; 2] {
 struct Rolling<'a> {
     corner: &'a Corner<'a>,
     road: &'a Road,
-    /// The road as the tyre feels it, where it obeys the other law.
-    felt: Option<Felt>,
+    law: Law,
     speed: f64,
     /// How late the logger's trigger comes, s.
     late: f64,
     drag: f64,
 }
 
+/// What the tyre makes of the road.
+enum Law {
+    Area,
+    Radial(Radial),
+    Cams(Felt),
+}
+
+impl Law {
+    fn of(corner: &Corner, road: &Road) -> Self {
+        let (axle, laws) = (corner.axle, corner.laws);
+        if let Some(cams) = laws.cams {
+            return Self::Cams(Felt::new(road, axle, cams));
+        }
+        laws.radial_springs
+            .map_or(Self::Area, |springs| Self::Radial(Radial::new(axle, springs)))
+    }
+}
+
+/// Time over which a rate of deflection is taken, s.
+const MOMENT: f64 = 1e-4;
+
 impl Rolling<'_> {
     /// Force on the ring over and above the static load, and the drag at rest.
     fn push(&self, t: f64, y: &State) -> Push {
         let t = t + self.late;
-        match &self.felt {
-            Some(felt) => self.push_of_cams(felt, t, y),
-            None => self.push_of_area(t, y),
+        match &self.law {
+            Law::Area => self.push_of_area(t, y),
+            Law::Radial(radial) => self.push_of_springs(radial, t, y),
+            Law::Cams(felt) => self.push_of_cams(felt, t, y),
         }
     }
 
-    /// A spring and damper across the effective plane (see [`crate::hardware::Cams`]).
-    fn push_of_cams(&self, felt: &Felt, t: f64, y: &State) -> Push {
+    /// Where the middle of the wheel is, and how fast it moves.
+    fn hub(&self, t: f64, y: &State) -> ([f64; 2], [f64; 2]) {
         let a = self.corner.axle;
         let ring = self.corner.ring();
-        let (x, z) = (self.speed * t + y[X_WHEEL], y[ring]);
-        let [height, growth, slope] = felt.at(x);
+        (
+            [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]],
+            [self.speed + y[COORDINATES + X_WHEEL], y[COORDINATES + ring]],
+        )
+    }
+
+    /// A spring and damper along the sum of the radial springs (see [`crate::hardware::RadialSprings`]).
+    fn push_of_springs(&self, radial: &Radial, t: f64, y: &State) -> Push {
+        let (hub, velocity) = self.hub(t, y);
+        let (deflection, direction) = radial.touch(self.road, hub);
+        let soon = [hub[0] + velocity[0] * MOMENT, hub[1] + velocity[1] * MOMENT];
+        let rate = (radial.touch(self.road, soon).0 - deflection) / MOMENT;
+        self.along(y, deflection, rate, direction)
+    }
+
+    /// The same across the effective plane (see [`crate::hardware::Cams`]).
+    fn push_of_cams(&self, felt: &Felt, t: f64, y: &State) -> Push {
+        let a = self.corner.axle;
+        let (hub, velocity) = self.hub(t, y);
+        let [height, growth, slope] = felt.at(hub[0]);
         let cosine = 1.0 / slope.hypot(1.0);
-        let deflection = self.tread_at_rest() + (height - z) * cosine;
-        let rate = (growth * (self.speed + y[COORDINATES + X_WHEEL]) - y[COORDINATES + ring]) * cosine;
+        let deflection = self.tread_at_rest() + (height - y[self.corner.ring()]) * cosine;
+        let rate = (growth * velocity[0] - velocity[1]) * cosine;
+        self.along(y, deflection, rate, [-slope * cosine, cosine])
+    }
+
+    /// Spring and damper along a direction; the road does not pull.
+    fn along(&self, y: &State, deflection: f64, rate: f64, direction: [f64; 2]) -> Push {
+        let a = self.corner.axle;
         let spring = self.pressed(deflection.max(0.0)) + self.corner.tire_memory(y);
-        let force = (spring + a.c_tire * rate).max(0.0);
+        let force = if deflection > 0.0 {
+            (spring + a.c_tire * rate).max(0.0)
+        } else {
+            0.0
+        };
         Push {
-            z: force * cosine - a.static_load(),
-            x: -force * slope * cosine - self.drag,
+            z: force * direction[1] - a.static_load(),
+            x: force * direction[0] - self.drag,
             compression_rate: if deflection > 0.0 { rate } else { 0.0 },
         }
     }
 
     fn push_of_area(&self, t: f64, y: &State) -> Push {
         let a = self.corner.axle;
-        let ring = self.corner.ring();
-        let centre = [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]];
-        let velocity = [self.speed + y[COORDINATES + X_WHEEL], y[COORDINATES + ring]];
+        let (centre, velocity) = self.hub(t, y);
         let o = overlap(self.road, a.r_tire, centre, velocity);
         if o.area <= 0.0 {
             return Push {
@@ -219,7 +267,7 @@ pub fn run(corner: &Corner, drive: &CleatRun, late: f64) -> Track {
     let mut rolling = Rolling {
         corner,
         road,
-        felt: corner.laws.cams.map(|cams| Felt::new(road, corner.axle, cams)),
+        law: Law::of(corner, road),
         speed,
         late,
         drag: 0.0,
@@ -303,7 +351,7 @@ mod tests {
         let rolling = Rolling {
             corner: &corner,
             road: &road,
-            felt: None,
+            law: Law::Area,
             speed: 5.0,
             late: 0.0,
             drag: 0.0,

@@ -26,13 +26,15 @@ pub enum Flaw {
     Jitter,
     /// Left and right differ by 3 to 4 %.
     Sides,
-    /// Over a cleat the tyre obeys another law.
+    /// Over a cleat the tyre is one of radial springs.
     Tyre,
+    /// Over a cleat the tyre is one of elliptical cams, which feels a cleat earlier. That is more than mild.
+    Cams,
 }
 
 impl Flaw {
-    /// All of them.
-    pub const ALL: [Self; 10] = [
+    /// All that are mild.
+    pub const MILD: [Self; 10] = [
         Self::FlexibleBody,
         Self::Pad,
         Self::CrossAxis,
@@ -47,7 +49,10 @@ impl Flaw {
 
     /// A flaw by its name as `{:?}` prints it.
     pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|flaw| format!("{flaw:?}") == name)
+        Self::MILD
+            .into_iter()
+            .chain([Self::Cams])
+            .find(|flaw| format!("{flaw:?}") == name)
     }
 }
 
@@ -116,6 +121,14 @@ impl Heat {
         let rise = |share: f64| 1.0 - (-share / self.time_constant).exp();
         1.0 - self.loss * rise(share) / rise(1.0)
     }
+}
+
+/// Radial springs, each pushed in along its own direction (Davis, D. C.: A radial-spring terrain-enveloping tire model,
+/// Vehicle System Dynamics 4, 1975), with the measured force over deflection on the flat.
+#[derive(Clone, Copy, Debug)]
+pub struct RadialSprings {
+    /// Of the force of a spring over its compression; 1 in the source.
+    pub exponent: f64,
 }
 
 /// A tandem of two elliptical cams that feels the road (Schmeitz, A. J. C.: A semi-empirical three-dimensional model of the
@@ -206,15 +219,28 @@ impl Hardware {
         Some(move || random.uniform(0.03, 0.04) * sign(&mut random))
     }
 
-    /// The other law of the tyre. MF-Swift's defaults are 1, 1, 1.8 and 0.8.
+    /// The radial springs of the tyre.
+    pub fn radial_springs(&self) -> Option<RadialSprings> {
+        self.random(Flaw::Tyre, "").map(|mut random| RadialSprings {
+            exponent: any_of(&mut random, [(0.75, 0.9), (1.15, 1.35)]),
+        })
+    }
+
+    /// The cams of the tyre. MF-Swift's defaults are 1, 1, 1.8 and 0.8.
     pub fn cams(&self) -> Option<Cams> {
-        self.random(Flaw::Tyre, "").map(|mut random| Cams {
+        self.random(Flaw::Cams, "").map(|mut random| Cams {
             length: random.uniform(0.97, 1.05),
             height: random.uniform(0.95, 1.03),
             order: random.uniform(1.6, 1.9),
             apart: random.uniform(0.78, 0.86),
         })
     }
+}
+
+/// Uniform in one of two ranges.
+fn any_of(random: &mut Random, ranges: [(f64, f64); 2]) -> f64 {
+    let (low, high) = ranges[usize::from(random.uniform(-1.0, 1.0) > 0.0)];
+    random.uniform(low, high)
 }
 
 fn sign(random: &mut Random) -> f64 {

@@ -1,6 +1,6 @@
 //! What a campaign hides: the effects of the catalogue and some outside of it, by name, with hand-written laws.
 
-use crate::hardware::{Cams, Flexible, Hardware, Heat};
+use crate::hardware::{Cams, Flexible, Hardware, Heat, RadialSprings};
 use crate::other_law::Other;
 
 /// An effect with its true parameters.
@@ -89,6 +89,8 @@ pub struct Laws {
     /// A flaw of hardware: the damper warms up.
     pub heat: Option<Heat>,
     /// A flaw of hardware: the tyre's law over a cleat.
+    pub radial_springs: Option<RadialSprings>,
+    /// A flaw of hardware: the same by another law again.
     pub cams: Option<Cams>,
 }
 
@@ -148,6 +150,7 @@ impl Laws {
         Self {
             flexible: hardware.flexible(),
             heat: hardware.heat(),
+            radial_springs: hardware.radial_springs(),
             cams: hardware.cams(),
             ..self
         }

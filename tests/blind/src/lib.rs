@@ -31,6 +31,7 @@ mod rig;
 mod road;
 
 mod enveloping;
+mod radial;
 
 mod cleat;
 

@@ -49,9 +49,10 @@ fn run() -> Result<(), String> {
 
 fn flaws(text: &str) -> Result<Vec<Flaw>, String> {
     if text == "all" {
-        return Ok(Flaw::ALL.to_vec());
+        return Ok(Flaw::MILD.to_vec());
     }
-    let named = |name: &str| Flaw::named(name).ok_or(format!("there is no flaw {name}: all, or of {:?}", Flaw::ALL));
+    let named =
+        |name: &str| Flaw::named(name).ok_or(format!("there is no flaw {name}: all, Cams, or of {:?}", Flaw::MILD));
     text.split(',').map(named).collect()
 }
 

@@ -224,9 +224,15 @@ impl Draw {
         (0..100).map(of_number).collect()
     }
 
-    /// Each flaw alone, and all together in twenty, half of them short.
+    /// Each flaw alone, all mild ones together in twenty, half of them short, and the one that is more.
     fn hardware_clean(&self) -> Vec<Case> {
-        let of_number = |(k, words, flaws, programme): (usize, String, Vec<Flaw>, Programme)| {
+        let mut all: Vec<(String, Vec<Flaw>, Programme)> = Vec::new();
+        all.extend(Flaw::MILD.map(|flaw| (format!("{flaw:?} alone"), vec![flaw], Programme::full())));
+        let together = |words: &str, programme| (words.to_owned(), Flaw::MILD.to_vec(), programme);
+        all.extend(vec![together("together", Programme::full()); 10]);
+        all.extend(vec![together("together fast", Programme::fast()); 10]);
+        all.push((format!("{:?} alone", Flaw::Cams), vec![Flaw::Cams], Programme::full()));
+        let of_number = |(k, (words, flaws, programme)): (usize, (String, Vec<Flaw>, Programme))| {
             let axle = any(&["a", "c", "d"], &mut self.random(&format!("hardware {k}")));
             let order = Order {
                 flaws,
@@ -235,20 +241,7 @@ impl Draw {
             };
             self.case(Kind::HardwareClean, &format!("hardware {axle}{k} {words}"), order)
         };
-        let alone = Flaw::ALL
-            .into_iter()
-            .map(|flaw| (format!("{flaw:?} alone"), vec![flaw], Programme::full()));
-        let together = (0..20).map(|k| {
-            let (words, programme) = if k < 10 {
-                ("together", Programme::full())
-            } else {
-                ("together fast", Programme::fast())
-            };
-            (words.to_owned(), Flaw::ALL.to_vec(), programme)
-        });
-        let all = alone.chain(together).enumerate();
-        all.map(|(k, (words, flaws, programme))| of_number((k, words, flaws, programme)))
-            .collect()
+        all.into_iter().enumerate().map(of_number).collect()
     }
 
     /// Every effect of the car in hardware with all flaws.
@@ -257,7 +250,7 @@ impl Draw {
             let name = format!("hardware {}", entry.title());
             let hidden = self.hidden(entry, 1, &name, USUAL);
             let order = Order {
-                flaws: Flaw::ALL.to_vec(),
+                flaws: Flaw::MILD.to_vec(),
                 ..self.order(600 + k, entry.axle, vec![hidden])
             };
             self.case(Kind::HardwareSingle, &name, order)

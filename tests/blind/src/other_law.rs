@@ -254,3 +254,77 @@ fn maxwell(branches: &[(f64, f64)], v: f64, inner: &[f64], rate: &mut [f64]) -> 
     }
     inner[..branches.len()].iter().sum()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Force of a friction that slides at a velocity long enough.
+    fn sliding(law: Other, v: f64) -> f64 {
+        let mut inner = [0.0; INNER];
+        let (step, mut force) = (2e-6, 0.0);
+        for _ in 0..(0.4 / step) as usize {
+            let mut rate = [0.0; INNER];
+            force = law.friction(v, &inner, &mut rate);
+            for (inner, rate) in inner.iter_mut().zip(rate) {
+                *inner += step * rate;
+            }
+        }
+        force
+    }
+
+    #[test]
+    fn friction_slides_at_its_level() {
+        let lugre = Other::LuGre {
+            f_coulomb: 60.0,
+            f_static: 90.0,
+            v_stribeck: 0.005,
+            sigma0: 600e3,
+            sigma1: 300.0,
+        };
+        let stack = Other::SlipStack {
+            f_slip: 80.0,
+            k_stick: 200e3,
+        };
+        for v in [0.02_f64, 0.2] {
+            let stribeck = 60.0 + 30.0 * (-(v / 0.005).powi(2)).exp();
+            assert!((sliding(lugre, v) - stribeck).abs() < 0.1, "{}", sliding(lugre, v));
+            assert!((sliding(stack, -v) + 80.0).abs() < 0.1, "{}", sliding(stack, -v));
+        }
+        assert!((sliding(lugre, 0.005) - 60.0 - 30.0 / std::f64::consts::E).abs() < 0.1);
+    }
+
+    /// Each slope begins where the one before ends.
+    #[test]
+    fn a_table_has_its_slopes() {
+        let slope = |v: f64| (table(0.5, v + 1e-6) - table(0.5, v - 1e-6)) / 2e-6;
+        for (v, expected) in [(0.01, 1.4), (0.1, 1.1), (0.2, 0.8), (0.9, 0.5)] {
+            assert!((slope(v) - expected).abs() < 1e-6, "{} at {v} m/s", slope(v));
+        }
+        let law = Other::TableDamper {
+            digression: 0.5,
+            asymmetry: 1.5,
+        };
+        let force = |v: f64| law.damper(1000.0, 0.0, v).expect("it is a damper");
+        assert!((force(0.02) / -force(-0.02) - 1.5).abs() < 1e-9);
+        assert!((force(0.02) - force(-0.02) - 2.0 * 1000.0 * 1.4 * 0.02).abs() < 1e-9);
+    }
+
+    /// Held still, a Maxwell branch keeps 1/e of its force after the time of its frequency.
+    #[test]
+    fn branches_relax_by_their_frequencies() {
+        let law = Other::FractionalMount {
+            k_middle: 100e3,
+            frequency: 8.0,
+        };
+        let inner = [1.0; INNER];
+        let mut rate = [0.0; INNER];
+        assert_eq!(law.top_mount(0.0, &inner, &mut rate), 3.0);
+        let expected = [1.6, 8.0, 40.0].map(|hertz| -TAU * hertz);
+        assert!(
+            rate.iter()
+                .zip(expected)
+                .all(|(rate, expected)| (rate - expected).abs() < 1e-9)
+        );
+    }
+}

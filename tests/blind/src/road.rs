@@ -11,6 +11,15 @@ pub const SPACING: f64 = 1e-3;
 const START: f64 = 1.5;
 
 impl Road {
+    /// No cleat.
+    pub fn flat() -> Self {
+        let rest = vec![0.0; 18_001];
+        Self {
+            z: rest.clone(),
+            slope: rest,
+        }
+    }
+
     /// The profile of a cleat of height `h`, m, on 18 m of road: 78 % of it lost on a straight descent, the rest on
     /// a return whose slope fades like a cosine, so that the curvature is continuous.
     pub fn cleat(h: f64) -> Self {

@@ -156,9 +156,15 @@ fn outside(outcomes: &[Outcome], table: &mut Table) {
 }
 
 fn hardware(outcomes: &[Outcome], table: &mut Table) {
-    let clean = of(outcomes, Kind::HardwareClean);
-    table.count("clean hardware given an effect", &clean, Outcome::gives_a_name);
-    table.count("clean hardware unknown", &clean, |outcome| outcome.is("unknown"));
+    let is_mild = |outcome: &&Outcome| !outcome.case.contains("Cams");
+    let (mild, more): (Vec<&Outcome>, Vec<&Outcome>) = of(outcomes, Kind::HardwareClean).into_iter().partition(is_mild);
+    table.count("clean hardware given an effect", &mild, Outcome::gives_a_name);
+    table.count("clean hardware unknown", &mild, |outcome| outcome.is("unknown"));
+    table.count(
+        "clean, but with a tyre of cams: given an effect",
+        &more,
+        Outcome::gives_a_name,
+    );
     let single = of(outcomes, Kind::HardwareSingle);
     table.count("single effects in hardware named, or in a class", &single, |outcome| {
         outcome.is_right() || outcome.is_class_with_it()

@@ -2,6 +2,14 @@ use nalgebra::{DMatrix, DVector};
 
 use super::*;
 
+fn sensor() -> Point {
+    Point {
+        location: "body".into(),
+        axis: crate::campaign::Axis::Z,
+        quantity: crate::campaign::Quantity::Acceleration,
+    }
+}
+
 /// Values at these places of one run, all of unit noise and signal.
 fn group(places: &[f64], scale: f64) -> Group {
     let value = |(k, place): (usize, &f64)| Value {
@@ -12,15 +20,15 @@ fn group(places: &[f64], scale: f64) -> Group {
         scale,
     };
     let key = Key {
-        sensor: Point {
-            location: "body".into(),
-            axis: crate::campaign::Axis::Z,
-            quantity: crate::campaign::Quantity::Acceleration,
-        },
+        sensor: sensor(),
         kind: Kind::Time,
-        run: discriminant(&Stimulus::Travel {
-            axis: crate::campaign::Axis::Z,
-            ends: [0.0, 1.0],
+        run: discriminant(&Stimulus::Sweep {
+            reference: sensor(),
+            signal: Vec::new(),
+            rate: 1.0,
+            frequency: Vec::new(),
+            amplitude: Vec::new(),
+            band: (1.0, 2.0),
         }),
     };
     Group::new(key, 0.0, places.iter().enumerate().map(value).collect())
@@ -36,11 +44,7 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
     group.set(0.4);
     let covariance = DMatrix::from_fn(30, 30, |i, j| {
         let r: f64 = (places[i] - places[j]).abs();
-        let k = if r < 1.0 {
-            (1.0 - r).powi(4) * (4.0 * r + 1.0)
-        } else {
-            0.0
-        };
+        let k = if r < 1.0 { (1.0 - r).powi(2) } else { 0.0 };
         0.16 * 9.0 * k + if i == j { 1.0 } else { 0.0 }
     });
     let residual = DVector::from_fn(30, |k, _| (1.7 * k as f64).sin());

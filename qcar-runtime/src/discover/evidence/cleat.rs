@@ -9,6 +9,7 @@ use crate::error::InputError;
 use crate::model::About;
 use crate::response::signal::output_of;
 use crate::road::Road;
+use crate::roles::Roles;
 use crate::simulate::{Cleat, tyre};
 use crate::transmissibility::{Point, points, signal};
 
@@ -45,9 +46,8 @@ impl Evidence {
         let Some(cleat) = Cleat::read(campaign, run)? else {
             return Ok(());
         };
-        if about.contact.is_none() {
-            let notice = format!("{}: the model has no tyre that rolls; the run is left out", run.file);
-            self.notices.push(notice);
+        if let Err(error) = Roles::of(about, &campaign.roles) {
+            self.notices.push(format!("{}: {error}; the run is left out", run.file));
             return Ok(());
         }
         let (tyre, load) = tyre(campaign)?;

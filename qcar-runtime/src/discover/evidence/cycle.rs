@@ -30,9 +30,9 @@ impl Evidence {
         (amplitude, peak_velocity): (f64, f64),
     ) -> Result<(), InputError> {
         let curve = campaign.dynamic_curve(run)?;
-        if !self.is_on_rig(about, run, Axis::Z) {
+        let Some(on) = self.on_rig(campaign, about, run, Axis::Z) else {
             return Ok(());
-        }
+        };
         let frequency = peak_velocity / amplitude / TAU;
         let Some((reach, series)) = harmonics(self.runs.len(), &curve, frequency) else {
             let what = format!("no whole cycle of a sine of {frequency:.3} Hz; the run is left out");
@@ -45,6 +45,7 @@ impl Evidence {
             role: run.role,
             level: reach,
             stimulus: Stimulus::Sine {
+                on,
                 axis: Axis::Z,
                 frequency,
             },

@@ -174,8 +174,8 @@ fn series(
     series
 }
 
-/// Values in half a period of a record's mean frequency: more say the same.
-const IN_HALF_A_PERIOD: f64 = 30.0;
+/// Values in half a period of a record's mean frequency: they hold its first eight harmonics, and more say the same.
+const IN_HALF_A_PERIOD: f64 = 8.0;
 
 fn rms(samples: &[f64]) -> f64 {
     let mean = samples.iter().sum::<f64>() / samples.len() as f64;

@@ -13,11 +13,10 @@ use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
 use crate::error::InputError;
 use crate::kc::{SineSamples, sines};
 use crate::model::{About, StateKind};
+use crate::roles::{OnRig, Roles, state};
 use crate::transmissibility::Point;
 
-/// What the rig moves against each other; also the location of the force between them.
-pub(in crate::discover) const MOVED: &str = "wheel";
-pub(in crate::discover) const HELD: &str = "body";
+/// Where the force between what the rig moves and what it holds is measured.
 const LOCATION: &str = "wheel_to_body";
 
 /// Values of a curve, and the share of the travel that they cover: at its ends the direction changes.
@@ -41,9 +40,9 @@ impl Evidence {
         axis: Axis,
     ) -> Result<(), InputError> {
         let curve = campaign.curve(run)?;
-        if !self.is_on_rig(about, run, axis) {
+        let Some(on) = self.on_rig(campaign, about, run, axis) else {
             return Ok(());
-        }
+        };
         let damping = (axis == Axis::Z).then(|| damping(campaign)).transpose()?.flatten();
         let Some(cycle) = Loop::read(&curve.displacement, &curve.force) else {
             self.notices
@@ -58,25 +57,35 @@ impl Evidence {
             name: run.file.clone(),
             role: run.role,
             level: cycle.ends[1].max(-cycle.ends[0]),
-            stimulus: Stimulus::Travel { axis, ends: cycle.ends },
+            stimulus: Stimulus::Travel {
+                on,
+                axis,
+                ends: cycle.ends,
+            },
         });
         Ok(())
     }
 
-    /// Whether a model has what the rig moves; leaves a notice where it has not.
-    pub(super) fn is_on_rig(&mut self, about: &About, run: &crate::campaign::Run, axis: Axis) -> bool {
-        let moves = |location: &str| {
-            let mut states = about.states.iter();
-            states.any(|s| s.kind == StateKind::Position && s.location == location && s.axis == axis.name())
-        };
-        let loaded = about.excitations.iter().any(|e| e.force && e.axis == axis.name());
-        let there = moves(MOVED) && moves(HELD) && loaded;
-        if !there {
-            let what = format!("no {MOVED} that a force moves against a {HELD} along {}", axis.name());
-            self.notices
-                .push(format!("{}: the model has {what}; the run is left out", run.file));
-        }
-        there
+    /// What the rig moves and holds in a model; leaves a notice where the model has no such parts.
+    pub(super) fn on_rig(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+        axis: Axis,
+    ) -> Option<OnRig> {
+        let moves = |location: &str| state(about, StateKind::Velocity, location, axis.name()).is_some();
+        let roles = Roles::of(about, &campaign.roles).and_then(|roles| roles.on_rig());
+        let on = roles.map_err(|error| error.to_string()).and_then(|on| {
+            let still = |name: &str| format!("`{name}` of model `{}` does not move along {}", about.name, axis.name());
+            let resting = [&on.wheel, &on.body]
+                .into_iter()
+                .find(|name| !moves(name))
+                .map(|name| still(name));
+            resting.map_or(Ok(on), Err)
+        });
+        on.map_err(|why| self.notices.push(format!("{}: {why}; the run is left out", run.file)))
+            .ok()
     }
 }
 

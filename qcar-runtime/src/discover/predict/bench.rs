@@ -7,8 +7,9 @@
 use nalgebra::{DMatrix, DVector, Dyn, LU, SVD};
 
 use crate::campaign::Axis;
-use crate::discover::evidence::travel::{HELD, MOVED};
+use crate::kc::of_unit_force;
 use crate::model::{About, InputKind, Matrix, Model, Quantity, StateKind};
+use crate::roles::{OnRig, state};
 
 /// Newton's steps of an instant, and when one is small enough: relative to a state, or to `SMALL` of its unit.
 const STEPS: usize = 30;
@@ -30,13 +31,14 @@ pub struct Instant {
 
 /// Places in a model on the rig.
 pub struct Bench {
+    /// What is moved and held, along which axis.
+    on: OnRig,
+    axis: Axis,
     /// Position and velocity of the wheel.
     wheel: usize,
     wheel_speed: usize,
     /// Velocity of the body.
     held_speed: usize,
-    /// The force on the wheel.
-    handle: usize,
     /// The ground under the wheel, which goes with it: the force of the tyre is none of the rig's.
     ground: Vec<(usize, Quantity)>,
     between: Vec<Between>,
@@ -65,19 +67,15 @@ struct Slope {
 
 impl Bench {
     /// `None` of a model that lacks the parts that the rig moves along this axis.
-    pub fn new(about: &About, axis: Axis) -> Option<Self> {
+    pub fn new(about: &About, on: &OnRig, axis: Axis) -> Option<Self> {
         let along = |kind| {
             let states = about.states.iter().enumerate();
             states.filter(move |(_, state)| state.kind == kind && state.axis == axis.name())
         };
-        let called = |kind, name: &str| {
-            along(kind)
-                .find(|(_, state)| state.location == name)
-                .map(|(place, _)| place)
-        };
-        let held = called(StateKind::Position, HELD)?;
-        let wheel = called(StateKind::Position, MOVED)?;
-        let wheel_speed = called(StateKind::Velocity, MOVED)?;
+        let called = |kind, name: &str| state(about, kind, name, axis.name());
+        let held = called(StateKind::Position, &on.body)?;
+        let wheel = called(StateKind::Position, &on.wheel)?;
+        let wheel_speed = called(StateKind::Velocity, &on.wheel)?;
         let positions = along(StateKind::Position).filter(|(place, _)| ![wheel, held].contains(place));
         let of_mass = |(place, state): (usize, &crate::model::State)| Between {
             place,
@@ -86,7 +84,6 @@ impl Bench {
         let inner = along(StateKind::Inner).map(|(place, _)| Between { place, speed: None });
         let between: Vec<Between> = positions.map(of_mass).chain(inner).collect();
         let of_axis = |excitation: u16| about.excitations[usize::from(excitation)].axis == axis.name();
-        let is_force = |kind| matches!(kind, InputKind::Force(excitation) if of_axis(excitation));
         let ground = about
             .inputs
             .iter()
@@ -98,8 +95,9 @@ impl Bench {
         Some(Self {
             wheel,
             wheel_speed,
-            held_speed: called(StateKind::Velocity, HELD)?,
-            handle: about.inputs.iter().position(|input| is_force(input.kind))?,
+            held_speed: called(StateKind::Velocity, &on.body)?,
+            on: on.clone(),
+            axis,
             ground: ground.collect(),
             slopes: slopes(about, &between, |row| between.iter().position(|b| b.row() == row)),
             of_wheel: slopes(about, &between, |row| (row == wheel_speed).then_some(0)),
@@ -108,12 +106,14 @@ impl Bench {
     }
 
     /// The force on the wheel (N) at each instant that is read of a path that begins at rest: with these parameters, and
-    /// with each of some sets that are so near that one Newton step leads from the one to the other.
-    pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Vec<Vec<f64>> {
-        let mut first = Drive::new(self, model, p);
+    /// with each of some sets that are so near that one Newton step leads from the one to the other. `None` where no force
+    /// can be put on the wheel.
+    pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Option<Vec<Vec<f64>>> {
+        let mut first = Drive::new(self, model, p)?;
         // What the rig does not feel leaves the forces as they are.
         let felt = (1..).zip(near).filter(|(_, other)| self.feels(model.about(), p, other));
-        let mut near_drives: Vec<(usize, Drive)> = felt.map(|(set, p)| (set, Drive::new(self, model, p))).collect();
+        let near_drives = felt.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
+        let mut near_drives = near_drives.collect::<Option<Vec<(usize, Drive)>>>()?;
         let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
         for instant in path {
             first.hold(instant);
@@ -131,7 +131,7 @@ impl Bench {
                 }
             }
         }
-        forces
+        Some(forces)
     }
 
     /// Whether anything that differs between two parameter sets acts on what the rig looks at.
@@ -187,33 +187,21 @@ struct Drive<'a> {
 }
 
 impl<'a> Drive<'a> {
-    fn new(bench: &'a Bench, model: &'a dyn Model, p: &'a [f64]) -> Self {
+    fn new(bench: &'a Bench, model: &'a dyn Model, p: &'a [f64]) -> Option<Self> {
         let about = model.about();
         let mut constants = vec![0.0; about.constants];
         model.prepare(p, &mut constants);
-        let mut drive = Self {
+        Some(Self {
             bench,
             model,
             p,
             constants,
-            of_unit: vec![0.0; about.states.len()],
+            of_unit: of_unit_force(model, p, &bench.on.wheel, bench.axis.name())?,
             x: vec![0.0; about.states.len()],
             u: vec![0.0; about.inputs.len()],
             dx: vec![0.0; about.states.len()],
             nonzeros: vec![0.0; about.matrices.len()],
-        };
-        drive.move_on();
-        let alone = drive.dx.clone();
-        drive.u[bench.handle] = 1.0;
-        drive.move_on();
-        drive.of_unit = drive
-            .dx
-            .iter()
-            .zip(alone)
-            .map(|(pushed, alone)| pushed - alone)
-            .collect();
-        drive.u[bench.handle] = 0.0;
-        drive
+        })
     }
 
     /// Puts the wheel where the rig has it.

@@ -6,7 +6,6 @@ use nalgebra::Complex;
 
 use super::bench::{Bench, Instant};
 use super::{Free, PredictError, Prediction};
-use crate::discover::evidence::travel::MOVED;
 use crate::discover::evidence::{Evidence, Kind, Series, Stimulus};
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -36,18 +35,20 @@ pub(super) fn travel(
     let of_run = &evidence.runs[run];
     let all = evidence.series.iter().enumerate();
     let series: Vec<(usize, &Series)> = all.filter(|(_, series)| series.run == run).collect();
-    let (axis, course) = match of_run.stimulus {
-        Stimulus::Travel { axis, ends } => (axis, Course::cycle(ends, &series[0].1.at)),
-        Stimulus::Sine { axis, frequency } => (axis, Course::sine(of_run.level, frequency)),
+    let (on, axis, course) = match &of_run.stimulus {
+        Stimulus::Travel { on, axis, ends } => (on, *axis, Course::cycle(*ends, &series[0].1.at)),
+        Stimulus::Sine { on, axis, frequency } => (on, *axis, Course::sine(of_run.level, *frequency)),
         _ => return Ok(Vec::new()),
     };
-    let bench = Bench::new(model.about(), axis).ok_or_else(|| PredictError::NoInput {
+    let unmoved = || PredictError::NoInput {
         model: model.about().name.to_string(),
-        location: MOVED.to_owned(),
+        location: on.wheel.clone(),
         run: of_run.name.clone(),
-    })?;
+    };
+    let bench = Bench::new(model.about(), on, axis).ok_or_else(unmoved)?;
     let (moved, steps): (Vec<_>, Vec<_>) = free.iter().map(|free| moved(values, free)).unzip();
     let forces = bench.forces(model, values.as_slice(), &moved, &course.path);
+    let forces = forces.ok_or_else(unmoved)?;
     let predict = |&(place, series): &(usize, &Series)| {
         let read = |forces: &[f64]| course.read(series.kind, forces);
         let value = read(&forces[0]);

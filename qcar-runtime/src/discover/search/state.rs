@@ -252,7 +252,7 @@ impl State {
         refit.residuals_of(
             explanandum.model,
             &beside_known,
-            &refit.coefficients,
+            (refit.nuisance.clone(), &refit.coefficients),
             self.workshop.model(),
             evidence,
         )

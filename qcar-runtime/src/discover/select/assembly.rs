@@ -8,7 +8,7 @@ use crate::discover::discrepancy::Discrepancy;
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::{Explanation, Given, Setting};
 use crate::discover::gap::Gap;
-use crate::discover::nuisance::{Form, Nuisance};
+use crate::discover::nuisance::{Beginning, Form, Nuisance};
 use crate::discover::predict::{Free, PredictError};
 use crate::discover::refit::{Refit, Start, fit, settle};
 use crate::discover::search::Taken;
@@ -37,6 +37,13 @@ pub struct Placed {
     pub taken: Taken,
 }
 
+impl Placed {
+    /// Its name and place.
+    pub fn name(&self) -> (&str, &str) {
+        (&self.effect, &self.at)
+    }
+}
+
 /// A model that can be fitted: that of an assembly, or of a candidate beside it.
 pub struct Hypothesis<'a> {
     model: &'a dyn Model,
@@ -54,6 +61,8 @@ pub struct Place {
     pub sides: BTreeMap<String, f64>,
     /// Coefficients of the sensors' errors.
     pub errors: Vec<f64>,
+    /// With which states records begin.
+    pub begun: Vec<(Beginning, f64)>,
     /// What the model is taken to miss.
     pub discrepancy: Discrepancy,
 }
@@ -191,6 +200,15 @@ impl<'a> Hypothesis<'a> {
         self.model
     }
 
+    /// The errors of sensors of a fit of the present model, with those of this one beside them, and their coefficients at a
+    /// place.
+    pub fn nuisance_at(&self, refit: &Refit, place: &Place) -> (Nuisance, Vec<f64>) {
+        let mut nuisance = refit.nuisance.clone();
+        nuisance.suspects.clone_from(&self.nuisance.suspects);
+        let begun = &refit.coefficients[refit.nuisance.of_sensors()..];
+        (nuisance, place.errors.iter().chain(begun).copied().collect())
+    }
+
     /// Number of its errors of sensors.
     pub fn sensor_errors(&self) -> usize {
         self.nuisance.len()
@@ -250,6 +268,7 @@ impl<'a> Hypothesis<'a> {
         let start = Start {
             values: &self.values(&from.named)?,
             errors: &errors,
+            begun: &from.begun,
             centre: &self.values(&BTreeMap::new())?,
             discrepancy: from.discrepancy.carried_to(evidence, crate::campaign::Role::Fit),
         };
@@ -284,7 +303,8 @@ impl<'a> Hypothesis<'a> {
         Place {
             named: named.collect(),
             sides: refit.free.iter().map(side).collect(),
-            errors: refit.coefficients.clone(),
+            errors: refit.coefficients[..refit.nuisance.of_sensors()].to_vec(),
+            begun: refit.begun(),
             discrepancy: refit.discrepancy.clone().expect("a fit by evidence has a discrepancy"),
         }
     }

@@ -12,7 +12,6 @@ use super::screen::Prospect;
 use super::{News, Progress};
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
-use crate::discover::predict::PredictError;
 use crate::discover::refit::Refit;
 
 /// What the rounds look at.
@@ -64,9 +63,9 @@ const ROUNDS: [Round; 4] = [
 ];
 
 /// The first of them enter with all their starts until so many run, the others with their best.
-const STARTED: usize = 12;
+const STARTED: usize = 9;
 /// Candidates that enter.
-const ENTRANTS: usize = 10;
+const ENTRANTS: usize = 6;
 /// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
 /// thousand.
 const CLOSE: f64 = 10.0;
@@ -110,17 +109,15 @@ impl Runner<'_> {
 }
 
 /// The best candidates, the very best first, fitted to all runs; and the others.
-///
-/// # Errors
-/// None today: a candidate that says nothing of the evidence drops out.
 pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
     prospects: &[Prospect],
     looks: &Fidelity,
+    least: f64,
     progress: Progress<'_>,
-) -> Result<(Vec<Finalist>, Vec<Dropped>), PredictError> {
-    let entering = entrants(candidates, prospects);
+) -> (Vec<Finalist>, Vec<Dropped>) {
+    let entering = entrants(candidates, prospects, least);
     let hypotheses: Vec<Option<Hypothesis<'_>>> = entering
         .iter()
         .map(|own| assembly.hypothesis_with(&candidates[own.candidate]))
@@ -176,17 +173,17 @@ pub fn race(
             refit: runner.refit?,
         })
     });
-    Ok((finalists.collect(), dropped))
+    (finalists.collect(), dropped)
 }
 
-/// The prospects that gain most, and the best of each place.
-fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<&'p Prospect> {
+/// The prospects that gain most, and the best of each place that gains more than `least`.
+fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: f64) -> Vec<&'p Prospect> {
     let mut places: Vec<&str> = Vec::new();
     let enters = |(rank, prospect): &(usize, &Prospect)| {
         let at = candidates[prospect.candidate].at.as_str();
         let first = !places.contains(&at);
         places.push(at);
-        *rank < ENTRANTS || first && prospect.gain() > 0.0
+        prospect.gain() > 0.0 && (*rank < ENTRANTS || first && prospect.gain() > least)
     };
     prospects
         .iter()

@@ -36,10 +36,12 @@ impl Prospect {
 
 /// Starts of a candidate that are fitted.
 const STARTS: usize = 3;
-/// How far towards the ends of their ranges one shape is tried,
-const SHAPES: [f64; 9] = [0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
-/// each of several,
-const FEW_SHAPES: [f64; 5] = [0.0, -0.35, 0.35, -0.7, 0.7];
+/// How far towards the ends of their ranges a single shape is tried,
+const SHAPES: &[f64] = &[0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
+/// each of two or more of a linear model, which costs little,
+const SHAPES_OF_LINEAR: &[f64] = &[0.0, -0.35, 0.35, -0.7, 0.7];
+/// each of two of any other, and each of more, one after the other,
+const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 /// and anything else.
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
@@ -61,7 +63,9 @@ pub fn screen(
         let tried = grid(candidate).into_par_iter().filter_map(|point| {
             let from = point.at(&here, &hypothesis, candidate);
             let values = hypothesis.values(&from.named).ok()?;
-            let there = refit.residuals_of(hypothesis.model(), &values, &from.errors, assembly.model(), evidence)?;
+            let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
+            let nuisance = (nuisance, coefficients.as_slice());
+            let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
             let step = tangent.step(&there, point.scales(candidate))?;
             let scaled = Point {
                 scale: step.scale,
@@ -84,7 +88,7 @@ pub fn screen(
 }
 
 /// The present fit, linearised: residuals, and what all unknowns could imitate.
-struct Tangent {
+pub struct Tangent {
     /// In units of the noise, those of the priors behind those of the data.
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
@@ -112,7 +116,8 @@ struct Step {
 }
 
 impl Tangent {
-    fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
+    /// Of a fit.
+    pub fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
         let (residual, jacobian) = refit.linearised(assembly.model(), evidence);
         let known = refit
             .discrepancy_of(evidence)
@@ -154,6 +159,15 @@ impl Tangent {
         gain.is_finite().then_some(Step { scale, unknowns, gain })
     }
 
+    /// The sum of squares of a change of the residuals of the data that nothing else can imitate.
+    pub fn trace(&self, there: &DVector<f64>) -> Option<f64> {
+        let mut change = there - self.residual.rows(0, self.data);
+        self.discrepancy.whiten(change.as_mut_slice());
+        let along = self.white_jacobian.rows(0, self.data).tr_mul(&change);
+        let imitated = self.hessian.as_ref()?.solve(&along);
+        Some(change.norm_squared() - along.dot(&imitated))
+    }
+
     /// What the present unknowns and the discrepancy gain by themselves on this part of the evidence.
     fn gain_alone(&self) -> f64 {
         let Some(hessian) = &self.hessian else { return 0.0 };
@@ -183,15 +197,23 @@ impl Tangent {
 
 /// How far each parameter of a candidate is towards the ends of its range: by place among its parameters.
 #[derive(Clone, Debug)]
-struct Point {
+pub struct Point {
     shifts: Vec<f64>,
     /// Factor of the strength.
     scale: f64,
 }
 
 impl Point {
+    /// The start of every parameter.
+    pub fn usual(candidate: &Candidate) -> Self {
+        Self {
+            shifts: vec![0.0; candidate.parameters().len()],
+            scale: 1.0,
+        }
+    }
+
     /// The place in which the candidate stands at this point beside the present fit.
-    fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
+    pub fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
         let mut there = here.clone();
         let parameters = candidate.parameters().iter().zip(&self.shifts);
         let values: BTreeMap<String, f64> = parameters
@@ -254,10 +276,12 @@ fn coefficient(form: Form, value: f64) -> f64 {
 fn grid(candidate: &Candidate) -> Vec<Point> {
     let parameters = candidate.parameters();
     let is_shape = |own: &&Added| own.role == ParameterRole::Shape && !own.known;
-    let of_shape: &[f64] = if parameters.iter().filter(is_shape).count() > 1 {
-        &FEW_SHAPES
-    } else {
-        &SHAPES
+    let is_linear = matches!(&candidate.change, Change::Model { model, .. } if model.about().linear);
+    let (of_shape, together) = match (parameters.iter().filter(is_shape).count(), is_linear) {
+        (0 | 1, _) => (SHAPES, true),
+        (_, true) => (SHAPES_OF_LINEAR, true),
+        (2, false) => (FEW_SHAPES, true),
+        (_, false) => (FEW_SHAPES, false),
     };
     let start = vec![0.0; parameters.len()];
     let mut points = vec![start.clone()];
@@ -277,7 +301,7 @@ fn grid(candidate: &Candidate) -> Vec<Point> {
         };
         // Shapes go with everything; anything else moves alone.
         let more: Vec<Vec<f64>> = match own.role {
-            ParameterRole::Shape => points.iter().flat_map(moved).collect(),
+            ParameterRole::Shape if together => points.iter().flat_map(moved).collect(),
             _ => moved(&start).collect(),
         };
         points.extend(more);

@@ -1,12 +1,12 @@
 //! How probable each set of effects is, and what is said of it.
 
-use super::assembly::Assembly;
+use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::Explanation;
-use crate::discover::numbers::CERTAIN;
-use crate::discover::search::{Discovery, Finding, Rival, Verdict};
+use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY, EXPLAINED};
+use crate::discover::search::{Discovery, Finding, Probable, Rival, Verdict};
 
 /// A set of effects with its fit.
 pub struct Set {
@@ -42,7 +42,7 @@ impl Set {
     /// What is told of its effects.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
-        let finding = |own: &super::Placed| Finding {
+        let finding = |own: &Placed| Finding {
             effect: own.effect.clone(),
             at: own.at.clone(),
             form: own.form.clone(),
@@ -57,7 +57,7 @@ impl Set {
     /// Names and places of its effects, in one order.
     fn names(&self) -> Vec<(&str, &str)> {
         let effects = self.assembly.effects().iter();
-        let mut names: Vec<_> = effects.map(|own| (own.effect.as_str(), own.at.as_str())).collect();
+        let mut names: Vec<_> = effects.map(Placed::name).collect();
         names.sort_unstable();
         names
     }
@@ -108,84 +108,75 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
 /// The answer. The first set is that of the base model.
 pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     let answers = answers(&sets);
-    if std::env::var_os("QCAR_TELL").is_some() {
-        for set in &sets {
-            eprintln!(
-                "{:10.1} {:10.1} {:10.1} gap {:.3} {:.3} cost {:.1} {:?}",
-                set.log_posterior(),
-                log_score(set, evidence),
-                set.explanation.refit.log_evidence,
-                set.explanation.gap.fit,
-                set.explanation.gap.held_out,
-                set.explanation.refit.discrepancy.as_ref().map_or(0.0, |d| d.cost()),
-                set.names()
-            );
-            for missed in set.explanation.refit.discrepancy.iter().flat_map(|d| d.missed()) {
-                if missed.tau > 0.0 {
-                    eprint!(
-                        "   {}_{:?} {:?} {:.4};",
-                        missed.sensor.location, missed.sensor.axis, missed.kind, missed.tau
-                    );
-                }
-            }
-            eprintln!();
-            let mut groups: std::collections::BTreeMap<String, (f64, usize)> = Default::default();
-            for (series, residuals) in evidence.series.iter().zip(&set.explanation.gap.residuals) {
-                let role = evidence.runs[series.run].role;
-                if role != Role::Fit {
-                    continue;
-                }
-                let key = format!("{}_{:?}_{:?}", series.sensor.location, series.sensor.axis, series.kind);
-                let own = groups.entry(key).or_default();
-                own.0 += residuals.iter().map(|r| r * r).sum::<f64>();
-                own.1 += residuals.len();
-            }
-            for (key, (sum, count)) in groups {
-                eprint!("   {key} {sum:.0}/{count}");
-            }
-            eprintln!(
-                "  chi2 {:.1} sum c2 {:.1}",
-                set.explanation.refit.chi2,
-                set.explanation
-                    .refit
-                    .coefficients
-                    .iter()
-                    .zip(set.explanation.refit.nuisance.sigmas())
-                    .map(|(c, s)| (c / s).powi(2))
-                    .sum::<f64>()
-            );
-        }
-    }
-    let best = &sets[predictive(&sets, answers[0].set, evidence)];
+    let credible = credible(&sets, &answers);
     let before = sets[0].explanation.clone();
-    let after = best.explanation.clone();
-    let mut sum = 0.0;
-    let credible = answers.iter().take_while(|own| {
-        let wanted = sum < CERTAIN;
-        sum += own.probability;
-        wanted
-    });
-    let credible: Vec<&Answer> = credible.collect();
-    let closed = closed(&before, &after, evidence);
-    let mut findings = best.findings();
-    for finding in &mut findings {
-        finding.closed = closed;
-        finding.evidence = after.refit.log_evidence - before.refit.log_evidence;
+    let predictive = predictive(&sets, credible[0], evidence);
+    // What explains less than most of the gap is not the answer, however probable beside the others.
+    let explains = closed(&before, &sets[predictive].explanation, evidence) >= EXPLAINED;
+    let best = if explains { predictive } else { 0 };
+    let after = sets[best].explanation.clone();
+    let finding = |set: &Set, own: &Placed| Finding {
+        effect: own.effect.clone(),
+        at: own.at.clone(),
+        form: own.form.clone(),
+        parameters: own.taken.parameters(&set.explanation),
+        evidence: set.explanation.refit.log_evidence - before.refit.log_evidence,
+        closed: closed(&before, &set.explanation, evidence),
+        rivals: set.rivals.clone(),
+    };
+    let (mut findings, mut alike) = (Vec::new(), 0);
+    if best == credible[0] {
+        let members: Vec<&Set> = credible.iter().map(|&place| &sets[place]).collect();
+        let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
+        let (common, others): (Vec<&Placed>, Vec<&Placed>) =
+            members[0].assembly.effects().iter().partition(|own| is_common(own));
+        findings.extend(common.into_iter().map(|own| finding(members[0], own)));
+        let found = findings.len();
+        findings.extend(others.into_iter().map(|own| finding(members[0], own)));
+        for set in &members[1..] {
+            let effects = set.assembly.effects().iter().filter(|own| !is_common(own));
+            let new: Vec<Finding> = effects
+                .filter(|own| {
+                    !findings
+                        .iter()
+                        .any(|known| (known.effect.as_str(), known.at.as_str()) == own.name())
+                })
+                .map(|own| finding(set, own))
+                .collect();
+            findings.extend(new);
+        }
+        alike = if members.len() > 1 { findings.len() - found } else { 0 };
+    } else {
+        findings.extend(
+            sets[best]
+                .assembly
+                .effects()
+                .iter()
+                .map(|own| finding(&sets[best], own)),
+        );
     }
-    let verdict = match (findings.is_empty(), credible.len()) {
+    let verdict = match (findings.is_empty(), alike) {
+        (true, _) if is_missing(&sets[best]) => Verdict::Unknown,
         (true, _) => Verdict::None,
-        (false, 1) => Verdict::Found,
+        (false, 0) => Verdict::Found,
         (false, _) => Verdict::Class,
     };
-    let mut alike = 0;
-    if verdict == Verdict::Class {
-        for other in &credible[1..] {
-            findings.extend(sets[other.set].findings());
-        }
-        alike = findings.len();
-    }
+    let of_answer = |wanted: &dyn Fn(usize) -> bool| -> f64 {
+        let wanted = answers.iter().filter(|own| wanted(own.set));
+        wanted.map(|own| own.probability).sum()
+    };
+    let probability = match verdict {
+        Verdict::None => Some(of_answer(&|set| set == 0)),
+        Verdict::Found => Some(of_answer(&|set| is_part(&sets[best], &sets[set]))),
+        Verdict::Class => Some(of_answer(&|set| {
+            credible.iter().any(|&own| is_part(&sets[own], &sets[set]))
+        })),
+        Verdict::Unknown => None,
+    };
     Discovery {
         verdict,
+        probability,
+        candidates: candidates(&sets, &answers, &before, evidence),
         findings,
         alike,
         before,
@@ -194,20 +185,98 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     }
 }
 
-/// The set itself, or the part of it that predicts the runs that judge better: what does not predict is withdrawn.
+/// True where a model leaves more of any sensor than models of its kind do.
+fn is_missing(set: &Set) -> bool {
+    let discrepancy = set.explanation.refit.discrepancy.iter();
+    discrepancy
+        .flat_map(|own| own.missed())
+        .any(|missed| missed.tau > EXPECTED_DISCREPANCY)
+}
+
+/// The smallest list of sets that holds [`CERTAIN`] of the probability, without those that only add to another one of it. It is the
+/// base model alone unless that is less probable than the others have to be certain.
+fn credible(sets: &[Set], answers: &[Answer]) -> Vec<usize> {
+    let none = answers.iter().find(|own| sets[own.set].assembly.effects().is_empty());
+    if let Some(none) = none.filter(|none| none.probability > 1.0 - CERTAIN) {
+        return vec![none.set];
+    }
+    let mut sum = 0.0;
+    let held = answers.iter().take_while(|own| {
+        let wanted = sum < CERTAIN;
+        sum += own.probability;
+        wanted
+    });
+    let held: Vec<usize> = held.map(|own| own.set).collect();
+    let adds = |place: &usize| {
+        held.iter()
+            .any(|other| other != place && is_part(&sets[*other], &sets[*place]))
+    };
+    held.iter().copied().filter(|place| !adds(place)).collect()
+}
+
+/// True where every effect of one set is in the other.
+fn is_part(part: &Set, whole: &Set) -> bool {
+    part.names().iter().all(|name| whole.names().contains(name))
+}
+
+/// How many candidates are told of.
+const CANDIDATES: usize = 3;
+
+/// The most probable effects, each with the best set that has it alone, or else the best with it.
+fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: &Evidence) -> Vec<Probable> {
+    let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
+    names.sort_unstable();
+    names.dedup();
+    let probable = names.into_iter().filter_map(|name| {
+        let with = sets.iter().filter(|set| set.names().contains(&name));
+        let order = |a: &&Set, b: &&Set| {
+            let fewer = b.assembly.effects().len().cmp(&a.assembly.effects().len());
+            fewer.then(a.log_posterior().total_cmp(&b.log_posterior()))
+        };
+        let best = with.max_by(order)?;
+        let holds = |own: &&Answer| sets[own.set].names().contains(&name);
+        let form = best
+            .assembly
+            .effects()
+            .iter()
+            .find(|own| own.name() == name)?
+            .form
+            .clone();
+        Some(Probable {
+            effect: name.0.to_owned(),
+            at: name.1.to_owned(),
+            form,
+            probability: answers.iter().filter(holds).map(|own| own.probability).sum(),
+            explained: closed(before, &best.explanation, evidence),
+            log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
+        })
+    });
+    let mut probable: Vec<Probable> = probable.collect();
+    probable.sort_by(|a, b| {
+        let order = b.probability.total_cmp(&a.probability);
+        order.then(b.log_evidence.total_cmp(&a.log_evidence))
+    });
+    probable.truncate(CANDIDATES);
+    probable
+}
+
+/// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
+/// what does not predict, and what changes next to nothing, is withdrawn.
 fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return best;
     }
     loop {
-        let names = sets[best].names();
-        let is_part = |other: &usize| {
-            let own = sets[*other].names();
-            own.len() < names.len() && own.iter().all(|name| names.contains(name))
-        };
+        let count = sets[best].names().len();
+        let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
         let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-        let part = (0..sets.len()).filter(is_part).max_by(order);
-        match part.filter(|&part| log_score(&sets[part], evidence) >= log_score(&sets[best], evidence)) {
+        let part = (0..sets.len()).filter(is_less).max_by(order);
+        let withdrawn = |&part: &usize| {
+            let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
+            let predicts = log_score(&sets[best], evidence) > log_score(&sets[part], evidence);
+            !predicts || part != 0 && closes < EXPLAINED
+        };
+        match part.filter(withdrawn) {
             Some(part) => best = part,
             None => return best,
         }

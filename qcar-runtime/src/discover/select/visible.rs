@@ -1,0 +1,54 @@
+//! What `none` is worth: which effects would have been seen (the detection limit).
+//!
+//! An effect of its usual size changes the predicted residuals. What of that no other unknown can imitate, to first order,
+//! is what it would gain in the logarithm of the likelihood; it is held against what it would have to gain to be certain.
+
+use rayon::prelude::*;
+
+use super::assembly::Assembly;
+use super::log_prior;
+use super::screen::{Point, Tangent};
+use crate::discover::candidate::Candidate;
+use crate::discover::evidence::Evidence;
+use crate::discover::numbers::CERTAIN;
+use crate::discover::refit::Refit;
+use crate::discover::search::Visible;
+
+/// Each effect of the model at each place, in its usual form, the best seen first.
+pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {
+    let tangent = Tangent::new(refit, assembly, evidence);
+    let here = assembly.hypothesis().place(refit);
+    let candidates = assembly.candidates();
+    let mut usual: Vec<&Candidate> = candidates.iter().filter(|candidate| !candidate.is_sensor()).collect();
+    usual.dedup_by(|next, first| next.effect == first.effect && next.at == first.at);
+    let of = usual.into_par_iter().filter_map(|candidate| {
+        let hypothesis = assembly.hypothesis_with(candidate)?;
+        let from = Point::usual(candidate).at(&here, &hypothesis, candidate);
+        let values = hypothesis.values(&from.named).ok()?;
+        let (nuisance, coefficients) = hypothesis.nuisance_at(refit, &from);
+        let nuisance = (nuisance, coefficients.as_slice());
+        let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
+        let gain = tangent.trace(&there)? / 2.0;
+        let times = (gain / needed(candidate, &candidates, gain)).sqrt();
+        times.is_finite().then(|| Visible {
+            effect: candidate.effect.clone(),
+            at: candidate.at.clone(),
+            usual: candidate
+                .parameters()
+                .iter()
+                .map(|p| (p.effect_name.clone(), p.start))
+                .collect(),
+            times,
+        })
+    });
+    let mut visible: Vec<Visible> = of.collect();
+    visible.sort_by(|a, b| b.times.total_cmp(&a.times));
+    visible
+}
+
+/// What an effect has to gain in the logarithm of the likelihood to be certain: the odds against it, and for each of its
+/// parameters the part of its range that such a gain would leave (the Occam factor).
+fn needed(candidate: &Candidate, all: &[Candidate], gain: f64) -> f64 {
+    let odds = (CERTAIN / (1.0 - CERTAIN)).ln() - log_prior(candidate, all);
+    odds + candidate.unknowns() as f64 * (1.0 + 2.0 * gain).ln() / 2.0
+}

@@ -1,0 +1,78 @@
+//! What a model leaves of each sensor, in percent of what it measured.
+
+use qcar_runtime::campaign::Role;
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::evidence::Kind;
+use qcar_runtime::discover::explain::Explanation;
+use qcar_runtime::transmissibility::Point;
+use serde::Serialize;
+
+use super::render::channel;
+
+/// What is left of one sensor in one kind of run, on the runs that judge.
+#[derive(Serialize)]
+pub(crate) struct Left {
+    /// The sensor.
+    pub channel: String,
+    /// What its values are.
+    pub kind: &'static str,
+    /// RMS of (measured - modelled) over RMS of what was measured, in percent, before.
+    pub before_percent: f64,
+    /// The same after.
+    pub after_percent: f64,
+}
+
+/// Of every sensor in every kind of run: of held-out runs where there are any, else of the fitted ones. Higher harmonics
+/// are left out: they are next to nothing themselves.
+pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> Vec<Left> {
+    let role = match evidence.of_role(Role::HeldOut).next() {
+        Some(_) => Role::HeldOut,
+        None => Role::Fit,
+    };
+    let mut groups: Vec<(&Point, Kind)> = Vec::new();
+    for (_, series) in evidence.of_role(role) {
+        let group = (&series.sensor, series.kind);
+        if series.kind.order().is_none_or(|order| order == 1) && !groups.contains(&group) {
+            groups.push(group);
+        }
+    }
+    let percent = |(sensor, kind): (&Point, Kind), of: &Explanation| {
+        let (mut missed, mut measured) = (0.0, 0.0);
+        let own = evidence
+            .of_role(role)
+            .filter(|(_, series)| series.sensor == *sensor && series.kind == kind);
+        for (place, series) in own {
+            let parts = if kind.complex() { 2 } else { 1 };
+            let residuals = of.gap.residuals[place].chunks(parts).zip(&series.sigma);
+            let scale = 1.0 / parts as f64;
+            missed += residuals
+                .map(|(own, sigma)| scale * own.iter().map(|r| (r * sigma).powi(2)).sum::<f64>())
+                .sum::<f64>();
+            let mean = match kind {
+                Kind::Time => series.value.iter().map(|value| value.re).sum::<f64>() / series.value.len() as f64,
+                _ => 0.0,
+            };
+            measured += series.value.iter().map(|value| (value - mean).norm_sqr()).sum::<f64>();
+        }
+        100.0 * (missed / measured).sqrt()
+    };
+    let left = |group: (&Point, Kind)| Left {
+        channel: channel(group.0),
+        kind: word(group.1),
+        before_percent: percent(group, before),
+        after_percent: percent(group, after),
+    };
+    groups.into_iter().map(left).collect()
+}
+
+/// What kind of run the values are from.
+fn word(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Harmonic(_) => "sweep",
+        Kind::Time => "record",
+        Kind::Passage => "cleat",
+        Kind::Travel => "kc_force",
+        Kind::Width => "kc_hysteresis",
+        Kind::Cycle(_) => "kc_sine",
+    }
+}
