@@ -148,7 +148,7 @@ impl Rolling<'_> {
         let a = self.corner.axle;
         let ring = self.corner.ring();
         (
-            [self.speed * t + y[X_WHEEL], a.r_tire - a.static_tire_def + y[ring]],
+            [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]],
             [self.speed + y[COORDINATES + X_WHEEL], y[COORDINATES + ring]],
         )
     }
@@ -168,7 +168,7 @@ impl Rolling<'_> {
         let (hub, velocity) = self.hub(t, y);
         let [height, growth, slope] = felt.at(hub[0]);
         let cosine = 1.0 / slope.hypot(1.0);
-        let deflection = a.static_tire_def + (height - y[self.corner.ring()]) * cosine;
+        let deflection = self.tread_at_rest() + (height - y[self.corner.ring()]) * cosine;
         let rate = (growth * velocity[0] - velocity[1]) * cosine;
         self.along(y, deflection, rate, [-slope * cosine, cosine])
     }
@@ -176,7 +176,7 @@ impl Rolling<'_> {
     /// Spring and damper along a direction; the road does not pull.
     fn along(&self, y: &State, deflection: f64, rate: f64, direction: [f64; 2]) -> Push {
         let a = self.corner.axle;
-        let spring = self.elastic(deflection.max(0.0)) + self.corner.tire_memory(y);
+        let spring = self.pressed(deflection.max(0.0)) + self.corner.tire_memory(y);
         let force = if deflection > 0.0 {
             (spring + a.c_tire * rate).max(0.0)
         } else {
@@ -203,7 +203,7 @@ impl Rolling<'_> {
         let d = deflection(a.r_tire, o.area);
         let width = 2.0 * (2.0 * a.r_tire * a.static_tire_def - a.static_tire_def.powi(2)).sqrt();
         let e = towards_centre(o.moment, o.area);
-        let spring = (self.elastic(d) + self.corner.tire_memory(y)).max(0.0);
+        let spring = (self.pressed(d) + self.corner.tire_memory(y)).max(0.0);
         let grow = a.c_tire * o.growth[0] / width;
         let shrink = (a.c_tire * o.shrinkage[0] / width).max(-spring);
         let eg = towards_centre([o.growth[1], o.growth[2]], o.growth[0].max(1e-12));
@@ -215,7 +215,23 @@ impl Rolling<'_> {
         }
     }
 
-    /// Static force over deflection: through zero and the static point with the rig's slope there.
+    /// Deflection of the tread under the static load, m: the sidewalls have the rest of the tyre's.
+    fn tread_at_rest(&self) -> f64 {
+        let a = self.corner.axle;
+        let sidewalls = self
+            .corner
+            .laws
+            .belt
+            .map_or(0.0, |belt| a.static_load() / belt.k_sidewall);
+        a.static_tire_def - sidewalls
+    }
+
+    /// Static force over the deflection of the tread, N.
+    fn pressed(&self, tread: f64) -> f64 {
+        self.elastic(self.corner.whole_tire(tread, |d| self.elastic(d.max(0.0))))
+    }
+
+    /// Static force over the deflection of the whole tyre: through zero and the static point with the rig's slope there.
     fn elastic(&self, d: f64) -> f64 {
         let a = self.corner.axle;
         let (f0, d0) = (a.static_load(), a.static_tire_def);
@@ -307,5 +323,48 @@ impl Track {
         self.body_x.push(a[X_BODY]);
         self.sf_x.push(a[X_SF]);
         self.pwt_x.push(a[X_PWT]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::axle::{Axle, Layout, Mount};
+    use crate::hidden::{Hidden, Laws};
+
+    /// A car whose tyre has a belt stands still before the cleat: its tread carries the static load from the first.
+    #[test]
+    fn a_tyre_with_a_belt_carries_its_load_before_the_cleat() {
+        let layout = Layout {
+            top_mount: true,
+            subframe: false,
+            powertrain: Mount::None,
+        };
+        let axle = Axle::draw(layout, 1);
+        let belt = [("m_belt", 7.0), ("k_sidewall", 700e3), ("c_sidewall", 200.0)];
+        let laws = Laws::of(&[Hidden::new("tire_belt", "tire", &belt)]);
+        let corner = Corner {
+            axle: &axle,
+            laws: &laws,
+        };
+        let road = Road::cleat(0.01);
+        let rolling = Rolling {
+            corner: &corner,
+            road: &road,
+            law: Law::Area,
+            speed: 5.0,
+            late: 0.0,
+            drag: 0.0,
+        };
+        let rest = rolling.tread_at_rest();
+        assert!((rest + axle.static_load() / 700e3 - axle.static_tire_def).abs() < 1e-12);
+        // Columns of the sum, beside the closed segment, are some thousandths of the load.
+        let above_load = rolling.push(0.1, &[0.0; STATES]).z;
+        assert!(above_load.abs() < 0.01 * axle.static_load(), "{above_load} N");
+        let mut lower = [0.0; STATES];
+        lower[rolling.corner.ring()] = -1e-4;
+        let slope = (rolling.push(0.1, &lower).z - above_load) / 1e-4;
+        let in_series = 1.0 / (1.0 / slope + 1.0 / 700e3);
+        assert!((in_series / axle.k_tire - 1.0).abs() < 0.03, "{in_series} N/m");
     }
 }
