@@ -153,24 +153,13 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     // What sweeps show beyond steady harmonics changes little with one effect more.
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
-    let begun = std::time::Instant::now();
     let prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
-    if std::env::var_os("QCAR_TELL").is_some() {
-        eprintln!("screen {:.2} s", begun.elapsed().as_secs_f64());
-        for p in prospects.iter().take(12) {
-            let c = &candidates[p.candidate];
-            eprintln!("   {:10.1} {} at {} {:?}", p.gain(), c.effect, c.at, c.form);
-        }
-    }
     let least = (candidates.len() as f64 / FALSE_ALARMS).ln();
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
     let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, least, progress);
-    if std::env::var_os("QCAR_TELL").is_some() {
-        eprintln!("race {:.2} s", begun.elapsed().as_secs_f64());
-    }
     let mut sets = Vec::new();
     for finalist in finalists {
         let candidate = &candidates[finalist.candidate];

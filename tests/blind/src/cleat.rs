@@ -145,7 +145,6 @@ impl Rolling<'_> {
 
     /// Where the middle of the wheel is, and how fast it moves.
     fn hub(&self, t: f64, y: &State) -> ([f64; 2], [f64; 2]) {
-        let a = self.corner.axle;
         let ring = self.corner.ring();
         (
             [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]],

@@ -145,21 +145,6 @@ pub fn race(
             .into_par_iter()
             .filter_map(|runner| run(runner, seen, round))
             .collect();
-        if std::env::var_os("QCAR_TELL").is_some() {
-            for r in field.iter() {
-                let c = &candidates[r.candidate];
-                let e = r.refit.as_ref().map_or(0, |r| r.evaluations);
-                eprintln!(
-                    "   round {number} {:10.1} gained {:9.1} {} {} at {} {:?}",
-                    r.evidence(),
-                    r.gained(),
-                    e,
-                    c.effect,
-                    c.at,
-                    c.form
-                );
-            }
-        }
         let last = number + 1 == ROUNDS.len();
         let (stay, left) = best(field, candidates, round, number > 0);
         field = stay;
