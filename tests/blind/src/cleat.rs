@@ -145,6 +145,7 @@ impl Rolling<'_> {
 
     /// Where the middle of the wheel is, and how fast it moves.
     fn hub(&self, t: f64, y: &State) -> ([f64; 2], [f64; 2]) {
+        let a = self.corner.axle;
         let ring = self.corner.ring();
         (
             [self.speed * t + y[X_WHEEL], a.r_tire - self.tread_at_rest() + y[ring]],
@@ -163,7 +164,6 @@ impl Rolling<'_> {
 
     /// The same across the effective plane (see [`crate::hardware::Cams`]).
     fn push_of_cams(&self, felt: &Felt, t: f64, y: &State) -> Push {
-        let a = self.corner.axle;
         let (hub, velocity) = self.hub(t, y);
         let [height, growth, slope] = felt.at(hub[0]);
         let cosine = 1.0 / slope.hypot(1.0);
