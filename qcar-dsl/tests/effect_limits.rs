@@ -232,7 +232,8 @@ fn same_rates(what: &str, without: &Running, with: &Running) -> Result<(), Strin
         let after = with.rates(&state, rolling);
         for (own, rate) in without.rates(&state, rolling) {
             let found = after.iter().find(|(other, _)| *other == own).unwrap().1;
-            if !((rate - found).abs() <= 1e-6 * (1.0 + rate.abs())) {
+            let apart = (rate - found).abs();
+            if apart.is_nan() || apart > 1e-6 * (1.0 + rate.abs()) {
                 return Err(format!("{what}: the rate of {own} is {found}, not {rate}"));
             }
         }

@@ -162,12 +162,11 @@ fn renamed(model: &Checked) -> Checked {
         ("powertrain_mount_x", "engine_rubber_x"),
     ];
     let mut text = String::new();
-    let mut words = model
+    let words = model
         .text()
-        .split_inclusive(|c: char| !(c.is_alphanumeric() || c == '_'))
-        .peekable();
+        .split_inclusive(|c: char| !(c.is_alphanumeric() || c == '_'));
     let mut before = String::new();
-    while let Some(piece) = words.next() {
+    for piece in words {
         let word = piece.trim_end_matches(|c: char| !(c.is_alphanumeric() || c == '_'));
         let is_link = before == "link";
         let other = |all: &[(&str, &'static str)]| all.iter().find(|(own, _)| *own == word).map(|(_, other)| *other);

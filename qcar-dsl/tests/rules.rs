@@ -263,7 +263,7 @@ fn one_mistake_is_told_once() {
                 channel over = a.acceleration / p.acceleration;
             }
         }";
-    assert_eq!(codes(&sound), [], "the model without a mistake");
+    assert_eq!(codes(sound), [], "the model without a mistake");
     let cases = [
         ("known param k: N/m", "known param k: N/mx", UnknownUnit),
         ("known param k: N/m", "known param kk: N/m", UnknownName),
