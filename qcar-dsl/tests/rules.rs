@@ -273,7 +273,7 @@ fn one_mistake_is_told_once() {
             DuplicateName,
         ),
         ("mass b = m;", "mass b = m; inertia b = j;", DuplicateName),
-        ("known param k:", "known parm k:", UnknownStatement),
+        ("known param k:", "known parm k:", Expected),
         ("let twice = 2*k;", "let twice = 2 + k;", UnitsDiffer),
         ("let twice = 2*k;", "let twice = sqrt(-1)*k;", NotFinite),
         ("let twice = 2*k;", "let double = 2*k;", UnknownName),
