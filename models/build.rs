@@ -1,5 +1,5 @@
-//! Compiles every file of `axles/` to a module, and lists them and the files of `effects/`. A new file in either folder
-//! needs no other change.
+//! Compiles every file of `axles/` to a module, and lists them and the files of `effects/` and `laws/`. A new file in any
+//! of these folders needs no other change.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -13,6 +13,7 @@ use qcar_dsl::source::Source;
 fn main() {
     println!("cargo::rerun-if-changed=axles");
     println!("cargo::rerun-if-changed=effects");
+    println!("cargo::rerun-if-changed=laws");
     let mut code = String::new();
     let mut entries = String::new();
     for file in files("axles") {
@@ -21,15 +22,17 @@ fn main() {
         entries += &entry;
     }
     write!(code, "\nstatic SHIPPED: &[Shipped] = &[\n{entries}];\n").expect("a string takes all");
-    let effects: String = files("effects").iter().filter_map(|file| effect(file)).collect();
-    write!(code, "\nstatic EFFECTS: &[ShippedEffect] = &[\n{effects}];\n").expect("a string takes all");
+    for (folder, list) in [("effects", "EFFECTS"), ("laws", "LAWS")] {
+        let effects: String = files(folder).iter().filter_map(|file| effect(file)).collect();
+        write!(code, "\nstatic {list}: &[ShippedEffect] = &[\n{effects}];\n").expect("a string takes all");
+    }
     let out = std::env::var_os("OUT_DIR").expect("cargo sets OUT_DIR");
     std::fs::write(Path::new(&out).join("models.rs"), code).expect("OUT_DIR can be written");
 }
 
 /// The files of a folder, by name.
 fn files(folder: &str) -> Vec<PathBuf> {
-    let folder = std::fs::read_dir(folder).expect("this package has folders of axles and effects");
+    let folder = std::fs::read_dir(folder).expect("this package has folders of axles, effects and laws");
     let paths = folder.filter_map(|entry| Some(entry.ok()?.path()));
     let mut files: Vec<PathBuf> = paths
         .filter(|path| path.extension().is_some_and(|e| e == "axle"))

@@ -16,10 +16,19 @@ use crate::files::read_text;
 /// # Errors
 /// None, as long as the build reads what it ships.
 pub fn all() -> Result<Vec<Patch>, Failure> {
-    models::effects()
-        .iter()
-        .map(|shipped| read(shipped.file, shipped.text))
-        .collect()
+    read_all(models::effects())
+}
+
+/// All shipped laws that name no cause, by name.
+///
+/// # Errors
+/// None, as long as the build reads what it ships.
+pub fn laws() -> Result<Vec<Patch>, Failure> {
+    read_all(models::laws())
+}
+
+fn read_all(shipped: &[models::ShippedEffect]) -> Result<Vec<Patch>, Failure> {
+    shipped.iter().map(|own| read(own.file, own.text)).collect()
 }
 
 /// The effect of a name or path, in the form of a name or else in all.
@@ -53,7 +62,8 @@ pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
 }
 
 fn shipped(name: &str) -> Option<&'static models::ShippedEffect> {
-    models::effects().iter().find(|shipped| shipped.name == name)
+    let mut all = models::effects().iter().chain(models::laws());
+    all.find(|shipped| shipped.name == name)
 }
 
 fn holds_effect(name: &str, text: &str) -> bool {

@@ -17,18 +17,26 @@ use rayon::prelude::*;
 use crate::evaluated::Evaluated;
 use crate::scales::scales;
 
+/// What may be missing in a model.
+pub struct Catalogue {
+    /// The effects.
+    pub effects: Vec<Patch>,
+    /// Laws that name no cause.
+    pub laws: Vec<Patch>,
+}
+
 /// A model on the bench, and the catalogue beside it.
 #[derive(Clone)]
 pub struct Bench {
     model: Checked,
     running: Arc<Evaluated>,
-    catalogue: Arc<Vec<Patch>>,
+    catalogue: Arc<Catalogue>,
     values: Arc<BTreeMap<String, f64>>,
 }
 
 impl Bench {
     /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
-    pub fn new(model: Checked, catalogue: Arc<Vec<Patch>>, values: Arc<BTreeMap<String, f64>>) -> Self {
+    pub fn new(model: Checked, catalogue: Arc<Catalogue>, values: Arc<BTreeMap<String, f64>>) -> Self {
         Bench {
             running: Arc::new(Evaluated::new(&derive(model.clone()))),
             model,
@@ -57,9 +65,23 @@ impl Bench {
         Bench::new(model, Arc::clone(&self.catalogue), Arc::clone(&self.values))
     }
 
+    /// The effect or law of a name.
+    pub fn patch(&self, name: &str) -> Option<&Patch> {
+        let Catalogue { effects, laws } = &*self.catalogue;
+        let mut all = effects.iter().chain(laws);
+        all.find(|patch| patch.effect().name.text == name)
+    }
+
+    fn candidates_of(&self, patches: &[Patch]) -> Vec<Candidate> {
+        let values = |name: &str| self.values.get(name).copied();
+        let patched = patches.par_iter();
+        let patched = patched.flat_map_iter(|patch| told_apart(patch.candidates(&self.model, &values)));
+        patched.flat_map_iter(candidates).collect()
+    }
+
     /// The model with an effect in it, in one of its forms where it has several; `None` where that does not apply.
     pub fn patched(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Patched> {
-        let patch = self.catalogue.iter().find(|patch| patch.effect().name.text == effect)?;
+        let patch = self.patch(effect)?;
         let chosen = form.and_then(|form| patch.in_form(form));
         chosen
             .as_ref()
@@ -75,10 +97,11 @@ impl Workshop for Bench {
     }
 
     fn candidates(&self) -> Vec<Candidate> {
-        let values = |name: &str| self.values.get(name).copied();
-        let patched = self.catalogue.par_iter();
-        let patched = patched.flat_map_iter(|patch| told_apart(patch.candidates(&self.model, &values)));
-        patched.flat_map_iter(candidates).collect()
+        self.candidates_of(&self.catalogue.effects)
+    }
+
+    fn laws(&self) -> Vec<Candidate> {
+        self.candidates_of(&self.catalogue.laws)
     }
 
     fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>> {

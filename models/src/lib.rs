@@ -1,5 +1,5 @@
 //! The axle models that qcar ships, compiled: a module for each file of `axles/`, and a list of them. And the texts of the
-//! effects that may be missing in a model: the files of `effects/`.
+//! effects that may be missing in a model: the files of `effects/`, and, of no cause in particular, those of `laws/`.
 
 use qcar_runtime::model::Model;
 
@@ -44,4 +44,10 @@ pub struct ShippedEffect {
 /// All effects, by name.
 pub fn effects() -> &'static [ShippedEffect] {
     EFFECTS
+}
+
+/// All laws that name no cause, by name: curves of travel, speed or frequency whose coefficients are free, for where no
+/// effect explains what a model leaves.
+pub fn laws() -> &'static [ShippedEffect] {
+    LAWS
 }

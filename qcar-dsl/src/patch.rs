@@ -27,6 +27,8 @@ mod bind;
 // Its changes.
 mod apply;
 mod tidy;
+// Its curves.
+mod curve;
 // Its numbers.
 mod start;
 // What it must say.
@@ -35,6 +37,7 @@ mod rules;
 pub use ask::Values;
 pub(crate) use base::Base;
 use bind::Bindings;
+pub use curve::{Curve, Ordinate};
 use place::Place;
 use roles::Roles;
 pub use scale::Scale;
@@ -45,7 +48,7 @@ use crate::check::Checked;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::check_text;
 use crate::source::Source;
-use crate::syntax::{Effect, Name};
+use crate::syntax::{Effect, File, Item, Name};
 use crate::units::Unit;
 
 /// Why something cannot be made.
@@ -161,6 +164,19 @@ impl Patch {
         let mut patch = self.clone();
         patch.effect.forms = vec![form.clone()];
         Some(patch)
+    }
+
+    /// The curves of its usual form whose points are numbers or parameters, in the order of its text.
+    pub fn curves(&self) -> Vec<Curve> {
+        curve::curves(&self.effect)
+    }
+
+    /// The effect as a file in which these parameters start at numbers, whatever model it is put into.
+    pub fn text_at(&self, parameters: &[NewParameter]) -> String {
+        let mut effect = self.effect.clone();
+        start::begin(&mut effect, parameters);
+        let items = vec![Item::Effect(Box::new(effect))];
+        File { items }.to_string()
     }
 
     /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.

@@ -7,8 +7,6 @@ use std::time::Instant;
 
 use clap::Args;
 use qcar_dsl::check::Checked;
-use qcar_dsl::patch::Patch;
-use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
@@ -18,19 +16,23 @@ use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 
-use crate::catalogue;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
 use crate::parameters::{bound, check_campaign, own};
 use crate::progress::Showing;
 use crate::verbs::{Format, kc};
-use crate::workshop::Bench;
+use crate::workshop::{Bench, Catalogue};
+use crate::{catalogue, effects};
 
 // Where something would explain the gap.
 pub(crate) mod places;
 // What a model leaves of each sensor.
 mod left;
+// The law that was learned where no effect explains the gap.
+pub(crate) mod law;
+// What was learned, as text and JSON.
+mod learned;
 // The answer as text and JSON.
 pub(crate) mod render;
 // The gap as a figure.
@@ -78,6 +80,8 @@ pub(crate) struct Answer {
     pub units: Vec<BTreeMap<String, String>>,
     /// The model with it; `None` where nothing of the model is missing.
     pub model: Option<Written>,
+    /// The laws that were learned where no effect explains the gap, and the model with them.
+    pub learned: Option<law::LearnedModel>,
     /// Time for all of it.
     pub seconds: f64,
 }
@@ -94,6 +98,16 @@ pub(crate) struct Written {
     pub text: String,
     /// Where that was written.
     pub file: Option<PathBuf>,
+}
+
+impl Written {
+    /// Writes the model file, and notes where.
+    fn write(&mut self, folder: &Path) -> Result<(), Failure> {
+        let name = format!("{}.axle", self.name);
+        put(folder, &name, &self.text)?;
+        self.file = Some(folder.join(name));
+        Ok(())
+    }
 }
 
 /// Does it.
@@ -157,6 +171,7 @@ pub(crate) fn answer(
         base: bench.checked().clone(),
         sweeps,
         units: units(bench.clone(), &discovery),
+        learned: (discovery.learned.as_ref()).and_then(|learned| law::learned_model(bench.clone(), learned)),
         model: found(bench, &discovery),
         campaign: campaign.name.clone(),
         evidence,
@@ -176,19 +191,15 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
 /// The campaign's model beside the catalogue.
 fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
     let compiled = catalogue::compiled_of_campaign(campaign, model)?;
-    let effects = models::effects().iter().map(|effect| {
-        Patch::read(Source {
-            name: effect.file.into(),
-            text: effect.text.into(),
-        })
-    });
-    let effects: Result<Vec<Patch>, _> = effects.collect();
-    let effects = effects.map_err(|report| Failure::Input(report.to_string()))?;
+    let shipped = Catalogue {
+        effects: effects::all()?,
+        laws: effects::laws()?,
+    };
     let vehicle = campaign.vehicle.iter().cloned();
     let values: BTreeMap<String, f64> = vehicle
         .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
         .collect();
-    Ok(Bench::new(compiled.model, Arc::new(effects), Arc::new(values)))
+    Ok(Bench::new(compiled.model, Arc::new(shipped), Arc::new(values)))
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
@@ -261,9 +272,10 @@ fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written>
 /// A folder that cannot be written to.
 pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
     if let Some(model) = &mut answer.model {
-        let name = format!("{}.axle", model.name);
-        put(folder, &name, &model.text)?;
-        model.file = Some(folder.join(name));
+        model.write(folder)?;
+    }
+    if let Some(learned) = &mut answer.learned {
+        learned.write(folder)?;
     }
     let (campaign, discovery) = (&answer.campaign, &answer.discovery);
     let best = discovery.told_apart().1.first();

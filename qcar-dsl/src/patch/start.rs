@@ -5,13 +5,14 @@ use std::collections::BTreeMap;
 
 use super::ask::{Values, question, value, with_questions};
 use super::base::Base;
-use super::rewrite::names_in;
+use super::rewrite::{made, names_in};
 use super::scale::Scale;
 use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
 use crate::model::Model;
 use crate::syntax::{
-    EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role, Statement, VanishesAt,
+    Change, Effect, EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role,
+    Statement, VanishesAt,
 };
 use crate::units::Unit;
 
@@ -230,5 +231,18 @@ fn number(e: &Expression, value: f64) -> Number {
             digits: format!("{value}"),
             ..Number::new(value)
         },
+    }
+}
+
+/// Sets where parameters start, and their ranges, to numbers in SI; others stay as they are.
+pub fn begin(effect: &mut Effect, values: &[NewParameter]) {
+    for change in &mut effect.body {
+        let Change::Parameter(declared) = change else { continue };
+        if let Some(own) = values.iter().find(|own| own.effect_name == declared.name.text) {
+            // A plain number is in the declared unit, which is a coherent one.
+            let plain = |value: f64| made(ExpressionKind::Number(Number::new(value)));
+            declared.start = plain(own.start);
+            declared.range = (plain(own.range.0), plain(own.range.1));
+        }
     }
 }

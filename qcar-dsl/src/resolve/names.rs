@@ -179,6 +179,9 @@ impl Resolver<'_> {
         if !locals.closed && self.names.unknown.contains(&in_model) {
             return Reported;
         }
+        if let Some((_, Thing::Broken)) = self.names.find(name, "") {
+            return Reported;
+        }
         let mistake = if let Some((_, global)) = global {
             mistakes::element_is_closed(span, &text, &self.unit_of(global))
         } else if text == "s" || text == "v" {
@@ -243,6 +246,8 @@ impl Resolver<'_> {
             Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
             None => match self.names.off.get(&last) {
                 Some(options) => mistakes::switched_off(span, &last, options),
+                // A factor of a stretch is told as a value that the model lacks.
+                None if self.names.unknown.contains(&(String::new(), last.clone())) => return Reported,
                 None if !self.names.unknown.insert((home.to_string(), last)) => return Reported,
                 None => self.unknown(name, direction),
             },

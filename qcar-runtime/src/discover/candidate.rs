@@ -98,6 +98,10 @@ pub trait Workshop: Send + Sync {
     /// Every effect at every place where it applies, in each form.
     fn candidates(&self) -> Vec<Candidate>;
 
-    /// The same with an effect in the model; `None` for one of a sensor, which changes no model.
+    /// Every law that names no cause, a curve of travel, speed or frequency whose coefficients are free, at every place
+    /// where it applies.
+    fn laws(&self) -> Vec<Candidate>;
+
+    /// The same with an effect or such a law in the model; `None` for one of a sensor, which changes no model.
     fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>>;
 }

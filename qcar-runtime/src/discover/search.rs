@@ -110,6 +110,18 @@ pub struct Discovery {
     pub after: Explanation,
     /// Where nothing is missing: which effects would have been seen.
     pub visible: Vec<Visible>,
+    /// Where no effect of the catalogue explains the gap: what the law would be that does.
+    pub learned: Option<Learned>,
+}
+
+/// Laws that name no cause, fitted to what the model leaves.
+pub struct Learned {
+    /// Each with its place and coefficients.
+    pub laws: Vec<Finding>,
+    /// Share of the excess gap of the runs that judge that they close.
+    pub explained: f64,
+    /// The explanation with them.
+    pub explanation: Explanation,
 }
 
 impl Discovery {
@@ -168,6 +180,7 @@ pub fn discover(
             Verdict::None => visible(&base, &judge, evidence),
             _ => Vec::new(),
         },
+        learned: None,
         verdict,
         probability: None,
         candidates: Vec::new(),

@@ -6,6 +6,8 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
+// what law is missing where the catalogue has none,
+mod learn;
 // how probable each set is,
 mod verdict;
 // and which effects would have been seen.
@@ -13,8 +15,8 @@ mod visible;
 
 use std::sync::Arc;
 
-use assembly::{Assembly, Place, Placed};
-use race::{Fidelity, race};
+use assembly::{Assembly, Hypothesis, Place, Placed};
+use race::{Fidelity, entrants, race};
 use screen::screen;
 use verdict::{Set, judged};
 use visible::visible;
@@ -22,9 +24,10 @@ use visible::visible;
 use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
-use super::explain::Setting;
+use super::explain::{Explanation, Setting};
 use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
+use super::refit::Refit;
 use super::search::{Discovery, News, Progress, Verdict, told};
 use crate::campaign::Role;
 
@@ -61,7 +64,12 @@ pub fn discover(
     let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress)?;
     sets.extend(without);
     let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
+    let alone = sets[0].clone();
     let mut discovery = judged(sets, evidence);
+    if discovery.verdict == Verdict::Unknown {
+        let learned = learn::learn(&alone, evidence, progress);
+        discovery.learned = learned.map(|learned| learn::told(&alone, learned, evidence));
+    }
     if discovery.verdict == Verdict::None {
         let steady = evidence.less(&refit.unsteady).hurried();
         discovery.visible = visible(&assembly, &refit, &looks(&steady).fine);
@@ -117,7 +125,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
             Err(_) => {}
         }
     }
-    let order = |a: &super::Refit, b: &super::Refit| a.log_evidence.total_cmp(&b.log_evidence);
+    let order = |a: &Refit, b: &Refit| a.log_evidence.total_cmp(&b.log_evidence);
     let best = fitted.into_iter().max_by(order).ok_or(PredictError::NoNumber)?;
     let medium = hypothesis.fit(&hypothesis.place(&best), &looks.medium, BASE[1])?;
     let fine = hypothesis.fit(&hypothesis.place(&medium), &looks.fine, BASE[2])?;
@@ -159,14 +167,15 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
-    let (finalists, dropped) = race(&set.assembly, &candidates, &prospects, &looks, least, progress);
+    let entering = entrants(&candidates, &prospects, least);
+    let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
     let mut sets = Vec::new();
     for finalist in finalists {
         let candidate = &candidates[finalist.candidate];
         let Some(hypothesis) = set.assembly.hypothesis_with(candidate) else {
             continue;
         };
-        let Ok(explanation) = hypothesis.explanation(finalist.refit, evidence) else {
+        let Some(explanation) = explained(&hypothesis, finalist.refit, evidence) else {
             continue;
         };
         let Some(assembly) = set.assembly.with(candidate) else {
@@ -188,6 +197,12 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
             .collect();
     }
     Ok(sets)
+}
+
+/// What a fit says of all runs; `None` where that, or its evidence, is no number.
+fn explained(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
+    let explanation = hypothesis.explanation(refit, evidence).ok()?;
+    explanation.refit.log_evidence.is_finite().then_some(explanation)
 }
 
 /// Dropped candidates that are told of.
@@ -229,7 +244,7 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         let Ok(refit) = hypothesis.fit(&from, &steady, (2, 15)) else {
             continue;
         };
-        let Ok(explanation) = hypothesis.explanation(refit, evidence) else {
+        let Some(explanation) = explained(&hypothesis, refit, evidence) else {
             continue;
         };
         let share = set.log_prior * others.len() as f64 / effects.len() as f64;

@@ -12,6 +12,7 @@ use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
 use super::Answer;
+use super::learned;
 use super::left::{Left, left};
 use super::places::{self, Missing};
 use crate::json::{self, Ordered};
@@ -31,6 +32,7 @@ pub(crate) struct Result<'a> {
     r#where: Vec<Where>,
     places: Vec<Missing>,
     visible: Vec<Seen<'a>>,
+    learned: Option<learned::Learned<'a>>,
     gap: Gaps,
     by_channel: Ordered<BeforeAfter>,
     offsets: Vec<Offset>,
@@ -104,13 +106,13 @@ struct Gaps {
 
 /// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
 #[derive(Serialize)]
-struct BeforeAfter {
+pub(super) struct BeforeAfter {
     before: Option<f64>,
     after: Option<f64>,
 }
 
 impl BeforeAfter {
-    fn new(before: f64, after: f64) -> Self {
+    pub(super) fn new(before: f64, after: f64) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         BeforeAfter {
             before: finite(before),
@@ -144,6 +146,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
         visible: of.discovery.visible.iter().map(seen).collect(),
+        learned: learned::learned(of),
         gap: Gaps {
             fit: BeforeAfter::new(before.fit, after.fit),
             held_out: BeforeAfter::new(before.held_out, after.held_out),
@@ -340,6 +343,7 @@ pub(super) fn text(of: &Answer) -> String {
         out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
         out += &missing(of).first().map_or_else(String::new, acts);
     }
+    out += &learned::text(of);
     if !of.discovery.visible.is_empty() {
         out += &format!(
             "\nwhat would have been seen: its trace over the least that earns a name\n{}",
@@ -411,7 +415,7 @@ fn listed(findings: &[Finding]) -> String {
     names.collect::<Vec<_>>().join(" and ")
 }
 
-fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
+pub(super) fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
     let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
     for (name, value, error) in &finding.parameters {
         let error = or_dash(Some(*error).filter(|error| error.is_finite()), 2);

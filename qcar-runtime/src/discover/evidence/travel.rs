@@ -24,6 +24,8 @@ const VALUES: usize = 24;
 const COVERED: f64 = 0.94;
 /// A value needs so many samples of each direction.
 const FEWEST: usize = 4;
+/// A curve has at least so many values, or else its shape cannot be seen.
+const FEWEST_VALUES: usize = 5;
 /// The direction of travel is that over so many parts of the curve before and behind a sample.
 const DIRECTION_PARTS: usize = 100;
 /// Of the largest force: how straight a load cell is.
@@ -130,10 +132,12 @@ impl Loop {
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
                 (low.min(*x), high.max(*x))
             });
-        let width = COVERED * (high - low) / VALUES as f64;
+        // A curve of few samples has fewer values, each of enough of them.
+        let values = (displacement.len() / (2 * (FEWEST + 1))).clamp(FEWEST_VALUES, VALUES);
+        let width = COVERED * (high - low) / values as f64;
         let first = low + (1.0 - COVERED) * (high - low) / 2.0;
         let (mut at, mut ways) = (Vec::new(), Vec::new());
-        for value in 0..VALUES {
+        for value in 0..values {
             let middle = first + (value as f64 + 0.5) * width;
             let both = [1.0, -1.0].map(|way| {
                 let inside =
@@ -148,7 +152,7 @@ impl Loop {
         }
         let most = force.iter().fold(0.0, |most: f64, f| f.abs().max(most));
         let ends = [low, high];
-        (at.len() > VALUES / 2).then_some(Self { ends, at, ways, most })
+        (at.len() > values / 2).then_some(Self { ends, at, ways, most })
     }
 
     /// The middle, or half the width, which may be off by `common` N alike at every travel. That is spread over the

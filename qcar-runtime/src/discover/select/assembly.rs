@@ -99,11 +99,21 @@ impl Assembly {
 
     /// Every effect at every place of it.
     pub fn candidates(&self) -> Vec<Candidate> {
+        self.new(self.workshop.candidates())
+    }
+
+    /// Every law that names no cause, at every place of it.
+    pub fn laws(&self) -> Vec<Candidate> {
+        self.new(self.workshop.laws())
+    }
+
+    /// Those that it does not have.
+    fn new(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
         let is_new = |candidate: &Candidate| {
             let is_there = |own: &Placed| own.effect == candidate.effect && own.at == candidate.at;
             !self.effects.iter().any(is_there)
         };
-        self.workshop.candidates().into_iter().filter(is_new).collect()
+        candidates.into_iter().filter(is_new).collect()
     }
 
     /// The assembly itself.

@@ -108,16 +108,14 @@ impl Runner<'_> {
     }
 }
 
-/// The best candidates, the very best first, fitted to all runs; and the others.
+/// The best of the candidates that enter, the very best first, fitted to all runs; and the others.
 pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
-    prospects: &[Prospect],
+    entering: &[&Prospect],
     looks: &Fidelity,
-    least: f64,
     progress: Progress<'_>,
 ) -> (Vec<Finalist>, Vec<Dropped>) {
-    let entering = entrants(candidates, prospects, least);
     let hypotheses: Vec<Option<Hypothesis<'_>>> = entering
         .iter()
         .map(|own| assembly.hypothesis_with(&candidates[own.candidate]))
@@ -162,7 +160,7 @@ pub fn race(
 }
 
 /// The prospects that gain most, and the best of each place that gains more than `least`.
-fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: f64) -> Vec<&'p Prospect> {
+pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: f64) -> Vec<&'p Prospect> {
     let mut places: Vec<&str> = Vec::new();
     let enters = |(rank, prospect): &(usize, &Prospect)| {
         let at = candidates[prospect.candidate].at.as_str();

@@ -9,6 +9,7 @@ use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY, EXPLAINED};
 use crate::discover::search::{Discovery, Finding, Probable, Rival, Verdict};
 
 /// A set of effects with its fit.
+#[derive(Clone)]
 pub struct Set {
     /// The model with them.
     pub assembly: Assembly,
@@ -182,6 +183,7 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
         before,
         after,
         visible: Vec::new(),
+        learned: None,
     }
 }
 
@@ -304,7 +306,7 @@ fn log_score(set: &Set, evidence: &Evidence) -> f64 {
 }
 
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.
-fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
+pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let excess = |own: &Explanation| {
         let gap = if held_out { own.gap.held_out } else { own.gap.fit };

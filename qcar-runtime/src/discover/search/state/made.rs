@@ -163,6 +163,10 @@ impl Workshop for Levers {
         vec![candidate("ratio", 1), gain]
     }
 
+    fn laws(&self) -> Vec<Candidate> {
+        Vec::new()
+    }
+
     fn with(&self, _: &str, _: &str, _: Option<&str>) -> Option<Box<dyn Workshop>> {
         None
     }

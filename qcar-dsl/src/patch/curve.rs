@@ -1,0 +1,91 @@
+//! The curves of an effect: the tables in its laws, and which of its parameters are points of them.
+
+use crate::syntax::{Change, Effect, Expression, ExpressionKind, LawStatement, Operator, Table};
+
+/// A table in a law.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// What it is over: `s` or `v`, or another name of the law.
+    pub over: String,
+    /// The parameter that its abscissae are parts of; `None` where they are in the unit of what it is over.
+    pub scale: Option<String>,
+    /// Abscissae and ordinates.
+    pub points: Vec<(f64, Ordinate)>,
+}
+
+/// An ordinate of a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ordinate {
+    /// It is given.
+    Number(f64),
+    /// A parameter of the effect, by its name there.
+    Parameter(String),
+}
+
+/// The curves of an effect in its usual form, in the order of its text; those of a tyre that rolls are left out.
+pub fn curves(effect: &Effect) -> Vec<Curve> {
+    let laws = effect.changes().flat_map(|change| match change {
+        Change::Add(_, law) | Change::ReplaceTerm(_, _, law) => law.as_slice(),
+        _ => &[],
+    });
+    let mut found = Vec::new();
+    for statement in laws {
+        if let LawStatement::Force(force) | LawStatement::Rate(_, force) = statement {
+            tables(force, &mut |table| found.extend(curve(table)));
+        }
+    }
+    found
+}
+
+fn tables(of: &Expression, told: &mut dyn FnMut(&Table)) {
+    match &of.kind {
+        ExpressionKind::Table(table) => told(table),
+        ExpressionKind::Negative(a) => tables(a, told),
+        ExpressionKind::Binary(_, a, b) | ExpressionKind::If(_, a, b) => {
+            tables(a, told);
+            tables(b, told);
+        }
+        ExpressionKind::Call(_, arguments) => arguments.iter().for_each(|argument| tables(argument, told)),
+        ExpressionKind::Number(_) | ExpressionKind::Name(_) => {}
+    }
+}
+
+/// `None` where an abscissa or ordinate is more than a number or a name.
+fn curve(table: &Table) -> Option<Curve> {
+    let (over, scale) = match &table.x.kind {
+        ExpressionKind::Binary(Operator::Divide, of, by) => (of, Some(name(by)?)),
+        _ => (&Box::new(table.x.clone()), None),
+    };
+    let (sign, over) = match &over.kind {
+        ExpressionKind::Negative(inner) => (-1.0, name(inner)?),
+        _ => (1.0, name(over)?),
+    };
+    let both = table.knots.entries.iter().zip(&table.values.entries);
+    let mut points = both
+        .map(|(x, y)| Some((sign * number(x)?, ordinate(y)?)))
+        .collect::<Option<Vec<_>>>()?;
+    points.sort_by(|a, b| a.0.total_cmp(&b.0));
+    Some(Curve { over, scale, points })
+}
+
+fn ordinate(e: &Expression) -> Option<Ordinate> {
+    number(e)
+        .map(Ordinate::Number)
+        .or_else(|| name(e).map(Ordinate::Parameter))
+}
+
+fn name(e: &Expression) -> Option<String> {
+    match &e.kind {
+        ExpressionKind::Name(name) if name.names.len() == 1 => Some(name.names[0].text.clone()),
+        _ => None,
+    }
+}
+
+/// In SI.
+fn number(e: &Expression) -> Option<f64> {
+    match &e.kind {
+        ExpressionKind::Number(number) => Some(number.value),
+        ExpressionKind::Negative(inner) => number(inner).map(|value| -value),
+        _ => None,
+    }
+}

@@ -1,0 +1,81 @@
+//! A law where the catalogue has none: free curves, held against the data at every place like the effects of the
+//! catalogue, and paying for each of their coefficients.
+
+use super::assembly::Placed;
+use super::race::{Finalist, race};
+use super::screen::Prospect;
+use super::verdict::{Set, closed};
+use super::{News, Progress, explained, looks};
+use crate::discover::evidence::Evidence;
+use crate::discover::numbers::EXPLAINED;
+use crate::discover::search::{Finding, Learned};
+
+/// Laws that act at once: one of the travel and one of the speed, say.
+const MOST_LAWS: usize = 2;
+
+/// The laws that the evidence wants beside a set; `None` where it wants none.
+pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+    let mut best: Option<Set> = None;
+    for _ in 0..MOST_LAWS {
+        let from = best.as_ref().unwrap_or(base);
+        let enough = closed(&base.explanation, &from.explanation, evidence) >= EXPLAINED;
+        let Some(more) = (!enough).then(|| with_law(from, evidence, progress)).flatten() else {
+            break;
+        };
+        if more.log_posterior() <= from.log_posterior() {
+            break;
+        }
+        best = Some(more);
+    }
+    best
+}
+
+/// The most probable law at the most probable place beside a set.
+fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+    let laws = set.assembly.laws();
+    progress(News::Doing(&format!("learning a law at {} places", laws.len())));
+    let refit = &set.explanation.refit;
+    let here = set.assembly.hypothesis().place(refit);
+    // At its start no law changes much: nothing is known yet that one of them could be dropped by.
+    let start = |candidate: usize| Prospect {
+        candidate,
+        starts: vec![(here.clone(), 0.0)],
+    };
+    let all: Vec<Prospect> = (0..laws.len()).map(start).collect();
+    let steady = evidence.less(&refit.unsteady).hurried();
+    let (finalists, _) = race(
+        &set.assembly,
+        &laws,
+        &all.iter().collect::<Vec<_>>(),
+        &looks(&steady),
+        progress,
+    );
+    let prior = set.log_prior - (laws.len() as f64).ln();
+    let fitted = finalists.into_iter().filter_map(|Finalist { candidate, refit }| {
+        let candidate = &laws[candidate];
+        let hypothesis = set.assembly.hypothesis_with(candidate)?;
+        let explanation = explained(&hypothesis, refit, evidence)?;
+        Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
+    });
+    fitted.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
+}
+
+/// What is told of the laws that were learned.
+pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
+    let explained = closed(&base.explanation, &learned.explanation, evidence);
+    let laws = learned.assembly.effects().iter();
+    let law = |own: &Placed| Finding {
+        effect: own.effect.clone(),
+        at: own.at.clone(),
+        form: own.form.clone(),
+        parameters: own.taken.parameters(&learned.explanation),
+        evidence: learned.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
+        closed: explained,
+        rivals: Vec::new(),
+    };
+    Learned {
+        laws: laws.skip(base.assembly.effects().len()).map(law).collect(),
+        explained,
+        explanation: learned.explanation,
+    }
+}

@@ -1,0 +1,93 @@
+//! The law that was learned, as text for people and as JSON for programs.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use qcar_runtime::discover::search::Finding;
+use serde::Serialize;
+
+use super::Answer;
+use super::law::Law;
+use super::render::{BeforeAfter, described};
+use crate::json::Ordered;
+
+/// Laws that close the gap where no effect of the catalogue does.
+#[derive(Serialize)]
+pub(super) struct Learned<'a> {
+    /// The place of the first of them.
+    at: &'a str,
+    /// Share of the excess gap of the runs that judge that all of them close.
+    explained: f64,
+    gap: BTreeMap<&'static str, BeforeAfter>,
+    laws: Vec<One<'a>>,
+    model_file: Option<String>,
+}
+
+#[derive(Serialize)]
+struct One<'a> {
+    name: &'a str,
+    at: &'a str,
+    words: &'a str,
+    parameters: Ordered<f64>,
+    stderr: Ordered<Option<f64>>,
+    units: &'a BTreeMap<String, String>,
+    effect_file: Option<String>,
+}
+
+/// `None` where none was needed, or none helps.
+pub(super) fn learned(of: &Answer) -> Option<Learned<'_>> {
+    let (own, model) = (of.discovery.learned.as_ref()?, of.learned.as_ref()?);
+    let (before, after) = (&of.discovery.before.gap, &own.explanation.gap);
+    Some(Learned {
+        at: &own.laws.first()?.at,
+        explained: own.explained,
+        gap: BTreeMap::from([
+            ("fit", BeforeAfter::new(before.fit, after.fit)),
+            ("held_out", BeforeAfter::new(before.held_out, after.held_out)),
+        ]),
+        laws: own.laws.iter().zip(&model.laws).map(one).collect(),
+        model_file: model.model.file.as_ref().map(|file| file.display().to_string()),
+    })
+}
+
+fn one<'a>((finding, law): (&'a Finding, &'a Law)) -> One<'a> {
+    let parameters = finding.parameters.iter();
+    let error = |error: f64| error.is_finite().then_some(error);
+    One {
+        name: &finding.effect,
+        at: &finding.at,
+        words: &law.words,
+        parameters: parameters.clone().map(|p| (p.0.clone(), p.1)).collect(),
+        stderr: parameters.map(|p| (p.0.clone(), error(p.2))).collect(),
+        units: &law.units,
+        effect_file: law.file.as_ref().map(|file| file.display().to_string()),
+    }
+}
+
+/// What was learned; nothing where nothing was.
+pub(super) fn text(of: &Answer) -> String {
+    let (Some(own), Some(model)) = (&of.discovery.learned, &of.learned) else {
+        return String::new();
+    };
+    let places: Vec<String> = own.laws.iter().map(|law| format!("at {}", law.at)).collect();
+    let mut out = format!(
+        "\nlearned from the data, without a cause: {} closes {:.1} % of the gap\n",
+        if places.len() == 1 {
+            format!("a law {}", places[0])
+        } else {
+            format!("laws {}", places.join(" and "))
+        },
+        100.0 * own.explained
+    );
+    for (finding, law) in own.laws.iter().zip(&model.laws) {
+        let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, law.words);
+        out += &described(finding, &law.units);
+        if let Some(file) = &law.file {
+            let _ = writeln!(out, "as an effect: {}", file.display());
+        }
+    }
+    if let Some(file) = &model.model.file {
+        let _ = writeln!(out, "the model with it: {}", file.display());
+    }
+    out
+}
