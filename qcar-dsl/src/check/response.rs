@@ -14,9 +14,6 @@ const PLAIN: [f64; 6] = [0.3, 0.7, 1.1, 1.9, 3.1, 5.3];
 /// Angular frequencies for declared values, rad/s.
 const DECLARED: [f64; 6] = [5.0, 11.0, 23.0, 47.0, 80.0, 160.0];
 
-/// How many motions a nonlinear model is seen in.
-const MOTIONS: u64 = 4;
-
 /// Responses below this part of the largest are roundoff.
 const ROUNDOFF: f64 = 1e-12;
 
@@ -38,10 +35,10 @@ impl Seen {
 }
 
 /// Everything that can be seen of a model at one parameter set: responses of outputs and channels to each input, and
-/// for laws that are not linear the change of the force itself, in several motions.
-pub fn sensitivities(scratch: &Scratch, point: Point, estimated: &[u16]) -> Vec<Seen> {
+/// for laws that are not linear the change of the force itself, in so many motions.
+pub fn sensitivities(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Vec<Seen> {
     let motions = if scratch.slopes.iter().any(|slopes| slopes.nonlinear) {
-        MOTIONS
+        motions
     } else {
         1
     };

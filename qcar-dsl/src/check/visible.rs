@@ -11,6 +11,11 @@ use crate::diagnostic::{Diagnostic, visibility};
 use crate::expr::{Expr, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
+/// How many motions a nonlinear model is seen in at first, and where that leaves something unseen: each piece of a curve
+/// is met by few motions.
+const FEW_MOTIONS: u64 = 4;
+const MANY_MOTIONS: u64 = 64;
+
 /// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
 struct Set {
     parameters: Vec<f64>,
@@ -31,14 +36,15 @@ pub struct Unseen {
 /// a response, but cannot be fitted.
 pub fn parameters_are_seen(scratch: &Scratch) -> Vec<(Unseen, Diagnostic)> {
     let estimated = estimated(scratch);
-    let set = |kind, seed| set(scratch, Point::new(scratch.model, kind, seed), &estimated);
-    let first = set(Kind::Plain, 1);
+    let set = |kind, seed, motions| set(scratch, Point::new(scratch.model, kind, seed), motions, &estimated);
+    let first = set(Kind::Plain, 1, FEW_MOTIONS);
     let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
     if hidden.is_empty() || first.rows.is_empty() {
         return vec![];
     }
     // What one set does not see, the others must not see either: a law may be out of its range there.
-    let sets: Vec<Set> = [first, set(Kind::Plain, 2), set(Kind::Declared, 3)].into();
+    let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS));
+    let sets: Vec<Set> = [first].into_iter().chain(others).collect();
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
     let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
     let groups = merged(groups.collect());
@@ -86,12 +92,12 @@ fn constant_forces(scratch: &Scratch) -> BTreeSet<Symbol> {
     contents.filter(is_constant).flatten().collect()
 }
 
-fn set(scratch: &Scratch, point: Point, estimated: &[u16]) -> Set {
+fn set(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Set {
     let parameters: Vec<f64> = estimated
         .iter()
         .map(|&index| point.leaf(Symbol::Parameter(index)))
         .collect();
-    let rows: Vec<Vec<f64>> = sensitivities(scratch, point, estimated)
+    let rows: Vec<Vec<f64>> = sensitivities(scratch, point, motions, estimated)
         .into_iter()
         .flat_map(|Seen { value, gradient }| {
             let relative = |part: fn(&super::dual::Complex) -> f64| -> Vec<f64> {

@@ -18,8 +18,8 @@ pub struct Curve {
 pub enum Ordinate {
     /// It is given.
     Number(f64),
-    /// A parameter of the effect, by its name there.
-    Parameter(String),
+    /// It is the product of parameters of the effect, by their names there.
+    Product(Vec<String>),
 }
 
 /// The curves of an effect in its usual form, in the order of its text; those of a tyre that rolls are left out.
@@ -50,7 +50,7 @@ fn tables(of: &Expression, told: &mut dyn FnMut(&Table)) {
     }
 }
 
-/// `None` where an abscissa or ordinate is more than a number or a name.
+/// `None` where an abscissa is more than a number, or an ordinate more than a number or a product of names.
 fn curve(table: &Table) -> Option<Curve> {
     let (over, scale) = match &table.x.kind {
         ExpressionKind::Binary(Operator::Divide, of, by) => (of, Some(name(by)?)),
@@ -71,7 +71,14 @@ fn curve(table: &Table) -> Option<Curve> {
 fn ordinate(e: &Expression) -> Option<Ordinate> {
     number(e)
         .map(Ordinate::Number)
-        .or_else(|| name(e).map(Ordinate::Parameter))
+        .or_else(|| factors(e).map(Ordinate::Product))
+}
+
+fn factors(e: &Expression) -> Option<Vec<String>> {
+    match &e.kind {
+        ExpressionKind::Binary(Operator::Multiply, a, b) => Some([factors(a)?, factors(b)?].concat()),
+        _ => Some(vec![name(e)?]),
+    }
 }
 
 fn name(e: &Expression) -> Option<String> {

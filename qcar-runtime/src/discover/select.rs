@@ -15,8 +15,10 @@ mod visible;
 
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use assembly::{Assembly, Hypothesis, Place, Placed};
-use race::{Fidelity, entrants, race};
+use race::{Fidelity, Finalist, entrants, race};
 use screen::screen;
 use verdict::{Set, judged};
 use visible::visible;
@@ -102,7 +104,6 @@ const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The base model, fitted.
 fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
-    use rayon::prelude::*;
     let looks = looks(evidence);
     let hypothesis = assembly.hypothesis();
     // What cannot be predicted at all is an error here, where among many it only drops out.
@@ -169,26 +170,19 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     }
     let entering = entrants(&candidates, &prospects, least);
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
-    let mut sets = Vec::new();
-    for finalist in finalists {
+    let further = if set.assembly.effects().is_empty() {
+        1.0
+    } else {
+        FURTHER
+    };
+    let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];
-        let Some(hypothesis) = set.assembly.hypothesis_with(candidate) else {
-            continue;
-        };
-        let Some(explanation) = explained(&hypothesis, finalist.refit, evidence) else {
-            continue;
-        };
-        let Some(assembly) = set.assembly.with(candidate) else {
-            continue;
-        };
-        let further = if set.assembly.effects().is_empty() {
-            1.0
-        } else {
-            FURTHER
-        };
+        let hypothesis = set.assembly.hypothesis_with(candidate)?;
+        let explanation = explained(&hypothesis, finalist.refit, evidence)?;
         let prior = set.log_prior + log_prior(candidate, &candidates) + further.ln();
-        sets.push(Set::new(assembly, explanation, prior));
-    }
+        Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
+    };
+    let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
     for own in &mut sets {
         own.rivals = dropped
             .iter()

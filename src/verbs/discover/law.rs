@@ -33,6 +33,14 @@ pub(crate) struct Law {
     pub file: Option<PathBuf>,
 }
 
+/// Standard errors by parameter.
+type Errors = BTreeMap<String, f64>;
+
+fn errors(of: &Finding) -> Errors {
+    let parameters = of.parameters.iter();
+    parameters.map(|(name, _, error)| (name.clone(), *error)).collect()
+}
+
 /// Puts the laws into the model of the bench; `None` where one does not apply there.
 pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<LearnedModel> {
     let why = format!(
@@ -60,7 +68,7 @@ fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter]) -> Law {
     };
     let parameters: Vec<NewParameter> = declared.iter().map(found).collect();
     Law {
-        words: words(patch, &parameters),
+        words: words(patch, &parameters, &errors(finding)),
         units: parameters
             .iter()
             .map(|own| (own.effect_name.clone(), own.unit.to_string()))
@@ -88,13 +96,13 @@ impl LearnedModel {
 }
 
 /// What a law is like: each of its curves in a sentence, or which of its coefficients count.
-fn words(patch: &Patch, parameters: &[NewParameter]) -> String {
+fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors) -> String {
     let curves = patch.curves();
     if curves.is_empty() {
         return shares(parameters);
     }
-    let sentences: Vec<String> = curves.iter().map(|curve| of_curve(curve, parameters)).collect();
-    format!("{}; no memory", sentences.join("; "))
+    let sentences = curves.iter().map(|curve| of_curve(curve, parameters, errors));
+    format!("{}; no memory", sentences.collect::<Vec<_>>().join("; "))
 }
 
 /// A coefficient is told of from this share of their sum on.
@@ -113,59 +121,138 @@ fn shares(parameters: &[NewParameter]) -> String {
     )
 }
 
-/// Sides whose ordinates differ by less than this part of the largest change are called the same, and a change by less than
-/// this is none.
+/// Both directions are called alike where they differ by less than this part of the largest change.
 const ALIKE: f64 = 0.1;
+/// A point is told of where its standard error is less than this, in parts of what the curve is at rest.
+const DETERMINED: f64 = 0.5;
 
-/// `it falls to 0.41 of its value at rest at 0.5 m/s of compression, …`
-fn of_curve(curve: &Curve, parameters: &[NewParameter]) -> String {
+/// `over the speed it goes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions alike`
+fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> String {
     let named = |name: &str| parameters.iter().find(|own| own.effect_name == name);
     let scale = curve.scale.as_deref().and_then(named);
-    let unit = scale.map_or("times".into(), |own| own.unit.to_string());
+    let unit = scale.map_or("in its unit".into(), |own| own.unit.to_string());
     let scale = scale.map_or(1.0, |own| own.start);
-    let points: Vec<(f64, f64)> = curve
-        .points
-        .iter()
-        .map(|(x, y)| match y {
-            Ordinate::Number(y) => (x * scale, *y),
-            Ordinate::Parameter(name) => (x * scale, named(name).map_or(f64::NAN, |own| own.start)),
-        })
-        .collect();
-    let rest = points.iter().find(|(x, _)| *x == 0.0).map_or(0.0, |(_, y)| *y);
+    let points = curve.points.iter().filter_map(|(x, y)| match y {
+        Ordinate::Number(y) => Some((x * scale, *y)),
+        Ordinate::Product(names) => {
+            let is_determined = names
+                .iter()
+                .all(|name| errors.get(name).is_some_and(|error| *error < DETERMINED));
+            let factors = names.iter().map(|name| named(name).map(|own| own.start));
+            Some((x * scale, factors.product::<Option<f64>>()?)).filter(|_| is_determined)
+        }
+    });
+    let points: Vec<(f64, f64)> = points.collect();
     let over = match curve.over.as_str() {
         "s" => "travel",
         "v" => "speed",
         other => other,
     };
+    let rest = points.iter().find(|(x, _)| *x == 0.0).map_or(0.0, |(_, y)| *y);
+    let [compression, rebound] = [-1.0, 1.0].map(|sign| side(&points, sign));
     let largest = points.iter().map(|(_, y)| (y - rest).abs()).fold(0.0, f64::max);
-    if largest < ALIKE {
-        return format!("it hardly changes with the {over}");
-    }
-    let side = |sign: f64| -> Vec<(f64, f64)> {
-        let mut own: Vec<(f64, f64)> = points.iter().filter(|(x, _)| x * sign > 0.0).copied().collect();
-        own.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
-        own
-    };
-    let [compression, rebound] = [-1.0, 1.0].map(side);
-    let pairs = compression.iter().zip(&rebound);
-    let is_even = compression.len() == rebound.len()
-        && pairs
-            .into_iter()
-            .all(|(a, b)| a.0 == -b.0 && (a.1 - b.1).abs() < ALIKE * largest);
     let told = |points: &[(f64, f64)], of: &str| {
         let told = points
             .iter()
             .map(|(x, y)| format!("{} at {}", number(*y, 3), number(x.abs(), 3)));
         format!("{} {unit} {of}", told.collect::<Vec<_>>().join(", "))
     };
-    let sides = if is_even {
-        told(&rebound, "in both directions alike")
-    } else {
-        format!(
-            "{}; {}",
+    let is_even = compression.len() == rebound.len()
+        && compression
+            .iter()
+            .zip(&rebound)
+            .all(|(a, b)| (a.1 - b.1).abs() < ALIKE * largest);
+    let sides = match (compression.is_empty(), rebound.is_empty()) {
+        (true, true) => return format!("over the {over} it is not determined"),
+        (false, false) if is_even => told(&rebound, "in both directions alike"),
+        (false, false) => format!(
+            "{} and {}",
             told(&compression, "in compression"),
             told(&rebound, "in rebound")
-        )
+        ),
+        (_, true) => told(&compression, "in compression; rebound is not determined"),
+        (true, _) => told(&rebound, "in rebound; compression is not determined"),
     };
-    format!("over the {over} it goes from {rest} at rest to {sides}")
+    format!("over the {over} it goes from {} at rest to {sides}", number(rest, 3))
+}
+
+/// The points to one side of rest, from there on, without those that only repeat the last.
+fn side(points: &[(f64, f64)], sign: f64) -> Vec<(f64, f64)> {
+    let mut own: Vec<(f64, f64)> = points.iter().filter(|(x, _)| x * sign > 0.0).copied().collect();
+    own.sort_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    own.dedup_by(|later, earlier| later.1 == earlier.1);
+    own
+}
+
+#[cfg(test)]
+mod tests {
+    use qcar_dsl::units::Unit;
+
+    use super::*;
+
+    fn declared(name: &str, start: f64, known: bool) -> NewParameter {
+        NewParameter {
+            name: name.into(),
+            effect_name: name.into(),
+            unit: Unit::ONE,
+            start,
+            range: (0.0, 10.0),
+            known,
+            doc: String::new(),
+            role: qcar_dsl::patch::ParameterRole::Other,
+            is_new: true,
+        }
+    }
+
+    fn curve() -> Curve {
+        let product = |names: &[&str]| Ordinate::Product(names.iter().map(|name| name.to_string()).collect());
+        Curve {
+            over: "v".into(),
+            scale: Some("v_ref".into()),
+            points: vec![
+                (-1.0, product(&["a", "b"])),
+                (-0.5, product(&["a"])),
+                (0.0, Ordinate::Number(1.0)),
+                (0.5, product(&["c"])),
+                (1.0, product(&["c", "d"])),
+            ],
+        }
+    }
+
+    fn said(values: [f64; 4], errors: [f64; 4]) -> String {
+        let names = ["a", "b", "c", "d"];
+        let mut parameters: Vec<NewParameter> = names
+            .iter()
+            .zip(values)
+            .map(|(name, value)| declared(name, value, false))
+            .collect();
+        parameters.push(declared("v_ref", 0.4, true));
+        of_curve(
+            &curve(),
+            &parameters,
+            &names.map(String::from).into_iter().zip(errors).collect(),
+        )
+    }
+
+    #[test]
+    fn a_curve_is_told_by_its_points() {
+        assert_eq!(
+            said([0.5, 0.5, 0.5, 0.5], [0.01; 4]),
+            "over the speed it goes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions alike"
+        );
+        assert!(
+            said([0.5, 0.5, 2.0, 1.5], [0.01; 4])
+                .contains("0.5 at 0.2, 0.25 at 0.4 1 in compression and 2 at 0.2, 3 at 0.4 1 in rebound")
+        );
+    }
+
+    /// A point that no run has reached stands where its neighbour does, which nobody has measured.
+    #[test]
+    fn what_is_not_determined_is_not_told() {
+        let said = said([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);
+        assert_eq!(
+            said,
+            "over the speed it goes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
+        );
+    }
 }

@@ -1,6 +1,8 @@
 //! A law where the catalogue has none: free curves, held against the data at every place like the effects of the
 //! catalogue, and paying for each of their coefficients.
 
+use rayon::prelude::*;
+
 use super::assembly::Placed;
 use super::race::{Finalist, race};
 use super::screen::Prospect;
@@ -51,7 +53,7 @@ fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Se
         progress,
     );
     let prior = set.log_prior - (laws.len() as f64).ln();
-    let fitted = finalists.into_iter().filter_map(|Finalist { candidate, refit }| {
+    let fitted = finalists.into_par_iter().filter_map(|Finalist { candidate, refit }| {
         let candidate = &laws[candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
         let explanation = explained(&hypothesis, refit, evidence)?;
