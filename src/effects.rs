@@ -10,6 +10,7 @@ use qcar_dsl::syntax::Item;
 use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
+use crate::workshop::Catalogue;
 
 /// All shipped effects, by name.
 ///
@@ -19,12 +20,15 @@ pub fn all() -> Result<Vec<Patch>, Failure> {
     read_all(models::effects())
 }
 
-/// All shipped laws that name no cause, by name.
+/// All that may be missing in a model: the shipped effects, and the shipped laws that name no cause.
 ///
 /// # Errors
 /// None, as long as the build reads what it ships.
-pub fn laws() -> Result<Vec<Patch>, Failure> {
-    read_all(models::laws())
+pub fn catalogue() -> Result<Catalogue, Failure> {
+    Ok(Catalogue {
+        effects: all()?,
+        laws: read_all(models::laws())?,
+    })
 }
 
 fn read_all(shipped: &[models::ShippedEffect]) -> Result<Vec<Patch>, Failure> {

@@ -123,7 +123,7 @@ fn worst(model: &dyn Model, values: &Values, evidence: &Evidence) -> f64 {
 }
 
 fn bench(model: &str) -> Bench {
-    let catalogue = effects::all().map_err(|_| "the catalogue reads").unwrap();
+    let catalogue = effects::catalogue().map_err(|_| "the catalogue reads").unwrap();
     let model = compiled(model).map_err(|_| "the model compiles").unwrap().model;
     Bench::new(model, Arc::new(catalogue), Arc::new(BTreeMap::new()))
 }

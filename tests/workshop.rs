@@ -9,7 +9,7 @@ use qcar::workshop::Bench;
 use qcar_runtime::discover::candidate::Workshop;
 
 fn forms(model: &str, effect: &str) -> Vec<String> {
-    let catalogue = effects::all().map_err(|_| "the catalogue reads").unwrap();
+    let catalogue = effects::catalogue().map_err(|_| "the catalogue reads").unwrap();
     let model = compiled(model).map_err(|_| "the model compiles").unwrap().model;
     let bench = Bench::new(model, Arc::new(catalogue), Arc::new(BTreeMap::new()));
     let own = bench

@@ -22,7 +22,7 @@ use crate::interruption::{leave, note};
 use crate::parameters::{bound, check_campaign, own};
 use crate::progress::Showing;
 use crate::verbs::{Format, kc};
-use crate::workshop::{Bench, Catalogue};
+use crate::workshop::Bench;
 use crate::{catalogue, effects};
 
 // Where something would explain the gap.
@@ -191,15 +191,11 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
 /// The campaign's model beside the catalogue.
 fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
     let compiled = catalogue::compiled_of_campaign(campaign, model)?;
-    let shipped = Catalogue {
-        effects: effects::all()?,
-        laws: effects::laws()?,
-    };
     let vehicle = campaign.vehicle.iter().cloned();
     let values: BTreeMap<String, f64> = vehicle
         .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
         .collect();
-    Ok(Bench::new(compiled.model, Arc::new(shipped), Arc::new(values)))
+    Ok(Bench::new(compiled.model, Arc::new(effects::catalogue()?), Arc::new(values)))
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
