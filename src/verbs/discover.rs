@@ -195,7 +195,11 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
     let values: BTreeMap<String, f64> = vehicle
         .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
         .collect();
-    Ok(Bench::new(compiled.model, Arc::new(effects::catalogue()?), Arc::new(values)))
+    Ok(Bench::new(
+        compiled.model,
+        Arc::new(effects::catalogue()?),
+        Arc::new(values),
+    ))
 }
 
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.

@@ -27,10 +27,10 @@ use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
 use super::explain::{Explanation, Setting};
-use super::numbers::{FALSE_ALARMS, FURTHER, MOST_EFFECTS};
+use super::numbers::{CERTAIN, EXPLAINED, FALSE_ALARMS, FURTHER, MOST_EFFECTS};
 use super::predict::PredictError;
 use super::refit::Refit;
-use super::search::{Discovery, News, Progress, Verdict, told};
+use super::search::{Discovery, Learned, News, Progress, Verdict, told};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -68,15 +68,38 @@ pub fn discover(
     let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
     let alone = sets[0].clone();
     let mut discovery = judged(sets, evidence);
-    if discovery.verdict == Verdict::Unknown {
+    if is_unexplained(&discovery) {
         let learned = learn::learn(&alone, evidence, progress);
-        discovery.learned = learned.map(|learned| learn::told(&alone, learned, evidence));
+        let learned = learned.map(|learned| learn::told(&alone, learned, evidence));
+        discovery.take(learned);
     }
     if discovery.verdict == Verdict::None {
         let steady = evidence.less(&refit.unsteady).hurried();
         discovery.visible = visible(&assembly, &refit, &looks(&steady).fine);
     }
     Ok(discovery)
+}
+
+/// True where something is missing that no effect of the catalogue explains, be it less than models of this kind leave.
+fn is_unexplained(discovery: &Discovery) -> bool {
+    let is_improbable = |probability: f64| probability < 1.0 - CERTAIN;
+    match discovery.verdict {
+        Verdict::Unknown => true,
+        Verdict::None => discovery.probability.is_some_and(is_improbable),
+        Verdict::Found | Verdict::Class => false,
+    }
+}
+
+impl Discovery {
+    /// Takes a law up: one that closes most of a gap tells that something is missing, however little that is.
+    fn take(&mut self, learned: Option<Learned>) {
+        let closes = learned.as_ref().is_some_and(|own| own.explained >= EXPLAINED);
+        if closes && self.verdict == Verdict::None {
+            self.verdict = Verdict::Unknown;
+            self.probability = None;
+        }
+        self.learned = learned.filter(|_| self.verdict == Verdict::Unknown);
+    }
 }
 
 /// The most probable set.

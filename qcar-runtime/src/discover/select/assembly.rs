@@ -99,16 +99,16 @@ impl Assembly {
 
     /// Every effect at every place of it.
     pub fn candidates(&self) -> Vec<Candidate> {
-        self.new(self.workshop.candidates())
+        self.not_yet_there(self.workshop.candidates())
     }
 
     /// Every law that names no cause, at every place of it.
     pub fn laws(&self) -> Vec<Candidate> {
-        self.new(self.workshop.laws())
+        self.not_yet_there(self.workshop.laws())
     }
 
     /// Those that it does not have.
-    fn new(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
+    fn not_yet_there(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
         let is_new = |candidate: &Candidate| {
             let is_there = |own: &Placed| own.effect == candidate.effect && own.at == candidate.at;
             !self.effects.iter().any(is_there)
