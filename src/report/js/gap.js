@@ -1,41 +1,42 @@
-// Where the gap is: a map over sensors and levels, and over frequency, time or travel.
+// Where the residual is: a map over sensors and runs, and over frequency, time or travel.
 
-// The second map is that of the model with what was `added`.
+// The second map is that of the extended model.
 function heatMaps({ before, after }, added) {
   const kinds = [...new Map(before.map((tile) => [kindOf(tile), kindName(tile)])).entries()].sort(
     (a, b) => KINDS.indexOf(a[0]) - KINDS.indexOf(b[0]),
   );
   const sets = [
-    ['before', 'The model of the campaign', before],
-    ...(added ? [['after', `The model with ${added}`, after]] : []),
+    ['before', 'Baseline model', before],
+    ...(added ? [['after', `Extended model, with ${added}`, after]] : []),
   ];
-  const place = h('div', {});
   const readout = h(
     'p',
     { class: 'readout', 'aria-live': 'polite' },
     'Point at a tile, or reach the map with Tab and move with the arrow keys.',
   );
-  const show = (kind) => {
-    const maps = sets.map(([role, caption, tiles]) =>
-      heatMap(
-        [role, caption],
-        tiles.filter((tile) => kindOf(tile) === kind),
-        readout,
-      ),
-    );
-    place.replaceChildren(...maps);
-    maps.forEach((map) => drawn(map));
-  };
+  const shown = picker('gap', {
+    control: choice,
+    label: 'Response',
+    options: kinds,
+    show: (kind, place, text) => {
+      const ofKind = ([role, caption, tiles]) =>
+        heatMap([role, `${caption}: ${text}`], tiles.filter((tile) => kindOf(tile) === kind), readout);
+      const maps = sets.map(ofKind);
+      place.replaceChildren(...maps);
+      maps.forEach((map) => drawn(map));
+      return [];
+    },
+  });
   const element = h(
     'div',
     {},
-    h('h3', {}, 'Where the gap is'),
-    kinds.length > 1 ? choice('Response', kinds, kinds[0][0], show) : null,
+    h('h3', {}, 'Where the residual is'),
+    shown.control,
     heatKey(),
-    place,
-    readout,
+    shown.place,
+    view.printing ? null : readout,
   );
-  return [{ element, draw: () => show(kinds[0][0]) }];
+  return { element, draw: shown.draw };
 }
 
 const KINDS = [
@@ -43,14 +44,14 @@ const KINDS = [
   ...['cycle1', 'cycle2', 'cycle3'],
 ];
 
-// What runs along the bands of each kind.
+// What runs along the bands of each kind, and its unit.
 const ALONG = {
-  harmonic: ['frequency', 'Hz', 1],
-  time: ['time', 's', 1],
-  passage: ['time', 's', 1],
-  travel: ['travel', 'mm', 1e3],
-  width: ['travel', 'mm', 1e3],
-  cycle: ['frequency', 'Hz', 1],
+  harmonic: ['frequency', 'Hz'],
+  time: ['time', 's'],
+  passage: ['time', 's'],
+  travel: ['travel', 'm'],
+  width: ['travel', 'm'],
+  cycle: ['frequency', 'Hz'],
 };
 
 // Harmonics have bands of a sixth of an octave.
@@ -86,21 +87,23 @@ function heatKey() {
   return h(
     'p',
     { class: 'heat-key' },
+    'Residual in standard deviations:',
     names.map((name, at) => h('span', {}, h('span', { class: `swatch heat-${at}` }), name)),
   );
 }
 
-// Rows are sensors at levels, columns are bands: of a sixth of an octave, or of time or travel.
+// Rows are sensors in runs, columns are bands: of a sixth of an octave, or of time or travel.
 function heatMap([role, caption], tiles, readout) {
-  const rowOf = (tile) => `${tile.channel} @ ${tile.level}`;
-  const sorted = [...tiles].sort((a, b) => a.channel.localeCompare(b.channel) || a.level - b.level);
-  const rows = [...new Set(sorted.map(rowOf))];
-  const [left, top, cell, w] = [132, 6, 19, 600];
+  const rowOf = (tile) => `${tile.channel} ${runText(tile)}`;
+  const sorted = [...tiles].sort(byRow);
+  const rows = [...new Map(sorted.map((tile) => [rowOf(tile), tile])).entries()];
+  const places = new Map(rows.map(([row], at) => [row, at]));
+  const [left, top, cell, w] = [182, 6, rows.length > 24 ? 15 : 19, 560];
   const along = scale(tiles);
   const height = top + rows.length * cell + 36;
   const box = (tile) => ({
     x: left + along(tile.span[0]) * w,
-    y: top + rows.indexOf(rowOf(tile)) * cell,
+    y: top + places.get(rowOf(tile)) * cell,
     width: Math.max(1, (along(tile.span[1]) - along(tile.span[0])) * w - 0.6),
     height: cell - 1.5,
   });
@@ -120,17 +123,19 @@ function heatMap([role, caption], tiles, readout) {
         svg('title', {}, tileText(role, tile)),
       ),
     );
-  const labels = rows.map((row, at) => {
-    const [channel, level] = row.split(' @ ');
-    return svg(
-      'text',
-      { x: left - 8, y: top + at * cell + 13, 'text-anchor': 'end' },
-      `${channel}, ${levelText(Number(level), tiles[0])}`,
-    );
-  });
-  const [name, unit, factor] = tiles.length ? ALONG[tiles[0].kind] : ['', '', 1];
+  const label = (x, at, text) => svg('text', { x, y: top + at * cell + cell - 5, 'text-anchor': 'end' }, text);
+  const isFirst = (at) => at === 0 || rows[at - 1][1].channel !== rows[at][1].channel;
+  const labels = rows.map(([, tile], at) => [
+    isFirst(at) ? label(66, at, tile.channel) : null,
+    label(left - 8, at, runText(tile)),
+  ]);
+  const [name, si] = tiles.length ? ALONG[tiles[0].kind] : ['', '1'];
   const ticks = mapTicks(tiles).map((value) =>
-    svg('text', { x: left + along(value) * w, y: height - 20, 'text-anchor': 'middle' }, plain(factor * value, 3)),
+    svg(
+      'text',
+      { x: left + along(value) * w, y: height - 20, 'text-anchor': 'middle' },
+      plain(inUnit(value, si).value, 3),
+    ),
   );
   const marker = svg('rect', { class: 'marker', visibility: 'hidden' });
   const map = svg(
@@ -140,16 +145,16 @@ function heatMap([role, caption], tiles, readout) {
       viewBox: `0 0 ${left + w + 8} ${height}`,
       tabindex: 0,
       role: 'application',
-      'aria-label': `Gap ${role} over ${name} for each sensor and level. Arrow keys move from tile to tile.`,
+      'aria-label': `${caption}: residual over ${name} for each sensor and run. Arrow keys move from tile to tile.`,
     },
     labels,
     rects,
     ticks,
     marker,
-    svg('text', { x: left + w / 2, y: height - 4, 'text-anchor': 'middle' }, `${name}, ${unit}`),
+    svg('text', { x: left + w / 2, y: height - 4, 'text-anchor': 'middle' }, headed(name, si)),
   );
   walk(map, sorted, {
-    rows,
+    rows: rows.map(([row]) => row),
     rowOf,
     box,
     marker,
@@ -157,7 +162,19 @@ function heatMap([role, caption], tiles, readout) {
       readout.textContent = tileText(role, tile);
     },
   });
-  return figure(`gap-${role}`, caption, h('div', { class: 'scroll' }, map));
+  const heads = ['sensor', 'run', 'from', 'to', 'standard deviations'];
+  const texts = () => [heads, ...sorted.map((tile) => [tile.channel, runText(tile), ...ends(tile), number(tile.strength)])];
+  return captioned(`gap-${role}`, caption, exports(caption, texts), h('div', { class: 'scroll' }, map));
+}
+
+function byRow(a, b) {
+  return (
+    a.channel.localeCompare(b.channel) ||
+    a.level - b.level ||
+    (a.speed || 0) - (b.speed || 0) ||
+    a.run.localeCompare(b.run) ||
+    a.span[0] - b.span[0]
+  );
 }
 
 // How far along the bands a value is.
@@ -182,15 +199,21 @@ function mapTicks(tiles) {
   return values.filter((v) => v >= low && v <= high);
 }
 
-function levelText(level, tile) {
-  const units = { harmonic: 'mm/s', passage: 'mm', travel: 'mm', width: 'mm', cycle: 'mm' };
-  return units[tile.kind] ? `${plain(1e3 * level, 3)} ${units[tile.kind]}` : plain(level, 4);
+// How a run of this kind is told from others: by its level, over a cleat by its speed too, a record by its name.
+function runText({ kind, level, speed, run }) {
+  if (kind === 'time') return runName(run);
+  const driven = given(level, kind === 'harmonic' ? 'm/s' : 'm');
+  return speed === null ? driven : `${driven}, ${plain(3.6 * speed, 3)} km/h`;
+}
+
+function ends(tile) {
+  const [, unit] = ALONG[tile.kind];
+  return tile.span.map((end) => quantity(end, unit));
 }
 
 function tileText(role, tile) {
-  const [, unit, factor] = ALONG[tile.kind];
-  const span = `${number(factor * tile.span[0])} to ${number(factor * tile.span[1])} ${unit}`;
-  return `${role}: ${tile.channel}, ${levelText(tile.level, tile)}, ${span}: ${number(tile.strength)} times the uncertainty`;
+  const strength = `${number(tile.strength)} standard deviations`;
+  return `${ROLES[role].label}: ${tile.channel}, ${runText(tile)}, ${ends(tile).join(' to ')}: ${strength}`;
 }
 
 // The arrow keys on a map: along a row, and to the nearest tile of the next one.

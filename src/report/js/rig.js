@@ -5,18 +5,12 @@ function rig({ rig: ratios }) {
   const runs = [...new Map(ratios.map((ratio) => [ratio.run, ratio.role])).entries()];
   const channels = [...new Set(ratios.map((ratio) => ratio.channel))];
   const changed = ratios.some((ratio) => ratio.after);
-  const place = h('div', { class: 'columns' });
-  let charts = [];
-  const show = (run) => {
-    charts.forEach(forget);
-    charts = [];
-    const own = channels
-      .map((channel) => ratios.find((ratio) => ratio.run === run && ratio.channel === channel))
-      .filter((ratio) => ratio);
-    place.replaceChildren(...own.map((ratio) => ratioFigure(ratio, charts)));
-    charts.draw = () => own.forEach((ratio, at) => charts.push(...ratioPlots(ratio, place.children[at])));
-    if (place.isConnected) charts.draw();
-  };
+  const shown = picker('rig', {
+    control: choice,
+    label: 'Run',
+    options: runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
+    show: (run, place) => drawRatios(ratios.filter((ratio) => ratio.run === run), channels, place),
+  });
   const element = section(
     'rig',
     'Rig fit',
@@ -27,24 +21,25 @@ function rig({ rig: ratios }) {
       key('measured', 'measured'),
       ' with a ',
       key('band', 'band'),
-      ' of two standard deviations of the noise and of what left and right differ by, and the model ',
-      key('start', 'at its start values'),
-      ', ',
-      key('before', 'fitted'),
-      changed ? [', and ', key('after', 'with what it lacked')] : null,
+      ' of two standard deviations of the noise and half of what left and right differ by; the ',
+      key('start', 'start values'),
+      ', the ',
+      key('before', 'fitted baseline model'),
+      changed ? [' and the ', key('after', 'extended model')] : null,
       '. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve. Coherence near 1 means that what drives the axle explains its response.',
     ),
-    choice(
-      'Run',
-      runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
-      runs[0][0],
-      show,
-    ),
-    place,
+    shown.control,
+    shown.place,
     qualityTable(ratios, runs, channels),
   );
-  show(runs[0][0]);
-  return { element, draw: () => charts.draw() };
+  return { element, draw: shown.draw };
+}
+
+function drawRatios(ratios, channels, place) {
+  const own = channels.map((channel) => ratios.find((ratio) => ratio.channel === channel)).filter((ratio) => ratio);
+  const columns = own.map(ratioFigure);
+  place.replaceChildren(h('div', { class: 'columns' }, columns));
+  return own.flatMap((ratio, at) => ratioPlots(ratio, columns[at]));
 }
 
 function ratioFigure(ratio) {
@@ -62,7 +57,13 @@ function ratioFigure(ratio) {
       after,
       ratio.fitted || ratio.role !== 'fit' ? null : '; compared, not in the cost',
     ),
-    ['magnitude', 'phase', 'coherence'].map((part) => figure(`rig-${part}`, null, h('div', { class: 'canvas' }))),
+    ['magnitude', 'phase', 'coherence'].map((part) =>
+      figure(
+        `rig-${part}`,
+        `${runName(ratio.run)}: ${part} of ${channelName(ratio.channel)}`,
+        h('div', { class: 'canvas' }),
+      ),
+    ),
   );
 }
 
@@ -82,16 +83,12 @@ function coherenceRange(u, low) {
 }
 
 function polarCurves(ratio, part) {
-  const edge = (sign) =>
-    ratio.measured[part].map((value, at) => (value === null ? null : value + sign * ratio.band[part][at]));
   const curves = [
-    { role: 'band', values: edge(-1) },
-    { role: 'band', values: edge(1) },
-    { role: 'measured', values: ratio.measured[part] },
+    { role: 'measured', values: ratio.measured[part], error: ratio.band[part] },
     { role: 'start', values: ratio.start[part] },
-    { role: 'before', label: 'fitted', values: ratio.before[part] },
+    { role: 'before', values: ratio.before[part] },
   ];
-  if (ratio.after) curves.push({ role: 'after', label: 'with it', values: ratio.after[part] });
+  if (ratio.after) curves.push({ role: 'after', values: ratio.after[part] });
   return curves;
 }
 

@@ -91,8 +91,8 @@ impl<'a> Contents<'a> {
             rig,
             track: track(study),
             gap_map: GapMap {
-                before: patches(&discovery.before.gap.tiles),
-                after: patches(&discovery.after.gap.tiles),
+                before: patches(study, &discovery.before.gap.tiles),
+                after: patches(study, &discovery.after.gap.tiles),
             },
             kappa: explanations(study),
             refitted: refitted(study),
