@@ -15,7 +15,7 @@ function discovery(data) {
     h('div', { class: 'columns two' }, residualTable(discover), leftTable(discover)),
     candidateTable(discover),
     maps.element,
-    strongest(discover.where),
+    strongest(data.gap_map.before),
     stiffness && stiffness.element,
     discover.effects.map((effect) => effectPart(effect, discover.effects)),
     changes && changesPart(changes),
@@ -80,33 +80,23 @@ function candidateTable({ candidates, probability }) {
   );
 }
 
-function spanText({ band_hz: band, window_s: window, travel_m: travel }) {
-  const [own, unit] = [
-    [band, 'Hz'],
-    [window, 's'],
-    [travel, 'm'],
-  ].find(([ends]) => ends) || [[], '1'];
-  return own.map((end) => quantity(end, unit)).join(' to ');
-}
+// So many are listed.
+const LISTED = 24;
 
-function strongest(places) {
-  if (!places.length) return null;
-  const rows = places.map((own) => [
-    words(own.channel),
-    own.harmonic === null ? '–' : String(own.harmonic),
-    spanText(own),
-    number(own.level),
-    number(own.strength),
-  ]);
+function strongest(tiles) {
+  if (!tiles.length) return null;
+  const rows = tiles
+    .slice(0, LISTED)
+    .map((tile) => [words(tile.channel), kindName(tile), runText(tile), ends(tile).join(' to '), number(tile.strength)]);
   return details(
     'The largest residuals as a table',
     table(
       'Residual of the baseline model',
       [
         ['sensor', 'text'],
-        ['harmonic', 'number'],
+        ['response', 'text'],
+        ['run', 'text'],
         ['band or window', 'text'],
-        ['level', 'number'],
         ['standard deviations', 'number'],
       ],
       rows,
@@ -172,7 +162,7 @@ function kappaPlot(own, part, place) {
   }));
   return plot(place, {
     x: FREQUENCY,
-    y: { label: `${part} part of κ`, unit: own.sensor ? '1' : 'N/m' },
+    y: { label: part === 'real' ? 'Re κ' : 'Im κ', unit: own.sensor ? '1' : 'N/m' },
     at: longest.frequency,
     curves,
     sync: 'kappa',

@@ -98,7 +98,7 @@ function heatMap([role, caption], tiles, readout) {
   const sorted = [...tiles].sort(byRow);
   const rows = [...new Map(sorted.map((tile) => [rowOf(tile), tile])).entries()];
   const places = new Map(rows.map(([row], at) => [row, at]));
-  const [left, top, cell, w] = [182, 6, rows.length > 24 ? 15 : 19, 560];
+  const [left, top, cell, w] = [206, 6, rows.length > 24 ? 15 : 19, 540];
   const along = scale(tiles);
   const height = top + rows.length * cell + 36;
   const box = (tile) => ({
@@ -123,11 +123,12 @@ function heatMap([role, caption], tiles, readout) {
         svg('title', {}, tileText(role, tile)),
       ),
     );
-  const label = (x, at, text) => svg('text', { x, y: top + at * cell + cell - 5, 'text-anchor': 'end' }, text);
+  const label = (x, at, text, anchor) =>
+    svg('text', { x, y: top + at * cell + cell - 5, 'text-anchor': anchor }, text);
   const isFirst = (at) => at === 0 || rows[at - 1][1].channel !== rows[at][1].channel;
   const labels = rows.map(([, tile], at) => [
-    isFirst(at) ? label(66, at, tile.channel) : null,
-    label(left - 8, at, runText(tile)),
+    isFirst(at) ? label(0, at, words(tile.channel), 'start') : null,
+    label(left - 8, at, runText(tile), 'end'),
   ]);
   const [name, si] = tiles.length ? ALONG[tiles[0].kind] : ['', '1'];
   const ticks = mapTicks(tiles).map((value) =>
@@ -164,7 +165,7 @@ function heatMap([role, caption], tiles, readout) {
   });
   const heads = ['sensor', 'run', 'from', 'to', 'standard deviations'];
   const texts = () => [heads, ...sorted.map((tile) => [tile.channel, runText(tile), ...ends(tile), number(tile.strength)])];
-  return captioned(`gap-${role}`, caption, exports(caption, texts), h('div', { class: 'scroll' }, map));
+  return fill(captioned(`gap-${role}`, caption, h('div', { class: 'scroll' }, map)), {}, [exports(caption, texts)]);
 }
 
 function byRow(a, b) {
@@ -202,7 +203,7 @@ function mapTicks(tiles) {
 // How a run of this kind is told from others: by its level, over a cleat by its speed too, a record by its name.
 function runText({ kind, level, speed, run }) {
   if (kind === 'time') return runName(run);
-  const driven = given(level, kind === 'harmonic' ? 'm/s' : 'm');
+  const driven = given(level, kind === 'harmonic' ? 'm/s' : 'm', 3);
   return speed === null ? driven : `${driven}, ${plain(3.6 * speed, 3)} km/h`;
 }
 

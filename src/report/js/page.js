@@ -11,7 +11,7 @@ function assemble(build) {
   addEventListener('units', again);
   onPaper(again);
   systemTheme.addEventListener('change', applyTheme);
-  again();
+  render(build());
 }
 
 function render([head, sections]) {

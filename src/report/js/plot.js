@@ -49,7 +49,7 @@ function optionsOf(own, place) {
     width: Math.max(200, place.clientWidth),
     height: own.height,
     class: 'plot',
-    padding: [16, null, null, null],
+    padding: [22, null, null, null],
     scales: {
       x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) },
       y: { range: y.range || padded },
@@ -82,6 +82,11 @@ function polarPlots(column, { at, sync, curves, below }) {
   ];
   const places = column.querySelectorAll('.canvas');
   return parts.map((part, place) => plot(places[place], { x: FREQUENCY, at, sync, ...part }));
+}
+
+function zoomHint() {
+  const text = 'Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve.';
+  return h('span', { class: 'hint' }, ` ${text}`);
 }
 
 // The axes of an acceleration over time.

@@ -72,8 +72,8 @@ function startCaution(names, changed) {
   return h(
     'p',
     { class: 'caution' },
-    `No rig run or K&C curve determines ${own}: before, ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
-    changed ? ' What was found together with the effect is fitted to the cleat runs too.' : null,
+    `No rig run or K&C curve determines ${own}: in the baseline model ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
+    changed ? ' The extended model is fitted to the cleat runs too.' : null,
   );
 }
 

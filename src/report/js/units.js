@@ -42,9 +42,9 @@ function headed(label, unit) {
   return shown ? `${label}, ${shown}` : label;
 }
 
-function given(value, unit) {
+function given(value, unit, digits) {
   const own = inUnit(value, unit);
-  return withUnit(plain(own.value), own.unit);
+  return withUnit(plain(own.value, digits), own.unit);
 }
 
 function quantity(value, unit, digits = 3) {
