@@ -134,10 +134,9 @@ function seriesOf({ role, label, hidden, beside, error }, { y, digits, gaps }) {
   };
 }
 
-// A value under the pointer.
+// A value under the pointer, in the unit of its axis.
 function told(value, error, unit, digits) {
-  const text = number(value, digits);
-  return withUnit(error ? `${text} ± ${number(error, 2)}` : text, unit);
+  return withUnit(error > 0 ? measured(value, error, '1') : number(value, digits), unit);
 }
 
 function axis({ text, ticks, whole }, size, space) {

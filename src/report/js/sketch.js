@@ -1,6 +1,6 @@
 // A plot on paper: small, without a legend, as lines that any printer draws sharply.
 
-const SKETCH = { left: 44, right: 6, top: 6, bottom: 30 };
+const SKETCH = { left: 44, right: 12, top: 6, bottom: 30 };
 
 function sketch(place, own) {
   const [width, height] = [Math.max(130, place.clientWidth), Math.round(0.52 * own.height)];

@@ -100,7 +100,10 @@ fn listed(run: &Run) -> Listed {
             amplitude,
         } => (
             "dynamic bounce",
-            vec![drive("peak", *peak_velocity, "m/s"), drive("amplitude", *amplitude, "m")],
+            vec![
+                drive("peak", *peak_velocity, "m/s"),
+                drive("amplitude", *amplitude, "m"),
+            ],
         ),
         Test::Longitudinal => ("quasi-static longitudinal", Vec::new()),
         Test::Cleat { speed, cleat, .. } => ("cleat", vec![drive(&format!("over {cleat} at"), 3.6 * speed, "km/h")]),
