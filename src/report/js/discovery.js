@@ -153,12 +153,11 @@ function drawKappa(own, place) {
 
 function kappaPlot(own, part, place) {
   const longest = own.runs.reduce((a, b) => (b.frequency.length > a.frequency.length ? b : a));
-  const palette = ['after', 'before', 'locked', 'vertical', 'measured'];
   const curves = own.runs.map((run, at) => ({
-    role: palette[at % palette.length],
+    role: PALETTE[at % PALETTE.length],
     label: given(run.level, 'm/s'),
-    values: along(run[part], run, longest),
-    error: along(run.sigma, run, longest),
+    values: along(run[part], run.frequency, longest.frequency),
+    error: along(run.sigma, run.frequency, longest.frequency),
   }));
   return plot(place, {
     x: FREQUENCY,
@@ -167,11 +166,6 @@ function kappaPlot(own, part, place) {
     curves,
     sync: 'kappa',
   });
-}
-
-// Values of a run at the lines of another one; null where it has none.
-function along(values, { frequency }, { frequency: lines }) {
-  return lines.map((f) => (frequency.includes(f) ? values[frequency.indexOf(f)] : null));
 }
 
 function effectPart(effect, effects) {

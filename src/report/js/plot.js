@@ -74,14 +74,20 @@ const FREQUENCY = {
   ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
 };
 
-function polarPlots(column, { at, sync, curves, below }) {
+function polarPlots(column, { curves, below, ...how }) {
   const parts = [
     { y: { label: 'magnitude', unit: 'dB' }, curves: curves('magnitude') },
     { y: { label: 'phase', unit: '°' }, height: 190, curves: curves('phase') },
-    below,
+    ...(below ? [below] : []),
   ];
   const places = column.querySelectorAll('.canvas');
-  return parts.map((part, place) => plot(places[place], { x: FREQUENCY, at, sync, ...part }));
+  return parts.map((part, place) => plot(places[place], { x: FREQUENCY, ...how, ...part }));
+}
+
+// Values that stand `at` their places, at the places of others; null where there is none.
+function along(values, at, others) {
+  const known = new Map(at.map((own, place) => [own, values[place]]));
+  return others.map((own) => (known.has(own) ? known.get(own) : null));
 }
 
 function zoomHint() {

@@ -1,5 +1,8 @@
 // Transmissibilities of the rig, run by run and channel by channel.
 
+// The choice of all runs.
+const ALL = '';
+
 function rig({ rig: ratios }) {
   if (!ratios.length) return null;
   const runs = [...new Map(ratios.map((ratio) => [ratio.run, ratio.role])).entries()];
@@ -8,8 +11,14 @@ function rig({ rig: ratios }) {
   const shown = picker('rig', {
     control: choice,
     label: 'Run',
-    options: runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
-    show: (run, place) => drawRatios(ratios.filter((ratio) => ratio.run === run), channels, place),
+    options: [
+      ...runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
+      ...(runs.length > 1 ? [[ALL, 'all levels, measured']] : []),
+    ],
+    show: (run, place) =>
+      run === ALL
+        ? drawLevels(ratios, channels, place)
+        : drawRatios(ratios.filter((ratio) => ratio.run === run), channels, place),
   });
   const element = section(
     'rig',
@@ -41,6 +50,34 @@ function drawRatios(ratios, channels, place) {
   const columns = own.map(ratioFigure);
   place.replaceChildren(h('div', { class: 'columns' }, columns));
   return own.flatMap((ratio, at) => ratioPlots(ratio, columns[at]));
+}
+
+// The measured ratios of all runs over each other: they differ where something is not linear.
+function drawLevels(ratios, channels, place) {
+  const parts = channels.map((channel) => ({
+    own: ratios.filter((ratio) => ratio.channel === channel),
+    column: h(
+      'div',
+      { class: 'column' },
+      h('h3', {}, channelName(channel)),
+      ['magnitude', 'phase'].map((part) =>
+        figure(`levels-${part}`, `All runs: ${part} of ${channelName(channel)}`, h('div', { class: 'canvas' })),
+      ),
+    ),
+  }));
+  place.replaceChildren(h('div', { class: 'columns' }, parts.map(({ column }) => column)));
+  return parts.flatMap(({ own, column }) => levelPlots(own, column));
+}
+
+function levelPlots(own, column) {
+  const at = [...new Set(own.flatMap((ratio) => ratio.frequency))].sort((a, b) => a - b);
+  const curves = (part) =>
+    own.map((ratio, place) => ({
+      role: PALETTE[place % PALETTE.length],
+      label: runName(ratio.run),
+      values: along(ratio.measured[part], ratio.frequency, at),
+    }));
+  return polarPlots(column, { at, sync: 'rig', gaps: false, curves });
 }
 
 function ratioFigure(ratio) {

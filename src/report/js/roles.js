@@ -13,6 +13,9 @@ const ROLES = {
   vertical: { label: 'purely vertical', width: 1.4, dash: [2, 3] },
 };
 
+// Runs of several levels beside each other.
+const PALETTE = ['after', 'before', 'locked', 'vertical', 'start'];
+
 // A short piece of such a line, or a block of such a bar or band.
 function sample(role, filled = role === 'band') {
   const { width, dash } = ROLES[role];

@@ -10,6 +10,7 @@ function study(data) {
     parameters(data),
     modes(data),
     track(data),
+    records(data),
     discovery(data),
     record(data),
     limits(data),

@@ -15,6 +15,8 @@ function track({ track: own, simulate }) {
     });
   const [traces, variants] = [pick('traces', drawTraces), pick('variants', drawVariants)];
   const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
+  // On paper every run stands by itself already.
+  const grid = own.runs.length > 1 && !view.printing ? passageGrid(own.runs) : null;
   const histograms = errorFigures(own.histograms);
   const element = section(
     'track',
@@ -33,6 +35,7 @@ function track({ track: own, simulate }) {
     startCaution(own.at_start, changed),
     traces.control,
     traces.place,
+    grid ? [h('h3', {}, 'All runs side by side'), grid.control, grid.place] : null,
     h('h3', {}, 'Errors over all runs'),
     h(
       'p',
@@ -60,6 +63,7 @@ function track({ track: own, simulate }) {
     draw: () => {
       traces.draw();
       variants.draw();
+      if (grid) grid.draw();
       histograms.forEach(({ element: place, own }) => histogramPlot(own, place.querySelector('.canvas')));
     },
   };
@@ -83,12 +87,15 @@ function passageTitle({ speed, cleat, role }) {
 
 function drawTraces(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
-  const curves = (trace) => [
+  return drawAccelerations('trace', title, run, traces, place, { sync: 'track', curves: traceCurves });
+}
+
+function traceCurves(trace) {
+  return [
     { role: 'measured', values: trace.measured },
     { role: 'before', values: trace.before },
     ...(trace.after ? [{ role: 'after', values: trace.after }] : []),
   ];
-  return drawAccelerations('trace', title, run, traces, place, { sync: 'track', curves });
 }
 
 function drawVariants(run, place, title) {

@@ -10,6 +10,7 @@ use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, r
 use super::gather::Study;
 use super::loops::{Loop, loops};
 use super::record::{Record, record};
+use super::records::{Replayed, records};
 use super::rig::{Ratio, ratios};
 use super::shapes::{Shapes, shapes};
 use super::summary::{Summary, summary};
@@ -30,6 +31,7 @@ pub struct Contents<'a> {
     loops: Vec<Loop>,
     rig: Vec<Ratio>,
     track: Option<Track<'a>>,
+    records: Vec<Replayed>,
     gap_map: GapMap,
     kappa: Vec<Explanation>,
     refitted: Vec<Refitted>,
@@ -90,6 +92,7 @@ impl<'a> Contents<'a> {
             loops: loops(study),
             rig,
             track: track(study),
+            records: records(study),
             gap_map: GapMap {
                 before: patches(study, &discovery.before.gap.tiles),
                 after: patches(study, &discovery.after.gap.tiles),
