@@ -1,6 +1,6 @@
 // The fitted parameters: values, errors, correlations and what keeps an error from being known.
 
-function parameters({ fit, refitted }) {
+function parameters({ fit, refitted, correlations: pairs }) {
   const own = Object.values(fit.parameters);
   const changed = refitted.length > 0;
   const rows = own.map((parameter) => {
@@ -44,6 +44,7 @@ function parameters({ fit, refitted }) {
       rows,
     ),
     correlations(fit.correlations),
+    pairs.length ? details('All correlations', correlationMap(pairs)) : null,
   );
   return { element };
 }
@@ -96,5 +97,22 @@ function correlations(pairs) {
       ['correlation', 'number'],
     ],
     pairs.map(({ between, value }) => [between.join(' and '), number(value)]),
+  );
+}
+
+// Every pair: the stronger the correlation, the stronger the colour of its sign.
+function correlationMap(pairs) {
+  const names = [...new Set(pairs.flatMap(({ between }) => between))];
+  const value = (a, b) => {
+    const pair = pairs.find(({ between }) => between.includes(a) && between.includes(b));
+    return pair ? pair.value : 0;
+  };
+  const cell = (r) =>
+    h('span', { class: r < 0 ? 'negative' : 'positive', style: `--share: ${(45 * Math.abs(r)).toFixed(0)}%` }, minus(r.toFixed(2)));
+  return table(
+    'Correlations of the estimates',
+    [['', 'text'], ...names.map((name) => [name, 'number'])],
+    names.map((a) => [a, ...names.map((b) => (a === b ? '1' : cell(value(a, b))))]),
+    { class: 'table matrix' },
   );
 }

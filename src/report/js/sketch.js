@@ -1,6 +1,6 @@
 // A plot on paper: small, without a legend, as lines that any printer draws sharply.
 
-const SKETCH = { left: 44, right: 12, top: 6, bottom: 30 };
+const SKETCH = { left: 44, right: 12, top: 6, bottom: 32 };
 
 function sketch(place, own) {
   const [width, height] = [Math.max(130, place.clientWidth), Math.round(0.52 * own.height)];
@@ -57,11 +57,11 @@ function frame(own, x, y, width, height) {
   return [
     x.ticks.map((v) => svg('path', { class: 'grid', d: `M${px(x.at(v))} ${SKETCH.top}V${floor}` })),
     y.ticks.map((v) => svg('path', { class: 'grid', d: `M${SKETCH.left} ${px(y.at(v))}H${width - SKETCH.right}` })),
-    x.ticks.map((v) => label(plain(v, 4), { x: px(x.at(v)), y: floor + 10 })),
+    x.ticks.map((v) => label(plain(v, 4), { x: px(x.at(v)), y: floor + 11 })),
     y.ticks.map((v) =>
       svg('text', { x: SKETCH.left - 3, y: px(y.at(v)) + 3, 'text-anchor': 'end' }, plain(v, 4)),
     ),
-    label(own.x.text, { x: (SKETCH.left + width) / 2, y: height - 7 }),
+    label(own.x.text, { x: (SKETCH.left + width) / 2, y: height - 5 }),
     label(own.y.text, { transform: `translate(8 ${floor / 2 + 3}) rotate(-90)` }),
   ];
 }

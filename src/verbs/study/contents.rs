@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use qcar_dsl::difference::Difference;
+use qcar_runtime::fit::report::Correlation;
 use serde::{Serialize, Serializer};
 
 use super::axle::Axle;
@@ -32,6 +33,7 @@ pub struct Contents<'a> {
     rig: Vec<Ratio>,
     track: Option<Track<'a>>,
     records: Vec<Replayed>,
+    correlations: &'a [Correlation],
     gap_map: GapMap,
     kappa: Vec<Explanation>,
     refitted: Vec<Refitted>,
@@ -93,6 +95,7 @@ impl<'a> Contents<'a> {
             rig,
             track: track(study),
             records: records(study),
+            correlations: &study.fitted.fit.all_correlations,
             gap_map: GapMap {
                 before: patches(study, &discovery.before.gap.tiles),
                 after: patches(study, &discovery.after.gap.tiles),
