@@ -39,7 +39,7 @@ const SCRIPTS: [&str; 14] = [
 ];
 
 /// The sections of a study; the last one starts.
-const STUDY: [&str; 17] = [
+const STUDY: [&str; 18] = [
     include_str!("report/js/shapes.js"),
     include_str!("report/js/changes.js"),
     include_str!("report/js/judgement.js"),
@@ -52,6 +52,7 @@ const STUDY: [&str; 17] = [
     include_str!("report/js/track.js"),
     include_str!("report/js/orbit.js"),
     include_str!("report/js/records.js"),
+    include_str!("report/js/heat.js"),
     include_str!("report/js/gap.js"),
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),

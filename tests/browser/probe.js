@@ -141,7 +141,10 @@
   function dashes() {
     const all = {};
     for (const path of document.querySelectorAll('tr.u-series .sample path, .key .sample path')) {
-      const role = path.closest('tr, .key').className.replace(/u-series|u-off|key/g, '').trim();
+      const role = path
+        .closest('tr, .key')
+        .className.replace(/u-series|u-off|key/g, '')
+        .trim();
       all[role] = [...new Set([...(all[role] || []), path.getAttribute('stroke-dasharray') || ''])];
     }
     return all;
@@ -167,7 +170,9 @@
     const before = count(canvases);
     dispatchEvent(new Event('beforeprint'));
     const width = document.body.getBoundingClientRect().right;
-    const wide = [...document.querySelectorAll('#report *')].filter((own) => own.getBoundingClientRect().right > width + 1);
+    const wide = [...document.querySelectorAll('#report *')].filter(
+      (own) => own.getBoundingClientRect().right > width + 1,
+    );
     found.printed = {
       width,
       wide: wide.map((own) => `${own.tagName} ${own.textContent.slice(0, 40)}`),
@@ -209,7 +214,9 @@
       return shade(own)[3] === 255 || !element.parentElement ? own : ground(element.parentElement);
     };
     const isText = (element) => [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
-    const texts = [...document.querySelectorAll('#report *')].filter((own) => isText(own) && own.getClientRects().length);
+    const texts = [...document.querySelectorAll('#report *')].filter(
+      (own) => isText(own) && own.getClientRects().length,
+    );
     const weak = texts.filter((own) => {
       const style = getComputedStyle(own);
       return contrast(own instanceof SVGElement ? style.fill : style.color, ground(own)) < 4.5;

@@ -11,7 +11,11 @@ function curves({ kc, loops }) {
     own.start === null || own.parameter_value === null ? '' : signed(own.start / own.parameter_value - 1),
   ]);
   const figures = loops.map((own) =>
-    captioned(`loop-${own.test}`, `${own.test}: force over displacement, and the gradient`, h('div', { class: 'canvas' })),
+    captioned(
+      `loop-${own.test}`,
+      `${own.test}: force over displacement, and the gradient`,
+      h('div', { class: 'canvas' }),
+    ),
   );
   const element = section(
     'kc',

@@ -87,7 +87,13 @@ function strongest(tiles) {
   if (!tiles.length) return null;
   const rows = tiles
     .slice(0, LISTED)
-    .map((tile) => [words(tile.channel), kindName(tile), runText(tile), ends(tile).join(' to '), number(tile.strength)]);
+    .map((tile) => [
+      words(tile.channel),
+      kindName(tile),
+      runText(tile),
+      ends(tile).join(' to '),
+      number(tile.strength),
+    ]);
   return details(
     'The largest residuals as a table',
     table(
@@ -109,7 +115,11 @@ function kappaPart(all) {
   const shown = picker('kappa', {
     label: 'κ at',
     options: all.map((own) => [own.place, words(own.place)]),
-    show: (name, place) => drawKappa(all.find((own) => own.place === name), place),
+    show: (name, place) =>
+      drawKappa(
+        all.find((own) => own.place === name),
+        place,
+      ),
   });
   const rows = all.map((own) => [
     words(own.place),
@@ -186,7 +196,11 @@ function effectPart(effect, effects) {
     'div',
     {},
     h('h3', {}, effectTitle(effect, effects)),
-    h('p', {}, `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`),
+    h(
+      'p',
+      {},
+      `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`,
+    ),
     h(
       'div',
       { class: 'columns two' },

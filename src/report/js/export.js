@@ -4,7 +4,11 @@
 function exports(name, rows) {
   if (view.printing) return null;
   const button = (text, label, act) =>
-    h('button', { type: 'button', 'aria-label': `${label}: ${name}`, onclick: (event) => act(event.currentTarget) }, text);
+    h(
+      'button',
+      { type: 'button', 'aria-label': `${label}: ${name}`, onclick: (event) => act(event.currentTarget) },
+      text,
+    );
   return h(
     'span',
     { class: 'exports' },
@@ -18,7 +22,10 @@ function machine(cell) {
   return cell
     .replace(/\u2212/g, '-')
     .replace(/(\d)\u202f(?=\d)/g, '$1')
-    .replace(/·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/g, (_, power) => `e${power.replace(/./g, (c) => (c === '⁻' ? '-' : '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(c)))}`)
+    .replace(
+      /·10([⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)/g,
+      (_, power) => `e${power.replace(/./g, (c) => (c === '⁻' ? '-' : '⁰¹²³⁴⁵⁶⁷⁸⁹'.indexOf(c)))}`,
+    )
     .replace(/[\u202f\s]+/g, ' ')
     .trim();
 }

@@ -16,7 +16,11 @@ function drawGrid(runs, sensor, place) {
   const sorted = runs.filter(traceOf).sort((a, b) => a.cleat.localeCompare(b.cleat) || a.speed - b.speed);
   const speeds = [...new Set(sorted.map((run) => run.speed))].sort((a, b) => a - b);
   const cells = sorted.map((run) => ({ run, element: gridCell(run, sensor, speeds.indexOf(run.speed) + 1) }));
-  const grid = h('div', { class: 'grid', style: `--speeds: ${speeds.length}` }, cells.map(({ element }) => element));
+  const grid = h(
+    'div',
+    { class: 'grid', style: `--speeds: ${speeds.length}` },
+    cells.map(({ element }) => element),
+  );
   place.replaceChildren(grid);
   const curves = cells.map(({ run }) => traceCurves(traceOf(run)));
   const values = curves.flat().flatMap((curve) => curve.values.filter(Number.isFinite));

@@ -38,7 +38,9 @@ function lead({ summary, discover }) {
   const names = discover.effects.map(placed).join(', and ');
   const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
   const doubt = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
-  return muchLeft(discover).length ? `Partly explained by ${names}${doubt}. Much is left.` : `Missing: ${names}${doubt}.`;
+  return muchLeft(discover).length
+    ? `Partly explained by ${names}${doubt}. Much is left.`
+    : `Missing: ${names}${doubt}.`;
 }
 
 // What explains the runs as well as one of the effects of the answer, or better.
@@ -70,7 +72,9 @@ function consequence(discover, { verdict: kind }, likely) {
 }
 
 function likelihood({ probability }) {
-  return probability === null ? '' : ` The answer has a probability of ${chance(probability)} among all that was tried.`;
+  return probability === null
+    ? ''
+    : ` The answer has a probability of ${chance(probability)} among all that was tried.`;
 }
 
 function chance(probability) {

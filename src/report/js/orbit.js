@@ -10,11 +10,22 @@ function orbit(place, asked) {
   place.replaceChildren(
     svg(
       'svg',
-      { class: view.printing ? 'sketch' : 'sketch orbit', viewBox: `0 0 ${width} ${height}`, width, height, role: 'img', 'aria-label': name },
+      {
+        class: view.printing ? 'sketch' : 'sketch orbit',
+        viewBox: `0 0 ${width} ${height}`,
+        width,
+        height,
+        role: 'img',
+        'aria-label': name,
+      },
       frame(own, x, y, width, height),
       own.curves.map((curve) => curveShape(own, curve, x, y)),
     ),
-    h('p', { class: 'legend' }, own.curves.map((curve) => [h('span', {}, sample(curve.role), curve.label), ' '])),
+    h(
+      'p',
+      { class: 'legend' },
+      own.curves.map((curve) => [h('span', {}, sample(curve.role), curve.label), ' ']),
+    ),
   );
   if (!view.printing) place.before(exports(name, () => curveRows(own, own.curves)));
   drawn(place);

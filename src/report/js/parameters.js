@@ -108,7 +108,11 @@ function correlationMap(pairs) {
     return pair ? pair.value : 0;
   };
   const cell = (r) =>
-    h('span', { class: r < 0 ? 'negative' : 'positive', style: `--share: ${(45 * Math.abs(r)).toFixed(0)}%` }, minus(r.toFixed(2)));
+    h(
+      'span',
+      { class: r < 0 ? 'negative' : 'positive', style: `--share: ${(45 * Math.abs(r)).toFixed(0)}%` },
+      minus(r.toFixed(2)),
+    );
   return table(
     'Correlations of the estimates',
     [['', 'text'], ...names.map((name) => [name, 'number'])],

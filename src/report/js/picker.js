@@ -49,7 +49,9 @@ function printed(options, show) {
   const places = options.map(([, text]) => [h('div', {}), text]);
   return {
     control: null,
-    place: places.map(([place, text]) => h('div', { class: 'sheet' }, options.length > 1 ? h('h4', {}, text) : null, place)),
+    place: places.map(([place, text]) =>
+      h('div', { class: 'sheet' }, options.length > 1 ? h('h4', {}, text) : null, place),
+    ),
     draw: () => options.forEach(([value, text], at) => show(value, places[at][0], text)),
   };
 }

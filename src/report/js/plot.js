@@ -30,7 +30,10 @@ function inChosenUnits(own) {
   const scaled = (values, { factor }) => (factor === 1 ? values : values.map((v) => (v === null ? null : v * factor)));
   const curves = own.curves.flatMap((curve) => {
     const [values, error] = [scaled(curve.values, up), curve.error && scaled(curve.error, up)];
-    const edge = (sign) => ({ role: 'band', values: values.map((v, at) => (v === null ? null : v + sign * error[at])) });
+    const edge = (sign) => ({
+      role: 'band',
+      values: values.map((v, at) => (v === null ? null : v + sign * error[at])),
+    });
     return [...(error ? [edge(-1), edge(1)] : []), { ...curve, values, error }];
   });
   return {

@@ -7,7 +7,11 @@ function records({ records: all }) {
     control: choice,
     label: 'Run',
     options: runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
-    show: (run, place) => drawRecords(all.filter((own) => own.run === run), place),
+    show: (run, place) =>
+      drawRecords(
+        all.filter((own) => own.run === run),
+        place,
+      ),
   });
   const extended = all.some((own) => own.after);
   const element = section(
@@ -35,7 +39,13 @@ function drawRecords(own, place) {
   const parts = own.map((record) => ({ record, figures: recordFigures(record) }));
   place.replaceChildren(
     ...parts.map(({ record, figures: { time, over } }) =>
-      h('div', {}, h('h4', {}, `${words(record.channel)}, ${record.quantity}`), time, h('div', { class: 'columns two' }, over)),
+      h(
+        'div',
+        {},
+        h('h4', {}, `${words(record.channel)}, ${record.quantity}`),
+        time,
+        h('div', { class: 'columns two' }, over),
+      ),
     ),
   );
   return parts.map(({ record, figures: { time, over } }) => {
@@ -61,7 +71,9 @@ function recordFigures(record) {
   const name = `${runName(record.run)}: ${record.quantity} of ${words(record.channel)}`;
   return {
     time: figure('record', `${name} over time`, canvas()),
-    over: record.travel ? TRAVELS.map(({ of, label }) => figure(`record-${of}`, `${name} over ${label}`, canvas())) : [],
+    over: record.travel
+      ? TRAVELS.map(({ of, label }) => figure(`record-${of}`, `${name} over ${label}`, canvas()))
+      : [],
   };
 }
 

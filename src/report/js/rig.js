@@ -18,7 +18,11 @@ function rig({ rig: ratios }) {
     show: (run, place) =>
       run === ALL
         ? drawLevels(ratios, channels, place)
-        : drawRatios(ratios.filter((ratio) => ratio.run === run), channels, place),
+        : drawRatios(
+            ratios.filter((ratio) => ratio.run === run),
+            channels,
+            place,
+          ),
   });
   const element = section(
     'rig',
@@ -65,7 +69,13 @@ function drawLevels(ratios, channels, place) {
       ),
     ),
   }));
-  place.replaceChildren(h('div', { class: 'columns' }, parts.map(({ column }) => column)));
+  place.replaceChildren(
+    h(
+      'div',
+      { class: 'columns' },
+      parts.map(({ column }) => column),
+    ),
+  );
   return parts.flatMap(({ own, column }) => levelPlots(own, column));
 }
 

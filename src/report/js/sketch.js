@@ -29,12 +29,18 @@ function alongX({ x, at, from }, width) {
 }
 
 function upY({ y, at, curves, from }, height) {
-  const isShown = (v, line) => v !== null && Number.isFinite(v) && (!from || (at[line] >= from[0] && at[line] <= from[1]));
+  const isShown = (v, line) =>
+    v !== null && Number.isFinite(v) && (!from || (at[line] >= from[0] && at[line] <= from[1]));
   const values = curves.flatMap((curve) => curve.values.filter(isShown));
   const ends = values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
   const [low, high] = (y.range || padded)(null, ...(values.length ? ends : [null, null]));
   const length = height - SKETCH.top - SKETCH.bottom;
-  return { low, high, at: (v) => SKETCH.top + (length * (high - v)) / (high - low), ticks: evenTicks(low, high, length / 22) };
+  return {
+    low,
+    high,
+    at: (v) => SKETCH.top + (length * (high - v)) / (high - low),
+    ticks: evenTicks(low, high, length / 22),
+  };
 }
 
 function decadeTicks(low, high) {
@@ -58,9 +64,7 @@ function frame(own, x, y, width, height) {
     x.ticks.map((v) => svg('path', { class: 'grid', d: `M${px(x.at(v))} ${SKETCH.top}V${floor}` })),
     y.ticks.map((v) => svg('path', { class: 'grid', d: `M${SKETCH.left} ${px(y.at(v))}H${width - SKETCH.right}` })),
     x.ticks.map((v) => label(plain(v, 4), { x: px(x.at(v)), y: floor + 11 })),
-    y.ticks.map((v) =>
-      svg('text', { x: SKETCH.left - 3, y: px(y.at(v)) + 3, 'text-anchor': 'end' }, plain(v, 4)),
-    ),
+    y.ticks.map((v) => svg('text', { x: SKETCH.left - 3, y: px(y.at(v)) + 3, 'text-anchor': 'end' }, plain(v, 4))),
     label(own.x.text, { x: (SKETCH.left + width) / 2, y: height - 5 }),
     label(own.y.text, { transform: `translate(8 ${floor / 2 + 3}) rotate(-90)` }),
   ];

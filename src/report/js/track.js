@@ -6,12 +6,13 @@ function track({ track: own, simulate }) {
   if (!own) return null;
   const options = own.runs.map((run) => [run.file, passageTitle(run)]);
   const first = own.runs[Math.floor(own.runs.length / 2)].file;
+  const runOf = (file) => own.runs.find((run) => run.file === file);
   const pick = (name, draw) =>
     picker(name, {
       label: 'Run',
       options,
       first,
-      show: (file, place, text) => draw(own.runs.find((run) => run.file === file), place, text),
+      show: (file, place, text) => draw(runOf(file), place, text),
     });
   const [traces, variants] = [pick('traces', drawTraces), pick('variants', drawVariants)];
   const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
@@ -36,15 +37,7 @@ function track({ track: own, simulate }) {
     traces.control,
     traces.place,
     grid ? [h('h3', {}, 'All runs side by side'), grid.control, grid.place] : null,
-    h('h3', {}, 'Errors over all runs'),
-    h(
-      'p',
-      {},
-      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
-    ),
-    h('div', { class: 'columns four' }, histograms.map((part) => part.element)),
-    summaryTable(simulate),
-    details('Every run', errorTable(simulate)),
+    errorsPart(simulate, histograms),
     h('h3', {}, 'Variants of the model'),
     h(
       'p',
@@ -67,6 +60,24 @@ function track({ track: own, simulate }) {
       histograms.forEach(({ element: place, own }) => histogramPlot(own, place.querySelector('.canvas')));
     },
   };
+}
+
+function errorsPart(simulate, histograms) {
+  return [
+    h('h3', {}, 'Errors over all runs'),
+    h(
+      'p',
+      {},
+      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
+    ),
+    h(
+      'div',
+      { class: 'columns four' },
+      histograms.map((part) => part.element),
+    ),
+    summaryTable(simulate),
+    details('Every run', errorTable(simulate)),
+  ];
 }
 
 // What no rig run sees is no more than a guess in the rides of the rig fit.

@@ -8,7 +8,12 @@ function passages({ cleat, traces }) {
     label: 'Run',
     options: traces.map((own) => [own.run, passageName(own)]),
     first: traces[Math.floor(traces.length / 2)].run,
-    show: (name, place, text) => passagePlots(traces.find((own) => own.run === name), place, text),
+    show: (name, place, text) =>
+      passagePlots(
+        traces.find((own) => own.run === name),
+        place,
+        text,
+      ),
   });
   const tables = picker('passage tables', {
     control: choice,

@@ -8,7 +8,11 @@ function ratios(data) {
     control: choice,
     label: 'Run',
     options: runs.map(([run, role]) => [run, `${runName(run)}${role ? ` (${roleName(role)})` : ''}`]),
-    show: (run, place) => drawCompared(all.filter((ratio) => (ratio.run || '') === run), place),
+    show: (run, place) =>
+      drawCompared(
+        all.filter((ratio) => (ratio.run || '') === run),
+        place,
+      ),
   });
   const count = Math.max(...all.map((own) => own.measured.length));
   const element = section(
@@ -94,10 +98,7 @@ function sideCurves(ratio, part) {
     values: value[part],
     error: band[part],
   }));
-  return [
-    ...observed,
-    ...SIDES.map(([own, letter, role]) => ({ role, label: letter, values: ratio[own][part] })),
-  ];
+  return [...observed, ...SIDES.map(([own, letter, role]) => ({ role, label: letter, values: ratio[own][part] }))];
 }
 
 function ratioTable({ transmissibility: all }) {
