@@ -173,6 +173,7 @@
     const wide = [...document.querySelectorAll('#report *')].filter(
       (own) => own.getBoundingClientRect().right > width + 1,
     );
+    found.on_paper = [...document.querySelectorAll('[data-figure]')].map((figure) => figure.dataset.figure);
     found.printed = {
       width,
       wide: wide.map((own) => `${own.tagName} ${own.textContent.slice(0, 40)}`),

@@ -141,6 +141,55 @@ fn maps_tell_runs_and_axes_apart() {
     }
 }
 
+/// Records are replayed over time, and the force of a damper over what moves it.
+#[test]
+fn records_are_drawn_beside_what_the_models_make_of_them() {
+    let Some(browser) = browser_or_word() else { return };
+    let study = Studied::new("mr_damper");
+    let found = look(&browser, &page(&study), 1280, "light");
+    let wanted = [
+        "record",
+        "record-velocity",
+        "record-displacement",
+        "gap-before",
+        "gap-after",
+    ];
+    check(&found, (1280, &found.to_string()), &wanted);
+    assert!(strings(&found["tables"]).contains(&"NRMS of each run"), "{found}");
+    let lead = found["paragraphs"][0].as_str().unwrap();
+    assert!(
+        lead.starts_with("Partly explained by ") && lead.ends_with("Much is left."),
+        "{lead}"
+    );
+    let text = found["units"]["mm"].as_str().unwrap();
+    assert!(text.contains("sampled at 100\u{202f}Hz"), "{text}");
+    let printed: Vec<&str> = strings(&found["on_paper"]);
+    assert_eq!(
+        printed.iter().filter(|figure| **figure == "record").count(),
+        5,
+        "{printed:?}"
+    );
+}
+
+/// All levels of the rig lie over each other in one choice, and all estimates have their correlations in one table.
+#[test]
+fn what_belongs_together_stands_in_one_figure() {
+    let Some(browser) = browser_or_word() else { return };
+    let found = look(&browser, &page(&ONE_MISSING), 1280, "light");
+    let printed = strings(&found["on_paper"]);
+    assert_eq!(
+        printed.iter().filter(|figure| **figure == "levels-magnitude").count(),
+        3,
+        "{printed:?}"
+    );
+    let drawn = strings(&found["figures"]);
+    assert_eq!(drawn.iter().filter(|figure| **figure == "grid").count(), 6, "{drawn:?}");
+    assert!(
+        strings(&found["tables"]).contains(&"Correlations of the estimates"),
+        "{found}"
+    );
+}
+
 /// What is saved or copied is plain text for a spreadsheet.
 #[test]
 fn figures_and_tables_can_be_taken_away() {
@@ -229,7 +278,7 @@ fn a_class_is_told_as_one_of_several() {
 }
 
 /// What a study and every comparison of a rolling model draw.
-const STUDY: [&str; 11] = [
+const STUDY: [&str; 12] = [
     "axle-z",
     "loop-bounce",
     "axle-x",
@@ -238,6 +287,7 @@ const STUDY: [&str; 11] = [
     "rig-coherence",
     "modes-before",
     "trace",
+    "grid",
     "histogram-peak-body_z",
     "variant",
     "gap-before",

@@ -116,7 +116,7 @@ function correlationMap(pairs) {
   return table(
     'Correlations of the estimates',
     [['', 'text'], ...names.map((name) => [name, 'number'])],
-    names.map((a) => [a, ...names.map((b) => (a === b ? '1' : cell(value(a, b))))]),
+    names.map((a) => [a, ...names.map((b) => (a === b ? h('span', {}, '1') : cell(value(a, b))))]),
     { class: 'table matrix' },
   );
 }
