@@ -8,7 +8,7 @@ fn paper_has_every_column_and_every_run() {
     let Some(browser) = printer_or_word() else { return };
     let text = printed(&browser, &page(&ONE_MISSING), &["-layout"]);
     let line = |start: &str| text.lines().find(|line| line.starts_with(start)).unwrap_or("");
-    assert!(line("parameter ").ends_with("extended"), "{text}");
+    assert!(line("parameter  ").ends_with("extended"), "{text}");
     for parameter in ["m_wheel ", "k_tire ", "c_tire "] {
         assert_eq!(line(parameter).matches('±').count(), 2, "{}", line(parameter));
     }

@@ -217,7 +217,7 @@ function effectPart(effect, effects) {
         ? table(
             'Rivals, by how probable they are beside it',
             [
-              ['effect', 'text'],
+              ['effect', 'text sentence'],
               ['probability', 'text sentence'],
               ['judged', 'text sentence'],
             ],
