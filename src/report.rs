@@ -39,7 +39,7 @@ const SCRIPTS: [&str; 14] = [
 ];
 
 /// The sections of a study; the last one starts.
-const STUDY: [&str; 18] = [
+const STUDY: [&str; 19] = [
     include_str!("report/js/shapes.js"),
     include_str!("report/js/changes.js"),
     include_str!("report/js/judgement.js"),
@@ -54,6 +54,7 @@ const STUDY: [&str; 18] = [
     include_str!("report/js/records.js"),
     include_str!("report/js/heat.js"),
     include_str!("report/js/gap.js"),
+    include_str!("report/js/effects.js"),
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),
     include_str!("report/js/limits.js"),

@@ -55,6 +55,31 @@ fn a_rival_that_is_level_or_ahead_is_not_told_apart() {
 }
 
 #[test]
+fn a_learned_law_is_told_without_a_cause() {
+    let Some(browser) = browser_or_word() else { return };
+    let said = verdict(
+        &browser,
+        &with(|data| {
+            data["summary"]["verdict"] = json!("unknown");
+            data["discover"]["verdict"] = json!("unknown");
+            data["discover"]["effects"] = json!([]);
+            data["discover"]["learned"] = json!({
+                "at": "damper",
+                "explained": 0.93,
+                "gap": { "fit": { "before": 59.0, "after": 4.0 }, "held_out": { "before": 36.0, "after": 3.0 } },
+                "laws": [{
+                    "name": "damping_law", "at": "damper", "words": "it falls with the speed",
+                    "parameters": { "d_1": 0.4 }, "stderr": { "d_1": 0.1 }, "units": { "d_1": "1" }, "effect_file": null,
+                }],
+                "model_file": null,
+            });
+        }),
+    );
+    let law = "Learned from the data, without a cause: damping law at damper, which would explain 93.0 % of it.";
+    assert!(said[1].contains(law), "{said:?}");
+}
+
+#[test]
 fn a_fit_that_falls_is_explained() {
     let Some(browser) = browser_or_word() else { return };
     let whole = verdict(&browser, &page(&ONE_MISSING));

@@ -18,6 +18,7 @@ function discovery(data) {
     strongest(data.gap_map.before),
     stiffness && stiffness.element,
     discover.effects.map((effect) => effectPart(effect, discover.effects)),
+    discover.learned && learnedPart(discover.learned),
     changes && changesPart(changes),
   );
   return {
@@ -176,54 +177,4 @@ function kappaPlot(own, part, place) {
     curves,
     sync: 'kappa',
   });
-}
-
-function effectPart(effect, effects) {
-  const rows = Object.entries(effect.parameters).map(([name, value]) => {
-    const [error, unit] = [effect.stderr[name], effect.units[name]];
-    return [
-      name,
-      error === null ? quantity(value, unit) : measured(value, error, unit),
-      error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
-    ];
-  });
-  const rivals = effect.rivals.map((rival) => [
-    `${words(rival.effect)} at ${words(rival.at)}`,
-    odds(rival.behind),
-    rival.early ? 'before its fit had settled' : 'fitted to the end',
-  ]);
-  return h(
-    'div',
-    {},
-    h('h3', {}, effectTitle(effect, effects)),
-    h(
-      'p',
-      {},
-      `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`,
-    ),
-    h(
-      'div',
-      { class: 'columns two' },
-      table(
-        'What it is',
-        [
-          ['parameter', 'text'],
-          ['value', 'number'],
-          ['standard error', 'text'],
-        ],
-        rows,
-      ),
-      rivals.length
-        ? table(
-            'Rivals, by how probable they are beside it',
-            [
-              ['effect', 'text sentence'],
-              ['probability', 'text sentence'],
-              ['judged', 'text sentence'],
-            ],
-            rivals,
-          )
-        : null,
-    ),
-  );
 }

@@ -67,8 +67,14 @@ function consequence(discover, { verdict: kind }, likely) {
     case 'class':
       return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}, and 1 is noise. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained as well, so that no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
     default:
-      return `${before}, where 1 is noise, and nothing in the catalogue closes it. The map below shows where it is.${place} ${mostLeft(discover)}`;
+      return `${before}, where 1 is noise, and nothing in the catalogue closes it. The map below shows where it is.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
   }
+}
+
+function learnedLaw({ learned }) {
+  if (!learned) return '';
+  const laws = learned.laws.map(placed).join(' and ');
+  return ` Learned from the data, without a cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
 }
 
 function likelihood({ probability }) {

@@ -1,0 +1,72 @@
+// Each effect that was found, with its rivals; and the laws that were learned where none was.
+
+function effectPart(effect, effects) {
+  return h(
+    'div',
+    {},
+    h('h3', {}, effectTitle(effect, effects)),
+    h(
+      'p',
+      {},
+      `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`,
+    ),
+    h('div', { class: 'columns two' }, strengthTable('What it is', effect), rivalTable(effect.rivals)),
+  );
+}
+
+function strengthTable(title, { parameters, stderr, units }) {
+  const rows = Object.entries(parameters).map(([name, value]) => {
+    const [error, unit] = [stderr[name], units[name]];
+    return [
+      name,
+      error === null ? quantity(value, unit) : measured(value, error, unit),
+      error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
+    ];
+  });
+  return table(
+    title,
+    [
+      ['parameter', 'text'],
+      ['value', 'number'],
+      ['standard error', 'text'],
+    ],
+    rows,
+  );
+}
+
+function rivalTable(rivals) {
+  if (!rivals.length) return null;
+  return table(
+    'Rivals, by how probable they are beside it',
+    [
+      ['effect', 'text sentence'],
+      ['probability', 'text sentence'],
+      ['judged', 'text sentence'],
+    ],
+    rivals.map((rival) => [
+      `${words(rival.effect)} at ${words(rival.at)}`,
+      odds(rival.behind),
+      rival.early ? 'before its fit had settled' : 'fitted to the end',
+    ]),
+  );
+}
+
+// A law says what the axle does, not why.
+function learnedPart({ laws, explained, gap }) {
+  const judged = gap.held_out.before === null ? gap.fit : gap.held_out;
+  return h(
+    'div',
+    {},
+    h('h3', {}, 'Learned from the data'),
+    h(
+      'p',
+      {},
+      `Without a cause, but with ${percent(explained, 3)} of the excess explained: the residual goes from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
+    ),
+    laws.map((law) => [
+      h('h4', {}, placed(law)),
+      h('p', {}, `${law.words}.`),
+      details(`Coefficients of the ${placed(law)}`, strengthTable(placed(law), law)),
+    ]),
+  );
+}
