@@ -10,7 +10,13 @@ use super::{NOTHING_MISSING, ONE_MISSING, page};
 #[test]
 fn beside_nothing_missing_stands_the_worst_sensor() {
     let Some(browser) = browser_or_word() else { return };
-    let said = verdict(&browser, &page(&NOTHING_MISSING));
+    let found = look(&browser, &page(&NOTHING_MISSING), 1280, "light");
+    let said = paragraphs(&found);
+    let tables = found["tables"].to_string();
+    assert!(
+        tables.contains("Usual size over the least that would be certain"),
+        "{tables}"
+    );
     assert!(said[0].starts_with("Nothing is missing"), "{said:?}");
     assert!(said[1].contains("Most is left of body x in cleat runs: "), "{said:?}");
     assert!(
@@ -98,7 +104,10 @@ fn a_fit_that_falls_is_explained() {
 
 /// The verdict's paragraphs.
 fn verdict(browser: &Path, page: &str) -> Vec<String> {
-    let found = look(browser, page, 1280, "light");
+    paragraphs(&look(browser, page, 1280, "light"))
+}
+
+fn paragraphs(found: &Value) -> Vec<String> {
     let paragraphs = found["paragraphs"].as_array().unwrap();
     paragraphs.iter().map(|own| own.as_str().unwrap().to_owned()).collect()
 }

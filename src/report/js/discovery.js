@@ -19,6 +19,7 @@ function discovery(data) {
     stiffness && stiffness.element,
     discover.effects.map((effect) => effectPart(effect, discover.effects)),
     discover.learned && learnedPart(discover.learned),
+    visiblePart(discover.visible),
     changes && changesPart(changes),
   );
   return {

@@ -1,4 +1,4 @@
-// Each effect that was found, with its rivals; and the laws that were learned where none was.
+// Each effect that was found, with its rivals; the laws that were learned where none was; and what would have been seen.
 
 function effectPart(effect, effects) {
   return h(
@@ -68,5 +68,24 @@ function learnedPart({ laws, explained, gap }) {
       h('p', {}, `${law.words}.`),
       details(`Coefficients of the ${placed(law)}`, strengthTable(placed(law), law)),
     ]),
+  );
+}
+
+// Where nothing is missing: an effect whose usual size is below the limit may be there, unseen.
+function visiblePart(visible) {
+  if (!visible.length) return null;
+  const sizes = ({ usual }) => Object.entries(usual).map(([name, value]) => `${name} ${number(value)}`);
+  return details(
+    'How clearly an effect of usual size would have been seen',
+    h('p', {}, 'The size over the least that would be certain, in SI units: below 1 it may be there, unseen.'),
+    table(
+      'Usual size over the least that would be certain',
+      [
+        ['effect', 'text'],
+        ['usual size', 'text sentence'],
+        ['over the limit', 'number'],
+      ],
+      visible.map((own) => [placed(own), sizes(own).join(', '), number(own.times_the_limit)]),
+    ),
   );
 }
