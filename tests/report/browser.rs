@@ -13,7 +13,7 @@ const FRAME: &str = include_str!("../browser/frame.html");
 /// What the browser is called.
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
-/// The browser; without one, a word past the capture of the test's output, so that nobody takes this for a check.
+/// The browser; without one, a word, so that nobody takes this for a check.
 pub fn browser_or_word() -> Option<PathBuf> {
     let found = BROWSERS.iter().find_map(|name| program(name));
     if found.is_none() {
@@ -32,8 +32,10 @@ pub fn printer_or_word() -> Option<PathBuf> {
     reads.then_some(found)
 }
 
+/// Past the capture of the test's output.
 fn say(word: &str) {
-    writeln!(std::io::stderr(), "{word}").unwrap();
+    let mut out = std::io::stderr();
+    writeln!(out, "{word}").unwrap();
 }
 
 fn program(name: &str) -> Option<PathBuf> {
