@@ -35,7 +35,7 @@ function lead({ summary, discover }) {
   if (summary.verdict !== 'found') {
     return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
   }
-  const names = discover.effects.map(placed).join(', and ');
+  const names = together(discover.effects.map(placed));
   const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
   const doubt = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
   return muchLeft(discover).length
@@ -122,6 +122,11 @@ function fallingFit({ rig: ratios }) {
   });
   if (!parts.length) return null;
   return `The fit percentage falls: ${parts.join(', ')}. The baseline model was fitted to these ratios alone. The extended model is fitted to all runs, cleat and K&C runs too, each by its own uncertainty, so it may meet the sweeps less closely and the whole better.`;
+}
+
+// `a, b and c`
+function together(names) {
+  return names.length > 1 ? `${names.slice(0, -1).join(', ')} and ${names[names.length - 1]}` : names.join('');
 }
 
 function placed(effect) {
