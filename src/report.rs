@@ -13,34 +13,48 @@ const UPLOT: [&str; 2] = [
     include_str!("report/uplot/uPlot.iife.min.js"),
 ];
 
-const STYLE: [&str; 3] = [
+const STYLE: [&str; 4] = [
     include_str!("report/css/page.css"),
     include_str!("report/css/parts.css"),
     include_str!("report/css/figures.css"),
+    include_str!("report/css/print.css"),
 ];
 
 /// What every report draws with, in the order in which they use each other.
-const SCRIPTS: [&str; 7] = [
+const SCRIPTS: [&str; 14] = [
+    include_str!("report/js/view.js"),
     include_str!("report/js/format.js"),
+    include_str!("report/js/units.js"),
     include_str!("report/js/dom.js"),
+    include_str!("report/js/export.js"),
+    include_str!("report/js/roles.js"),
+    include_str!("report/js/sketch.js"),
     include_str!("report/js/plot.js"),
     include_str!("report/js/keys.js"),
+    include_str!("report/js/picker.js"),
     include_str!("report/js/layout.js"),
     include_str!("report/js/axle.js"),
+    include_str!("report/js/theme.js"),
     include_str!("report/js/page.js"),
 ];
 
 /// The sections of a study; the last one starts.
-const STUDY: [&str; 13] = [
+const STUDY: [&str; 19] = [
     include_str!("report/js/shapes.js"),
     include_str!("report/js/changes.js"),
+    include_str!("report/js/judgement.js"),
     include_str!("report/js/verdict.js"),
     include_str!("report/js/curves.js"),
     include_str!("report/js/rig.js"),
     include_str!("report/js/parameters.js"),
     include_str!("report/js/modes.js"),
+    include_str!("report/js/grid.js"),
     include_str!("report/js/track.js"),
+    include_str!("report/js/orbit.js"),
+    include_str!("report/js/records.js"),
+    include_str!("report/js/heat.js"),
     include_str!("report/js/gap.js"),
+    include_str!("report/js/effects.js"),
     include_str!("report/js/discovery.js"),
     include_str!("report/js/record.js"),
     include_str!("report/js/limits.js"),

@@ -51,8 +51,8 @@ pub struct About {
 pub struct Parameter {
     /// Name.
     pub name: String,
-    /// Unit.
-    pub unit: Unit,
+    /// What people call its unit.
+    pub unit: String,
     /// Sentence.
     pub doc: String,
     /// What it is when nobody gives it a value.

@@ -73,7 +73,7 @@ fn unit(coordinate: &Coordinate, rates: i16) -> Unit {
 fn parameter(p: &model::Parameter) -> Parameter {
     Parameter {
         name: p.name.clone(),
-        unit: p.unit,
+        unit: p.unit_name.clone(),
         doc: p.doc.clone(),
         default: p.default,
         range: p.range,

@@ -58,6 +58,8 @@ pub struct Parameter {
     pub name: String,
     /// A coherent SI unit.
     pub unit: Unit,
+    /// What people call it.
+    pub unit_name: String,
     /// The sentence.
     pub doc: String,
     /// In SI.

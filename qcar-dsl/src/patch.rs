@@ -49,7 +49,6 @@ use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::check_text;
 use crate::source::Source;
 use crate::syntax::{Effect, File, Item, Name};
-use crate::units::Unit;
 
 /// Why something cannot be made.
 pub(crate) type Refused = Vec<Diagnostic>;
@@ -93,8 +92,8 @@ pub struct NewParameter {
     pub name: String,
     /// Its name in the effect: another one where the model had used that name.
     pub effect_name: String,
-    /// A coherent SI unit.
-    pub unit: Unit,
+    /// What people call its coherent SI unit.
+    pub unit: String,
     /// Where a search begins, in SI.
     pub start: f64,
     /// What is plausible, in SI, lower below upper.

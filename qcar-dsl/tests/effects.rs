@@ -92,6 +92,16 @@ fn a_patched_model_is_a_file_that_reads_well() {
     insta::assert_snapshot!(patched.text("Evidence: none yet."));
 }
 
+/// A cycle is no radian: what is declared in Hz is printed so, of an effect and of the model that holds it.
+#[test]
+fn a_frequency_keeps_its_unit() {
+    let patched = patched(&effect("tire_dynamic_stiffness"), &model("axle_c"), "tire");
+    let name = "relaxation_frequency";
+    let new = patched.parameters.iter().find(|own| own.name == name).unwrap();
+    let held = patched.model.parameters.iter().find(|own| own.name == name).unwrap();
+    assert_eq!((new.unit.as_str(), held.unit_name.as_str()), ("Hz", "Hz"));
+}
+
 /// Where each effect applies, model by model: what a discovery chooses from.
 #[test]
 fn the_catalogue_applies_where_it_should() {

@@ -228,7 +228,7 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
     for (place, finding) in discovery.findings.iter().enumerate() {
         let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref());
         let own = patched.iter().flat_map(|patched| &patched.parameters);
-        units.push(own.map(|own| (own.effect_name.clone(), own.unit.to_string())).collect());
+        units.push(own.map(|own| (own.effect_name.clone(), own.unit.clone())).collect());
         if let Some(patched) = patched.filter(|own| place < found && own.signals.is_empty()) {
             bench = bench.holding(patched.model);
         }

@@ -24,6 +24,8 @@ pub(crate) mod rig;
 pub(crate) mod shapes;
 // Cleat runs, their errors and variants.
 mod track;
+// Records over time.
+mod records;
 // Where the gap is, and what explains it.
 mod gap;
 // The answer in a few numbers.

@@ -6,7 +6,22 @@
   addEventListener('securitypolicyviolation', (event) => found.violations.push(event.blockedURI));
   for (const level of ['error', 'warn']) console[level] = (...what) => found.errors.push(what.join(' '));
 
-  function look() {
+  // What would go to a file or to the clipboard.
+  found.saved = [];
+  URL.createObjectURL = (blob) => {
+    blob.text().then((text) => found.saved.push(text));
+    return 'data:,';
+  };
+  HTMLAnchorElement.prototype.click = () => {};
+  Object.defineProperty(navigator, 'clipboard', {
+    value: { writeText: (text) => Promise.resolve(found.saved.push(text)) },
+  });
+
+  // Until what has changed is drawn.
+  const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(() => setTimeout(done))));
+
+  async function look() {
+    await narrowed();
     const figures = [...document.querySelectorAll('[data-figure]')];
     const root = document.documentElement;
     found.figures = figures.map((figure) => figure.dataset.figure);
@@ -24,12 +39,25 @@
     found.cut = [...document.querySelectorAll('.table')]
       .filter((table) => table.scrollWidth > table.clientWidth + 1)
       .map((table) => table.getAttribute('aria-label'));
+    const isNamed = (own) => own.getAttribute('role') === 'img' && own.getAttribute('aria-label');
+    found.unnamed = [
+      ...figures.filter((figure) => !figure.getAttribute('aria-label')),
+      ...[...document.querySelectorAll('canvas')].filter((own) => !isNamed(own)),
+    ].map((own) => own.outerHTML.slice(0, 80));
+    found.alarms = document.querySelectorAll('.failure').length;
+    found.faint = faint();
+    found.dashes = dashes();
+    found.tables = [...document.querySelectorAll('.table')].map((own) => own.getAttribute('aria-label'));
     found.headings = [...document.querySelectorAll('h3')].map((heading) => heading.textContent);
     found.captions = [...document.querySelectorAll('figcaption')].map((caption) => caption.textContent);
     found.paragraphs = [...document.querySelectorAll('#verdict > p')].map((paragraph) => paragraph.textContent);
     found.keyboard = keyboard();
+    found.zoom = await zoomed();
+    found.maps = maps();
+    await exported();
     found.themes = themes();
-    parent.postMessage(JSON.stringify(found), '*');
+    await printed();
+    await otherUnits();
   }
 
   // A canvas on which nothing was painted, or a drawing of no size.
@@ -49,11 +77,155 @@
     const map = document.querySelector('svg.heat');
     plot.focus();
     press(plot, 'ArrowRight');
-    const said = [...plot.querySelectorAll('.u-value')].map((value) => value.textContent).filter((text) => text).length;
+    const said = [...plot.querySelectorAll('.u-value')].map((value) => value.textContent).filter((text) => text);
     if (!map) return { focused: document.activeElement === plot, plot: said };
     map.focus();
     press(map, 'ArrowRight');
     return { focused: document.activeElement === map, plot: said, map: document.querySelector('.readout').textContent };
+  }
+
+  // A page that becomes narrower and wide again must not call that a failure.
+  async function narrowed() {
+    const main = document.querySelector('main');
+    const width = () => document.querySelector('canvas').clientWidth;
+    const before = width();
+    main.style.width = '330px';
+    await frame();
+    await frame();
+    found.narrower = width() < before || before < 300;
+    main.style.width = '';
+    await frame();
+    await frame();
+  }
+
+  // Where the pointer stands in a plot of the rig at first, and after zooming in to the right of that and taking
+  // another run: in what is shown then.
+  async function zoomed() {
+    const rig = document.querySelector('#rig, #ratios');
+    const runs = rig ? [...rig.querySelectorAll('.choice input')] : [];
+    if (runs.length < 2) return null;
+    const key = (name, shiftKey = false) =>
+      rig.querySelector('.canvas').dispatchEvent(new KeyboardEvent('keydown', { key: name, shiftKey, bubbles: true }));
+    const place = () => parseFloat(rig.querySelector('.canvas .u-value').textContent);
+    runs[1].click();
+    await frame();
+    key('ArrowRight');
+    const before = place();
+    for (let step = 0; step < 30; step += 1) key('ArrowRight', true);
+    for (let step = 0; step < 4; step += 1) {
+      key('+');
+      await frame();
+    }
+    runs[0].click();
+    await frame();
+    key('ArrowRight');
+    const values = rig.querySelector('.canvas').querySelectorAll('tr:not(.band) .u-value');
+    found.pointer = [...values].map((own) => own.textContent);
+    return [before, place()];
+  }
+
+  // The axis of each map of residuals, and the names of its rows.
+  function maps() {
+    const all = {};
+    const section = document.querySelector('#discovery');
+    const kinds = section ? [...section.querySelectorAll('.choice label')] : [];
+    for (const kind of kinds) {
+      kind.querySelector('input').click();
+      const texts = [...section.querySelectorAll('svg.heat')[0].querySelectorAll('text')].map((own) => own.textContent);
+      all[kind.textContent] = texts;
+    }
+    return all;
+  }
+
+  // The lines in legends and texts, by what they stand for.
+  function dashes() {
+    const all = {};
+    for (const path of document.querySelectorAll('tr.u-series .sample path, .key .sample path')) {
+      const role = path
+        .closest('tr, .key')
+        .className.replace(/u-series|u-off|key/g, '')
+        .trim();
+      all[role] = [...new Set([...(all[role] || []), path.getAttribute('stroke-dasharray') || ''])];
+    }
+    return all;
+  }
+
+  // The first figure and the first table as files, and the table for the clipboard.
+  async function exported() {
+    for (const [place, text] of [
+      ['figure', 'CSV'],
+      ['.table', 'CSV'],
+      ['.table', 'Copy'],
+    ]) {
+      const buttons = [...document.querySelectorAll(`${place} .exports button`)];
+      buttons.find((own) => own.textContent === text).click();
+      await frame();
+    }
+  }
+
+  // What paper shows, and whether the page is itself again afterwards.
+  async function printed() {
+    const [controls, canvases] = ['button, select, input', 'canvas'];
+    const count = (what) => document.querySelectorAll(what).length;
+    const before = count(canvases);
+    dispatchEvent(new Event('beforeprint'));
+    const width = document.body.getBoundingClientRect().right;
+    const wide = [...document.querySelectorAll('#report *')].filter(
+      (own) => own.getBoundingClientRect().right > width + 1,
+    );
+    found.on_paper = [...document.querySelectorAll('[data-figure]')].map((figure) => figure.dataset.figure);
+    found.printed = {
+      width,
+      wide: wide.map((own) => `${own.tagName} ${own.textContent.slice(0, 40)}`),
+      controls: [...document.querySelectorAll(controls)].filter((own) => own.getClientRects().length).length,
+      canvases: count(canvases),
+    };
+    dispatchEvent(new Event('afterprint'));
+    await frame();
+    found.printed.restored = count(canvases) === before;
+  }
+
+  // All that is said in both systems of units.
+  async function otherUnits() {
+    const mm = document.body.innerText;
+    const list = document.querySelector('.units select');
+    list.value = 'si';
+    list.dispatchEvent(new Event('change', { bubbles: true }));
+    await frame();
+    found.units = { mm, si: document.body.innerText };
+  }
+
+  // Text of less contrast with what it stands on than 4.5, and lines of less than 3.
+  function faint() {
+    const canvas = document.createElement('canvas').getContext('2d', { willReadFrequently: true });
+    const shade = (colour) => {
+      canvas.clearRect(0, 0, 1, 1);
+      canvas.fillStyle = colour;
+      canvas.fillRect(0, 0, 1, 1);
+      return [...canvas.getImageData(0, 0, 1, 1).data];
+    };
+    const light = (colour) =>
+      shade(colour)
+        .slice(0, 3)
+        .map((v) => (v / 255 <= 0.04045 ? v / 255 / 12.92 : ((v / 255 + 0.055) / 1.055) ** 2.4))
+        .reduce((sum, v, at) => sum + v * [0.2126, 0.7152, 0.0722][at], 0);
+    const contrast = (a, b) => (Math.max(light(a), light(b)) + 0.05) / (Math.min(light(a), light(b)) + 0.05);
+    const ground = (element) => {
+      const own = getComputedStyle(element).backgroundColor;
+      return shade(own)[3] === 255 || !element.parentElement ? own : ground(element.parentElement);
+    };
+    const isText = (element) => [...element.childNodes].some((node) => node.nodeType === 3 && node.data.trim());
+    const texts = [...document.querySelectorAll('#report *')].filter(
+      (own) => isText(own) && own.getClientRects().length,
+    );
+    const weak = texts.filter((own) => {
+      const style = getComputedStyle(own);
+      return contrast(own instanceof SVGElement ? style.fill : style.color, ground(own)) < 4.5;
+    });
+    const paper = getComputedStyle(document.body).backgroundColor;
+    const samples = [...document.querySelectorAll('.u-legend .sample path')].map((own) => getComputedStyle(own));
+    const lines = samples.filter(({ stroke }) => stroke !== 'none' && contrast(stroke, paper) < 3);
+    return [...weak.map((own) => own.textContent), ...lines.map(({ stroke }) => stroke)];
   }
 
   function themes() {
@@ -63,5 +235,9 @@
     return [before, paper()];
   }
 
-  addEventListener('load', () => setTimeout(look, 1000));
+  addEventListener('load', async () => {
+    await frame();
+    await look().catch((error) => found.errors.push(`the probe: ${error.stack}`));
+    parent.postMessage(JSON.stringify(found), '*');
+  });
 })();

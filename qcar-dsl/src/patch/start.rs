@@ -207,7 +207,7 @@ fn declaration(one: &Asked, numbers: Numbers, base: &Base) -> (NewParameter, Par
     let new = NewParameter {
         name: one.name.clone(),
         effect_name: declared.name.text.clone(),
-        unit: numbers.unit,
+        unit: declared.unit.name(numbers.unit),
         start: numbers.start,
         range: numbers.range,
         known: declared.known,

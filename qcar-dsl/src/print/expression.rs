@@ -151,6 +151,14 @@ impl Display for Number {
     }
 }
 
+impl UnitText {
+    /// What people call the coherent unit that is written here: `Hz` where it is written so, since a cycle is no radian.
+    pub fn name(&self, unit: units::Unit) -> String {
+        let written = self.to_string();
+        if written == "Hz" { written } else { unit.to_string() }
+    }
+}
+
 impl Display for UnitText {
     /// Positive exponents first, the rest behind one `/`.
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {

@@ -65,6 +65,7 @@ impl Resolver<'_> {
         Ok(Parameter {
             name: name.clone(),
             unit,
+            unit_name: parameter.unit.name(unit),
             doc,
             default,
             range,

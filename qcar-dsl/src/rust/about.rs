@@ -82,7 +82,7 @@ fn parameters(about: &About) -> String {
         format!(
             "{{ name: {}, unit: {}, doc: {}, default: {default}, range: {:?}, known: {} }}",
             text(&p.name),
-            text(&p.unit.to_string()),
+            text(&p.unit),
             text(&p.doc),
             p.range,
             p.known

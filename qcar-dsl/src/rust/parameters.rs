@@ -59,7 +59,7 @@ impl Parameters {{
 /// `Stiffness of the tyre, N/m; from 50000 to 1000000; 200000 unless given.`
 fn sentence(parameter: &Parameter, all: &[Parameter]) -> String {
     let mut text = match parameter.doc.is_empty() {
-        true => parameter.unit.to_string(),
+        true => parameter.unit.clone(),
         false => format!("{}, {}", parameter.doc.trim_end_matches('.'), parameter.unit),
     };
     if let Some((low, high)) = parameter.range {

@@ -77,6 +77,7 @@ impl Builder {
         self.model.parameters.push(Parameter {
             name: name.into(),
             unit: UNIT,
+            unit_name: UNIT.to_string(),
             doc: String::new(),
             default: Default::None,
             range: None,

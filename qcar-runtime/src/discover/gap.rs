@@ -32,9 +32,11 @@ pub struct Tile {
     pub sensor: Point,
     /// What its values are.
     pub kind: Kind,
-    /// The level of the runs.
+    /// The place of its run in the evidence.
+    pub run: usize,
+    /// The level of the run.
     pub level: f64,
-    /// Their role.
+    /// Its role.
     pub role: Role,
     /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history or passage.
     pub span: (f64, f64),
@@ -163,6 +165,7 @@ fn tile(evidence: &Evidence, series: &Series, place: i64, (sum, count): (f64, us
     Tile {
         sensor: series.sensor.clone(),
         kind: series.kind,
+        run: series.run,
         level: run.level,
         role: run.role,
         span: (scale.value(place), scale.value(place + 1)),

@@ -26,6 +26,8 @@ pub struct Fit {
     pub parameters: Vec<ParameterFit>,
     /// Pairs whose errors correlate by more than 0.9.
     pub correlations: Vec<Correlation>,
+    /// The same of every pair that the data see.
+    pub all_correlations: Vec<Correlation>,
     /// Every measured channel of every run, fitted or not.
     pub channels: Vec<ChannelFit>,
     /// The thesis's objective J, the sum of squared weighted errors, at the values found.
@@ -168,23 +170,21 @@ pub(super) fn report<M: Model + ?Sized>(setup: &Setup<'_, M>, search: &Search, u
         .zip(&best.x)
         .for_each(|(&place, &value)| values.set(place, value));
     let name = |variable: usize| setup.model.about().parameters[setup.free[variable]].name.to_string();
-    let correlations = if best.stop.converged() {
-        uncertainty.correlations(NOTEWORTHY)
-    } else {
-        Vec::new()
+    let correlations = |least: f64| -> Vec<Correlation> {
+        let known = best.stop.converged().then(|| uncertainty.correlations(least));
+        let named = |(a, b, value): (usize, usize, f64)| Correlation {
+            between: (name(a), name(b)),
+            value,
+        };
+        known.into_iter().flatten().map(named).collect()
     };
     Fit {
         model: setup.model.about().name.to_string(),
         parameters: (0..values.as_slice().len())
             .map(|k| parameter(setup, search, uncertainty, &values, k))
             .collect(),
-        correlations: correlations
-            .into_iter()
-            .map(|(a, b, value)| Correlation {
-                between: (name(a), name(b)),
-                value,
-            })
-            .collect(),
+        correlations: correlations(NOTEWORTHY),
+        all_correlations: correlations(0.0),
         channels: channels(setup, &values),
         cost: 2.0 * best.cost,
         start_cost: setup.cost().at(&setup.start()).0.norm_squared(),

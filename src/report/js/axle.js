@@ -18,11 +18,7 @@ function axles(data) {
       'p',
       {},
       after
-        ? [
-            'The model with what it lacked; ',
-            key('after', 'what is new'),
-            ' stands out. Values are those found together with it.',
-          ]
+        ? ['The extended model; ', key('after', 'what is new'), ' stands out. Values are those found with it.']
         : 'The model with its fitted values.',
     ),
     h('div', { class: 'drawings' }, drawings),
@@ -109,7 +105,7 @@ function axleDrawing(axle, axis, fresh) {
     links.map((own) => drawLink(own, place, scene)),
     all.map((own) => drawPoint(own, scene)),
   );
-  return figure(`axle-${axis}`, name, drawing);
+  return captioned(`axle-${axis}`, name, drawing);
 }
 
 function drawPoint({ own, level, lanes }, { axis, along, lane, isNew }) {

@@ -11,7 +11,11 @@ function curves({ kc, loops }) {
     own.start === null || own.parameter_value === null ? '' : signed(own.start / own.parameter_value - 1),
   ]);
   const figures = loops.map((own) =>
-    figure(`loop-${own.test}`, `${own.test}: force over displacement, and the gradient`, h('div', { class: 'canvas' })),
+    captioned(
+      `loop-${own.test}`,
+      `${own.test}: force over displacement, and the gradient`,
+      h('div', { class: 'canvas' }),
+    ),
   );
   const element = section(
     'kc',
@@ -45,7 +49,7 @@ function parameterValue({ parameter_value: value, unit, why_no_parameter_value: 
 // The measured cycle in grey, each direction of travel a curve, and its gradient as a line through the middle.
 function loopPlot({ test, displacement, force }, kc, place) {
   const points = displacement.map((d, at) => ({
-    x: 1e3 * d,
+    x: d,
     force: force[at],
     out: displacement[at + 1] === undefined ? d > displacement[at - 1] : displacement[at + 1] > d,
   }));
@@ -53,11 +57,11 @@ function loopPlot({ test, displacement, force }, kc, place) {
   const branch = (out) => points.map((own) => (own.out === out ? own.force : null));
   const slope = kc.find((own) => own.test === test && own.quantity === 'stiffness');
   const most = 1.05 * Math.max(...force.map(Math.abs));
-  const gradient = slope ? 1e-3 * slope.value : 0;
+  const gradient = slope ? slope.value : 0;
   const line = points.map(({ x }) => (Math.abs(gradient * x) > most ? null : gradient * x));
   return plot(place, {
-    x: { label: 'displacement, mm' },
-    y: { label: 'force, N' },
+    x: { label: 'displacement', unit: 'm' },
+    y: { label: 'force', unit: 'N' },
     at: points.map((own) => own.x),
     gaps: false,
     digits: 4,

@@ -10,25 +10,33 @@ function discovery(data) {
     h(
       'p',
       {},
-      'The gap is what measured and modelled responses differ by over its uncertainty: noise, and errors that calibrated sensors may have. 1 is noise. It is taken after the parameters have made up for as much of it as they can.',
+      'The residual is the root mean square of measured less modelled, in standard deviations of its uncertainty: noise, and errors that calibrated sensors may have. 1 is noise. It is taken after the parameters have made up for as much of it as they can. The baseline model is that of the campaign, the extended model has what was found too.',
     ),
-    gapTable(discover),
-    maps.map((map) => map.element),
-    strongest(discover.where),
+    h('div', { class: 'columns two' }, residualTable(discover), leftTable(discover)),
+    candidateTable(discover),
+    maps.element,
+    strongest(data.gap_map.before),
     stiffness && stiffness.element,
     discover.effects.map((effect) => effectPart(effect, discover.effects)),
+    discover.learned && learnedPart(discover.learned),
+    visiblePart(discover.visible),
     changes && changesPart(changes),
   );
   return {
     element,
     draw: () => {
-      maps.forEach((map) => map.draw());
+      maps.draw();
       if (stiffness) stiffness.draw();
     },
   };
 }
 
-function gapTable({ gap, by_channel: channels, effects }) {
+// The columns of the models that there are.
+function bothModels(effects) {
+  return [['baseline', 'number'], ...(effects.length ? [['extended', 'number']] : [])];
+}
+
+function residualTable({ gap, by_channel: channels, effects }) {
   const rows = [
     ['fitted runs', gap.fit],
     ['held-out runs', gap.held_out],
@@ -36,45 +44,68 @@ function gapTable({ gap, by_channel: channels, effects }) {
   ]
     .filter(([, own]) => own.before !== null)
     .map(([name, own]) => [name, number(own.before), ...(effects.length ? [number(own.after)] : [])]);
+  return table('Residual, standard deviations', [['of', 'text'], ...bothModels(effects)], rows);
+}
+
+function leftTable({ left, effects }) {
+  const rows = left.map((own) => [
+    words(own.channel),
+    LEFT_IN[own.kind],
+    number(own.before_percent, 2),
+    ...(effects.length ? [number(own.after_percent, 2)] : []),
+  ]);
   return table(
-    'Gap over its uncertainty',
-    [
-      ['', 'text'],
-      ['before', 'number'],
-      ...(effects.length ? [['after', 'number']] : []),
-    ],
+    'Left of each sensor, percent of its signal',
+    [['sensor', 'text'], ['in', 'text'], ...bothModels(effects)],
     rows,
   );
 }
 
-function spanText({ band_hz: band, window_s: window, travel_m: travel }) {
-  const [ends, unit, factor] = [
-    [band, 'Hz', 1],
-    [window, 's', 1],
-    [travel, 'mm', 1e3],
-  ].find(([own]) => own) || [[], '', 1];
-  return `${ends.map((v) => number(factor * v)).join(' to ')} ${unit}`;
+function candidateTable({ candidates, probability }) {
+  if (!candidates.length) return null;
+  return table(
+    `Most probable effects${probability === null ? '' : ` (the answer: ${chance(probability)})`}`,
+    [
+      ['effect', 'text'],
+      ['form', 'text'],
+      ['probability', 'number'],
+      ['explained share', 'number'],
+      ['rise of the log evidence', 'number'],
+    ],
+    candidates.map((own) => [
+      `${words(own.effect)} at ${words(own.at)}`,
+      own.form === null ? '–' : words(own.form),
+      chance(own.probability),
+      percent(own.explained, 3),
+      number(own.log_evidence),
+    ]),
+  );
 }
 
-function strongest(places) {
-  if (!places.length) return null;
-  const rows = places.map((own) => [
-    words(own.channel),
-    own.harmonic === null ? '–' : String(own.harmonic),
-    spanText(own),
-    number(own.level),
-    number(own.strength),
-  ]);
+// So many are listed.
+const LISTED = 24;
+
+function strongest(tiles) {
+  if (!tiles.length) return null;
+  const rows = tiles
+    .slice(0, LISTED)
+    .map((tile) => [
+      words(tile.channel),
+      kindName(tile),
+      runText(tile),
+      ends(tile).join(' to '),
+      number(tile.strength),
+    ]);
   return details(
-    'The strongest parts of the gap as a table',
+    'The largest residuals as a table',
     table(
-      'Gap before',
+      'Residual of the baseline model',
       [
         ['sensor', 'text'],
-        ['harmonic', 'number'],
+        ['response', 'text'],
+        ['run', 'text'],
         ['band or window', 'text'],
-        ['level', 'number'],
-        ['times the uncertainty', 'number'],
+        ['standard deviations', 'number'],
       ],
       rows,
     ),
@@ -83,19 +114,15 @@ function strongest(places) {
 
 // κ of a place: the dynamic stiffness that would have to be there.
 function kappaPart(all) {
-  const place = h(
-    'div',
-    { class: 'columns two' },
-    ['real', 'imaginary'].map((part) =>
-      h('div', { class: 'column' }, figure(`kappa-${part}`, null, h('div', { class: 'canvas' }))),
-    ),
-  );
-  let charts = [];
-  const show = (name) => {
-    charts.forEach(forget);
-    const own = all.find((candidate) => candidate.place === name);
-    charts = ['real', 'imaginary'].map((part, at) => kappaPlot(own, part, place.children[at].querySelector('.canvas')));
-  };
+  const shown = picker('kappa', {
+    label: 'κ at',
+    options: all.map((own) => [own.place, words(own.place)]),
+    show: (name, place) =>
+      drawKappa(
+        all.find((own) => own.place === name),
+        place,
+      ),
+  });
   const rows = all.map((own) => [
     words(own.place),
     own.sensor ? 'sensor' : 'in the axle',
@@ -109,92 +136,46 @@ function kappaPart(all) {
     h(
       'p',
       {},
-      'For each link, mass and sensor, the dynamic stiffness κ that would have to be added there to explain all channels at once. The ceiling is the share of the squared gap that any effect at this place could explain; with one κ for all levels, a linear one.',
+      'For each link, mass and sensor, the dynamic stiffness κ that would have to be added there to explain all channels at once. The explained share is that of the squared residual which any effect at this place could explain; beside it what a linear one could, which has the same κ at all levels.',
     ),
     table(
       'Places',
       [
         ['place', 'text'],
         ['kind', 'text'],
-        ['ceiling', 'number'],
-        ['linear', 'number'],
+        ['explained share', 'number'],
+        ['by a linear effect', 'number'],
       ],
       rows,
     ),
-    select(
-      'κ at',
-      all.map((own) => [own.place, words(own.place)]),
-      all[0].place,
-      show,
-    ),
-    place,
+    shown.control,
+    shown.place,
   );
-  return { element, draw: () => show(all[0].place) };
+  return { element, draw: shown.draw };
+}
+
+function drawKappa(own, place) {
+  const parts = ['real', 'imaginary'];
+  const figures = parts.map((part) =>
+    figure(`kappa-${part}`, `κ at ${words(own.place)}, ${part} part`, h('div', { class: 'canvas' })),
+  );
+  place.replaceChildren(h('div', { class: 'columns two' }, figures));
+  return parts.map((part, at) => kappaPlot(own, part, figures[at].querySelector('.canvas')));
 }
 
 function kappaPlot(own, part, place) {
-  const scale = own.sensor ? 1 : 1e-3;
   const longest = own.runs.reduce((a, b) => (b.frequency.length > a.frequency.length ? b : a));
-  const palette = ['after', 'before', 'locked', 'vertical', 'measured'];
   const curves = own.runs.map((run, at) => ({
-    role: palette[at % palette.length],
-    label: levelText(run.level, { kind: 'harmonic' }),
-    values: longest.frequency.map((f) => {
-      const line = run.frequency.indexOf(f);
-      return line < 0 || run[part][line] === null ? null : scale * run[part][line];
-    }),
+    role: PALETTE[at % PALETTE.length],
+    label: given(run.level, 'm/s'),
+    values: along(run[part], run.frequency, longest.frequency),
+    error: along(run.sigma, run.frequency, longest.frequency),
   }));
   return plot(place, {
     x: FREQUENCY,
-    y: { label: `${part} part of κ${own.sensor ? '' : ', N/mm'}` },
+    y: { label: part === 'real' ? 'Re κ' : 'Im κ', unit: own.sensor ? '1' : 'N/m' },
     at: longest.frequency,
     curves,
     sync: 'kappa',
   });
-}
-
-function effectPart(effect, effects) {
-  const rows = Object.entries(effect.parameters).map(([name, value]) => {
-    const [error, unit] = [effect.stderr[name], effect.units[name]];
-    return [
-      name,
-      error === null ? quantity(value, unit) : measured(value, error, unit),
-      error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
-    ];
-  });
-  const rivals = effect.rivals.map((rival) => [
-    `${words(rival.effect)} at ${words(rival.at)}`,
-    number(rival.behind),
-    rival.early ? 'before its fit had settled' : 'fitted to the end',
-  ]);
-  return h(
-    'div',
-    {},
-    h('h3', {}, effectTitle(effect, effects)),
-    h('p', {}, `It closes ${percent(effect.evidence.gap_closed, 3)} of the excess gap of the runs that judge it.`),
-    h(
-      'div',
-      { class: 'columns two' },
-      table(
-        'What it is',
-        [
-          ['parameter', 'text'],
-          ['value', 'number'],
-          ['standard error', 'text'],
-        ],
-        rows,
-      ),
-      rivals.length
-        ? table(
-            'Rivals, by how much worse they explain the fitted runs',
-            [
-              ['effect', 'text'],
-              ['lower in log evidence by', 'number'],
-              ['judged', 'text sentence'],
-            ],
-            rivals,
-          )
-        : null,
-    ),
-  );
 }

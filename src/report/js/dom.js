@@ -38,16 +38,31 @@ function table(caption, columns, rows, attributes = {}) {
       ),
     ),
   );
+  const texts = () => [
+    columns.map(([heading]) => heading),
+    ...body.map((row) => [...row.cells].map((cell) => cell.textContent)),
+  ];
   return h(
     'div',
     { class: 'table', tabindex: 0, role: 'region', 'aria-label': caption, ...attributes },
-    h('table', {}, h('caption', {}, caption), h('thead', {}, h('tr', {}, head)), h('tbody', {}, body)),
+    h(
+      'table',
+      {},
+      h('caption', {}, h('span', {}, caption), exports(caption, texts)),
+      h('thead', {}, h('tr', {}, head)),
+      h('tbody', {}, body),
+    ),
   );
 }
 
-// A figure announces itself; a page is whole when every figure has said that it is drawn.
-function figure(name, caption, ...children) {
-  return h('figure', { 'data-figure': name }, children, caption && h('figcaption', {}, caption));
+// A figure has a name for who cannot see it, and announces itself: a page is whole when every figure is drawn.
+function figure(kind, name, ...children) {
+  return h('figure', { 'data-figure': kind, 'aria-label': name }, children);
+}
+
+// One whose name stands below it.
+function captioned(kind, name, ...children) {
+  return figure(kind, name, children, h('figcaption', {}, name));
 }
 
 function drawn(element) {
@@ -55,34 +70,10 @@ function drawn(element) {
   if (owner) owner.setAttribute('data-drawn', '');
 }
 
-// One of several, by radio buttons in a row.
-let groups = 0;
-function choice(label, options, chosen, change) {
-  const name = `choice-${(groups += 1)}`;
-  const buttons = options.map(([value, text]) =>
-    h(
-      'label',
-      {},
-      h('input', { type: 'radio', name, value, checked: value === chosen, onchange: () => change(value) }),
-      h('span', {}, text),
-    ),
-  );
-  return h('fieldset', { class: 'choice' }, h('legend', {}, label), buttons);
-}
-
-// One of many, by a list.
-function select(label, options, chosen, change) {
-  const entries = options.map(([value, text]) => h('option', { value, selected: value === chosen }, text));
-  return h(
-    'label',
-    { class: 'select' },
-    h('span', {}, label),
-    h('select', { onchange: (event) => change(event.target.value) }, entries),
-  );
-}
-
 function details(summary, ...children) {
-  return h('details', {}, h('summary', {}, summary), children);
+  const part = h('details', { open: view.printing || view.opened.has(summary) });
+  const clicked = () => view.opened[part.open ? 'delete' : 'add'](summary);
+  return fill(part, {}, [h('summary', { onclick: clicked }, summary), children]);
 }
 
 // `z_wheel` as a letter or word with its index, in whatever surrounds it.
@@ -103,10 +94,6 @@ function equationSheet(text) {
     return h('p', { class: deep ? 'continued' : null }, formula(line.trim()));
   });
   return h('div', { class: 'equations', tabindex: 0, role: 'region', 'aria-label': 'Equations' }, parts);
-}
-
-function key(role, text) {
-  return h('span', { class: `key ${role}` }, text);
 }
 
 // One of the few numbers at the head of a report.

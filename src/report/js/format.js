@@ -46,38 +46,6 @@ function signed(share) {
   return `${share > 0 ? '+' : ''}${Math.abs(share) < 1 ? minus(small) : number(100 * share)}\u202f%`;
 }
 
-// In how many of a larger unit an SI value is best read.
-const SCALES = {
-  'N/m': [1e-3, 'N/mm'],
-  m: [1e3, 'mm'],
-};
-
-// Below this much of the larger unit the SI unit is the shorter one.
-const LITTLE = 0.01;
-
-// A value and its unit, and the factor that brings an error of the value there too.
-function inUnit(value, unit) {
-  const [larger, name] = SCALES[unit] || [1, unit];
-  const isLittle = larger < 1 && value !== 0 && Math.abs(value) * larger < LITTLE;
-  const [factor, written] = isLittle ? [1, unit] : [larger, name];
-  return { factor, unit: written === '1' ? '' : pretty(written), value: value === null ? null : value * factor };
-}
-
-function given(value, unit) {
-  const scaled = inUnit(value, unit);
-  return `${plain(scaled.value)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
-}
-
-function quantity(value, unit, digits = 3) {
-  const scaled = inUnit(value, unit);
-  return `${number(scaled.value, digits)}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
-}
-
-// `m/s^2` as m/s², `N s/m` with a dot.
-function pretty(unit) {
-  return unit.replace('^2', '²').replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
-}
-
 // Digits behind the point that are still read.
 const MOST_PLACES = 6;
 
@@ -99,7 +67,7 @@ function measured(value, error, unit) {
     );
   const both = `${fixed(own)} ± ${fixed(off)}`;
   const text = power ? `(${both})·10${superscript(power)}` : both;
-  return `${text}${scaled.unit ? '\u202f' + scaled.unit : ''}`;
+  return withUnit(text, scaled.unit);
 }
 
 // `coulomb_friction` as people say it.

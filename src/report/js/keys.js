@@ -5,14 +5,7 @@ const HINT = 'Arrow keys move the pointer, plus and minus zoom, zero shows every
 function reachable(place, chart) {
   place.setAttribute('tabindex', '0');
   place.setAttribute('role', 'application');
-  place.setAttribute(
-    'aria-label',
-    `Plot of ${chart.series
-      .slice(1)
-      .map((s) => s.label)
-      .filter((l) => l !== 'band')
-      .join(', ')} over ${chart.series[0].label}. ${HINT}`,
-  );
+  place.setAttribute('aria-label', `${place.closest('figure').getAttribute('aria-label')}. ${HINT}`);
   place.addEventListener('keydown', (event) => {
     const action = ACTIONS[event.key];
     if (!action || event.ctrlKey || event.metaKey || event.altKey) return;

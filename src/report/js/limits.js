@@ -21,7 +21,7 @@ function limits(data) {
     ...data.discover.effects.map(unseen),
     'Bodies move along z and x, without pitch and roll; the two directions meet in the rolling tyre alone.',
     'Before an effect is added the model is linear on the rig: its parameters are those that fit best at the levels driven, and the other levels show how far that carries.',
-    'The gap counts what the sensors saw between the lowest and the highest frequency of the runs. An effect that acts elsewhere is not excluded.',
+    'The residual counts what the sensors saw between the lowest and the highest frequency of the runs. An effect that acts elsewhere is not excluded.',
   ].filter((sentence) => sentence);
   return {
     element: section(

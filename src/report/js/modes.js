@@ -1,8 +1,8 @@
 // Natural vibrations: how fast, how damped, and what moves.
 
-function modes({ modes: { before, after }, model, axles }) {
+function modes({ modes: { before, after }, axles }) {
   if (!before.length) return null;
-  const sets = [['before', model, before], ...(after ? [['after', 'with what it lacked', after]] : [])];
+  const sets = [['before', 'baseline model', before], ...(after ? [['after', 'extended model', after]] : [])];
   const element = section(
     'modes',
     'Modes',
@@ -31,9 +31,9 @@ function modeTable(role, name, set) {
   const rows = set.map((mode) => [number(mode.frequency), percent(mode.damping), shapeDrawing(mode.parts)]);
   return figure(
     `modes-${role}`,
-    null,
+    `Natural vibrations of the ${name}`,
     table(
-      words(name),
+      name,
       [
         ['frequency, Hz', 'number'],
         ['damping', 'number'],

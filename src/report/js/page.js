@@ -1,11 +1,25 @@
 // The frame of every report: its head, its list of sections, and what holds for all of it.
 
-// A section is `{element, draw?}`; the first one stands above the list.
-function assemble(head, sections) {
+// `build` gives the head of the page and its sections, `{element, draw?}` or null; the first one stands above the list.
+function assemble(build) {
+  const again = () => {
+    const seen = scrollY;
+    plots.forEach(forget);
+    render(build());
+    scrollTo({ top: seen, behavior: 'instant' });
+  };
+  addEventListener('units', again);
+  onPaper(again);
+  systemTheme.addEventListener('change', applyTheme);
+  render(build());
+}
+
+function render([head, sections]) {
   const parts = sections.filter((part) => part !== null);
   const links = parts
     .filter((part) => part.element.id)
     .map(({ element }) => h('li', {}, h('a', { href: `#${element.id}` }, element.querySelector('h2').textContent)));
+  applyTheme();
   const page = document.getElementById('report');
   page.replaceChildren(
     head,
@@ -27,33 +41,35 @@ function heading(kind, title, ...subject) {
     h('p', { class: 'kind' }, kind),
     h('h1', {}, title),
     h('p', { class: 'subject' }, subject),
-    themeButton(),
+    h('div', { class: 'switches' }, unitSwitch(), themeButton()),
   );
+}
+
+// All values of the page in other units.
+function unitSwitch() {
+  const options = Object.entries(SYSTEMS).map(([name, { name: text }]) => [name, text]);
+  const label = select('Units', options, view.units, (units) => {
+    view.units = units;
+    dispatchEvent(new Event('units'));
+    document.querySelector('.units select').focus();
+  });
+  label.classList.add('units');
+  return label;
 }
 
 function lowered(sentence) {
   return sentence.charAt(0).toLowerCase() + sentence.slice(1);
 }
 
-// The system's theme until the reader chooses.
-function themeButton() {
-  const root = document.documentElement;
-  const system = matchMedia('(prefers-color-scheme: dark)');
-  const button = h('button', { type: 'button', class: 'theme' });
-  let isChosen = 'theme' in root.dataset;
-  const show = (theme) => {
-    root.dataset.theme = theme;
-    button.textContent = theme === 'dark' ? 'Light page' : 'Dark page';
-    recolour();
+// Paper has every run and every detail, in light colours.
+function onPaper(again) {
+  const print = (printing) => () => {
+    view.printing = printing;
+    document.documentElement.classList.toggle('printing', printing);
+    again();
   };
-  const ofSystem = () => (system.matches ? 'dark' : 'light');
-  button.addEventListener('click', () => {
-    isChosen = true;
-    show(root.dataset.theme === 'dark' ? 'light' : 'dark');
-  });
-  system.addEventListener('change', () => isChosen || show(ofSystem()));
-  show(isChosen ? root.dataset.theme : ofSystem());
-  return button;
+  addEventListener('beforeprint', print(true));
+  addEventListener('afterprint', print(false));
 }
 
 window.addEventListener('error', (event) => {
@@ -61,8 +77,3 @@ window.addEventListener('error', (event) => {
     .getElementById('report')
     .prepend(h('p', { role: 'alert', class: 'failure' }, `A part of this report could not be drawn: ${event.message}`));
 });
-addEventListener('beforeprint', () =>
-  document.querySelectorAll('details').forEach((part) => {
-    part.open = true;
-  }),
-);

@@ -1,6 +1,6 @@
 // The fitted parameters: values, errors, correlations and what keeps an error from being known.
 
-function parameters({ fit, refitted }) {
+function parameters({ fit, refitted, correlations: pairs }) {
   const own = Object.values(fit.parameters);
   const changed = refitted.length > 0;
   const rows = own.map((parameter) => {
@@ -22,12 +22,12 @@ function parameters({ fit, refitted }) {
   const element = section(
     'parameters',
     'Parameters',
-    h('p', {}, `Of the model ${fit.model}, fitted to the rig runs before anything was added. ${ended}`),
+    h('p', {}, `Of the baseline model, ${fit.model}, fitted to the rig runs. ${ended}`),
     changed
       ? h(
           'p',
           { class: 'caution' },
-          'While an effect is missing, the fitted values bend to make up for it. The last column holds those that were found together with the effect, from all runs that may be fitted.',
+          'While an effect is missing, the fitted values bend to make up for it. The last column holds those of the extended model, fitted to all runs that may be fitted.',
         )
       : null,
     table(
@@ -35,15 +35,16 @@ function parameters({ fit, refitted }) {
       [
         ['parameter', 'text'],
         ['start', 'number'],
-        ['value ± standard error', 'number'],
+        ['baseline ± standard error', 'number'],
         ['relative', 'number'],
         ['in its range', 'text'],
         ['remark', 'text sentence'],
-        ...(changed ? [['with the effect', 'number']] : []),
+        ...(changed ? [['extended', 'number']] : []),
       ],
       rows,
     ),
     correlations(fit.correlations),
+    pairs.length ? details('All correlations', correlationMap(pairs)) : null,
   );
   return { element };
 }
@@ -75,12 +76,12 @@ function refittedCell(own, unit) {
 }
 
 // Where a value lies between its bounds, with its start.
-function rangeBar({ range, value, start, fitted }, after) {
+function rangeBar({ range, value, start, fitted, unit }, after) {
   if (!range || !fitted) return '';
   const at = (v) => `${(100 * Math.min(1, Math.max(0, (v - range[0]) / (range[1] - range[0])))).toFixed(1)}%`;
   return h(
     'span',
-    { class: 'range', role: 'img', 'aria-label': `between ${number(range[0])} and ${number(range[1])}` },
+    { class: 'range', role: 'img', 'aria-label': `between ${given(range[0], unit)} and ${given(range[1], unit)}` },
     h('span', { class: 'tick start', style: `left:${at(start)}` }),
     h('span', { class: 'tick before', style: `left:${at(value)}` }),
     after && h('span', { class: 'tick after', style: `left:${at(after.value)}` }),
@@ -96,5 +97,26 @@ function correlations(pairs) {
       ['correlation', 'number'],
     ],
     pairs.map(({ between, value }) => [between.join(' and '), number(value)]),
+  );
+}
+
+// Every pair: the stronger the correlation, the stronger the colour of its sign.
+function correlationMap(pairs) {
+  const names = [...new Set(pairs.flatMap(({ between }) => between))];
+  const value = (a, b) => {
+    const pair = pairs.find(({ between }) => between.includes(a) && between.includes(b));
+    return pair ? pair.value : 0;
+  };
+  const cell = (r) =>
+    h(
+      'span',
+      { class: r < 0 ? 'negative' : 'positive', style: `--share: ${(45 * Math.abs(r)).toFixed(0)}%` },
+      minus(r.toFixed(2)),
+    );
+  return table(
+    'Correlations of the estimates',
+    [['', 'text'], ...names.map((name) => [name, 'number'])],
+    names.map((a) => [a, ...names.map((b) => (a === b ? h('span', {}, '1') : cell(value(a, b))))]),
+    { class: 'table matrix' },
   );
 }

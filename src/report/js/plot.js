@@ -1,4 +1,4 @@
-// Plots: uPlot in the colours of the page, as wide as their place, with a keyboard.
+// Plots: uPlot in the colours of the page, as wide as their place, with a keyboard; on paper, lines of their own.
 
 const plots = new Set();
 
@@ -6,85 +6,120 @@ function colour(name) {
   return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
 }
 
-// What a curve stands for decides how it is drawn, everywhere.
-const ROLES = {
-  measured: { label: 'measured', width: 4 },
-  'measured-a': { label: 'measured A', width: 4 },
-  'measured-b': { label: 'measured B', width: 4 },
-  band: { label: 'band', width: 0 },
-  start: { label: 'start values', width: 1.1, dash: [2, 4] },
-  before: { label: 'before', width: 1.6, dash: [7, 4] },
-  after: { label: 'after', width: 1.6 },
-  change: { label: 'B over A', width: 1.6 },
-  locked: { label: 'locked', width: 1.4, dash: [7, 4] },
-  vertical: { label: 'vertical', width: 1.4, dash: [2, 3] },
-};
+// `curves` are `{role, label?, values, error?, hidden?, beside?}`; `x` and `y` are `{label, unit?, log?, range?, say?,
+// whole?}`, values being SI where there is a unit. `error` is drawn as a band about the curve, and told under the
+// pointer. `beside` makes bars of a curve: -1 to the left of their places, 1 to the right, 0 upon them. `gaps` says
+// whether lines end where a value is missing, `from` what of x is shown first.
+function plot(place, asked) {
+  const own = inChosenUnits({ height: 220, digits: 3, gaps: true, ...asked });
+  if (view.printing) return sketch(place, own);
+  const chart = new uPlot(optionsOf(own, place), [own.at, ...own.curves.map((curve) => curve.values)], place);
+  chart.group = own.sync;
+  plots.add(chart);
+  named(chart, own, place);
+  reachable(place, chart);
+  keepWidth(chart, place, own.height);
+  const range = view.zoomed.get(own.sync) || own.from;
+  if (range) chart.setScale('x', { min: range[0], max: range[1] });
+  return chart;
+}
 
-// `curves` are `{role, label?, values, hidden?, beside?}`; `x` and `y` are
-// `{label, log?, range?, say?, whole?}`.
-// A curve of role `band` is one edge of a band; edges come in pairs. `beside` makes bars of a curve: -1 to the left of
-// their places, 1 to the right, 0 upon them. `gaps` says whether lines end where a value is missing.
-function plot(place, { x, y, at, curves, height = 220, sync, digits = 3, gaps = true }) {
-  const series = curves.map((curve) => ({ ...seriesOf(curve, digits), spanGaps: !gaps }));
-  const say = x.say || ((v) => number(v, 4));
-  const options = {
+// Axes with their units, and curves in them; of a curve with an error, the edges of its band before it.
+function inChosenUnits(own) {
+  const [across, up] = [unitOf(own.x.unit), unitOf(own.y.unit)];
+  const scaled = (values, { factor }) => (factor === 1 ? values : values.map((v) => (v === null ? null : v * factor)));
+  const curves = own.curves.flatMap((curve) => {
+    const [values, error] = [scaled(curve.values, up), curve.error && scaled(curve.error, up)];
+    const edge = (sign) => ({
+      role: 'band',
+      values: values.map((v, at) => (v === null ? null : v + sign * error[at])),
+    });
+    return [...(error ? [edge(-1), edge(1)] : []), { ...curve, values, error }];
+  });
+  return {
+    ...own,
+    at: scaled(own.at, across),
+    x: { ...own.x, ...across, text: headed(own.x.label, own.x.unit) },
+    y: { ...own.y, ...up, text: headed(own.y.label, own.y.unit) },
+    curves: curves.map((curve) => ({ ...curve, label: curve.label || ROLES[curve.role].label })),
+  };
+}
+
+function optionsOf(own, place) {
+  const { x, y, curves, sync } = own;
+  const say = x.say || ((v) => withUnit(number(v, 4), x.unit));
+  return {
     width: Math.max(200, place.clientWidth),
-    height,
+    height: own.height,
     class: 'plot',
+    padding: [22, null, null, null],
     scales: {
       x: { time: false, distr: x.log ? 3 : 1, range: x.range || (x.log ? tight : undefined) },
       y: { range: y.range || padded },
     },
     axes: [axis(x, 26, x.log ? 30 : 50), axis(y, room, 40)],
-    series: [{ label: x.label, value: (u, v) => (v === null || v === undefined ? '' : say(v)) }, ...series],
+    series: [
+      { label: x.label, value: (u, v) => (v === null || v === undefined ? '' : say(v)) },
+      ...curves.map((curve) => seriesOf(curve, own)),
+    ],
     bands: bands(curves),
     cursor: { sync: sync && { key: sync, setSeries: false }, points: { size: 6 }, drag: { x: true, y: false } },
-    legend: { live: true },
+    legend: { live: true, markers: { width: () => 0, fill: () => 'transparent' } },
     hooks: { draw: [(u) => marked(u, place)], setScale: sync ? [(u, scale) => follow(u, scale, sync)] : [] },
   };
-  const data = [at, ...curves.map((curve) => curve.values)];
-  const chart = new uPlot(options, data, place);
-  chart.group = sync;
-  plots.add(chart);
-  reachable(place, chart);
-  new ResizeObserver(() => resize(chart, place, height)).observe(place);
-  return chart;
 }
 
-// The axis of a transmissibility.
+// Magnitude and phase over frequency, and what else is said of a ratio `below`.
 const FREQUENCY = {
-  label: 'frequency, Hz',
+  label: 'frequency',
+  unit: 'Hz',
   log: true,
   ticks: (u, splits) => splits.map((v) => (v !== null && /^[125]/.test(v.toExponential()) ? plain(v) : '')),
 };
 
-// The plots of a transmissibility: magnitude, phase, and what else is said of it `below`.
-function polarPlots(column, { at, sync, curves, below }) {
+function polarPlots(column, { curves, below, ...how }) {
   const parts = [
-    { y: { label: 'magnitude, dB' }, curves: curves('magnitude') },
-    { y: { label: 'phase, °' }, height: 190, curves: curves('phase') },
-    below,
+    { y: { label: 'magnitude', unit: 'dB' }, curves: curves('magnitude') },
+    { y: { label: 'phase', unit: '°' }, height: 190, curves: curves('phase') },
+    ...(below ? [below] : []),
   ];
   const places = column.querySelectorAll('.canvas');
-  return parts.map((part, place) => plot(places[place], { x: FREQUENCY, at, sync, ...part }));
+  return parts.map((part, place) => plot(places[place], { x: FREQUENCY, ...how, ...part }));
+}
+
+// Values that stand `at` their places, at the places of others; null where there is none.
+function along(values, at, others) {
+  const known = new Map(at.map((own, place) => [own, values[place]]));
+  return others.map((own) => (known.has(own) ? known.get(own) : null));
+}
+
+function zoomHint() {
+  const text = 'Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve.';
+  return h('span', { class: 'hint' }, ` ${text}`);
 }
 
 // The axes of an acceleration over time.
-const SECONDS = { label: 'time, s' };
-const ACCELERATION = { label: 'acceleration, m/s²' };
+const TIME = { label: 'time', unit: 's' };
+const ACCELERATION = { label: 'acceleration', unit: 'm/s^2' };
+
+// A single one, under a heading with its unit.
+function acceleration(value) {
+  return number(inUnit(value, ACCELERATION.unit).value);
+}
 
 // The place of such a plot.
-function traceColumn(trace, kind) {
+function traceColumn(trace, kind, run) {
+  const name = `${words(trace.mass)}, ${trace.axis}`;
   return h(
     'div',
     { class: 'column' },
-    h('h4', {}, `${words(trace.mass)}, ${trace.axis}`),
-    figure(kind, null, h('div', { class: 'canvas' })),
+    h('h4', {}, name),
+    figure(kind, `${run}: acceleration of ${name}`, h('div', { class: 'canvas' })),
   );
 }
 
-function seriesOf({ role, label, hidden, beside }, digits) {
-  const { width, dash, label: usual } = ROLES[role];
+function seriesOf({ role, label, hidden, beside, error }, { y, digits, gaps }) {
+  const { width, dash } = ROLES[role];
   const bars =
     beside === undefined
       ? {}
@@ -95,21 +130,27 @@ function seriesOf({ role, label, hidden, beside }, digits) {
           width: 0,
         };
   return {
-    label: label || usual,
+    label,
     class: role,
     width,
     dash,
     show: !hidden,
+    spanGaps: !gaps,
     stroke: width > 0 ? () => colour(role) : undefined,
     points: { show: false },
-    value: (u, v) => (v === null || v === undefined ? '' : number(v, digits)),
+    value: (u, v, series, at) => (v === null || v === undefined ? '' : told(v, error && error[at], y.unit, digits)),
     ...bars,
   };
 }
 
-function axis({ label, ticks, whole }, size, space) {
+// A value under the pointer, in the unit of its axis.
+function told(value, error, unit, digits) {
+  return withUnit(error > 0 ? measured(value, error, '1') : number(value, digits), unit);
+}
+
+function axis({ text, ticks, whole }, size, space) {
   return {
-    label,
+    label: text,
     size,
     space,
     labelSize: 16,
@@ -118,7 +159,7 @@ function axis({ label, ticks, whole }, size, space) {
     gap: 4,
     stroke: () => colour('muted'),
     grid: { stroke: () => colour('grid'), width: 1 },
-    ticks: { stroke: () => colour('grid'), width: 1, size: 4 },
+    ticks: { stroke: () => colour('muted'), width: 1, size: 4 },
     incrs: whole ? [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000] : undefined,
     filter: ticks ? (u, splits) => splits : undefined,
     values: ticks || ((u, splits) => splits.map((v) => (v === null ? '' : plain(v)))),
@@ -140,13 +181,14 @@ function padded(u, low, high) {
   return [low - margin, high + margin];
 }
 
+// Edges of bands come in pairs, the lower one first.
+function bandPairs(curves) {
+  const edges = curves.map((curve, at) => (curve.role === 'band' ? at : -1)).filter((at) => at >= 0);
+  return edges.filter((_, at) => at % 2 === 0).map((low) => [low, low + 1]);
+}
+
 function bands(curves) {
-  const edges = curves.map((curve, at) => (curve.role === 'band' ? at + 1 : 0)).filter((at) => at > 0);
-  const pairs = [];
-  for (let at = 0; at + 1 < edges.length; at += 2) {
-    pairs.push({ series: [edges[at + 1], edges[at]], fill: () => colour('band') });
-  }
-  return pairs;
+  return bandPairs(curves).map(([low, high]) => ({ series: [high + 1, low + 1], fill: () => colour('band') }));
 }
 
 // Only a plot with something to see counts as drawn.
@@ -157,31 +199,63 @@ function marked(u, place) {
   if (visible && u.bbox.width > 0) drawn(place);
 }
 
-// Plots of one group keep to one range of x.
+// A name for who cannot see the plot, the lines of the legend as they are drawn, and its values for a spreadsheet.
+function named(chart, own, place) {
+  const name = place.closest('figure').getAttribute('aria-label');
+  const shown = own.curves.filter((curve) => curve.role !== 'band');
+  const what = `${name}: ${shown.map((curve) => curve.label).join(', ')} over ${own.x.label}`;
+  fill(chart.root.querySelector('canvas'), { role: 'img', 'aria-label': what }, []);
+  const markers = [...chart.root.querySelectorAll('.u-legend .u-series')].slice(1);
+  own.curves.forEach((curve, at) =>
+    markers[at].querySelector('.u-marker').replaceChildren(sample(curve.role, curve.beside !== undefined || undefined)),
+  );
+  place.before(exports(name, () => curveRows(own, shown)));
+}
+
+function curveRows({ x, y, at }, curves) {
+  const text = (v) => (v === null || v === undefined || !Number.isFinite(v) ? '' : String(Number(v.toPrecision(6))));
+  const heads = ({ label, error }) => [
+    `${label}, ${y.text}`,
+    ...(error ? [`uncertainty of ${label}${y.unit ? `, ${y.unit}` : ''}`] : []),
+  ];
+  const cells = ({ values, error }, line) => [text(values[line]), ...(error ? [text(error[line])] : [])];
+  return [
+    [x.text, ...curves.flatMap(heads)],
+    ...at.map((value, line) => [text(value), ...curves.flatMap((curve) => cells(curve, line))]),
+  ];
+}
+
+// Plots of one group keep to one range of x, which those that take their place begin with.
 let following = false;
 function follow(u, scale, group) {
-  if (scale !== 'x' || following) return;
-  following = true;
   const { min, max } = u.scales.x;
+  if (scale !== 'x' || following || min === undefined || min === null) return;
+  following = true;
   for (const other of plots) {
     const moved = other !== u && other.group === group && (other.scales.x.min !== min || other.scales.x.max !== max);
-    if (moved && min !== undefined && min !== null) other.setScale('x', { min, max });
+    if (moved) other.setScale('x', { min, max });
   }
   following = false;
 }
 
-function resize(chart, place, height) {
-  const width = Math.max(200, place.clientWidth);
-  if (width !== chart.width) chart.setSize({ width, height });
-}
-
-// New curves in an old plot, which keeps its zoom.
-function replace(chart, at, curves) {
-  chart.setData([at, ...curves.map((curve) => curve.values)], true);
+// A place that changes its width in the middle of a layout is drawn in the next frame, so that no layout waits for it.
+function keepWidth(chart, place, height) {
+  const observer = new ResizeObserver(() =>
+    requestAnimationFrame(() => {
+      const width = Math.max(200, place.clientWidth);
+      if (plots.has(chart) && width !== chart.width) chart.setSize({ width, height });
+    }),
+  );
+  observer.observe(place);
+  chart.hooks.destroy = [() => observer.disconnect()];
 }
 
 function forget(chart) {
   plots.delete(chart);
+  const { min, max } = chart.scales.x;
+  const [from, to] = [chart.data[0][0], chart.data[0][chart.data[0].length - 1]];
+  if (chart.group && (min > from || max < to)) view.zoomed.set(chart.group, [min, max]);
+  else view.zoomed.delete(chart.group);
   chart.destroy();
 }
 

@@ -20,7 +20,7 @@ function record({ record: own, fit, campaign, discover }) {
         ['role', 'text'],
         ['drive', 'text'],
       ],
-      own.runs.map((run) => [run.file, run.kind, roleName(run.role), run.drive]),
+      own.runs.map((run) => [run.file, run.kind, roleName(run.role), driveText(run.drive)]),
     ),
     h(
       'div',
@@ -53,6 +53,10 @@ function record({ record: own, fit, campaign, discover }) {
     ),
   );
   return { element };
+}
+
+function driveText(parts) {
+  return parts.map(({ what, value, unit }) => `${what} ${given(value, unit)}`).join(', ');
 }
 
 function vehicleUnit(name) {

@@ -1,22 +1,29 @@
 // Transmissibilities of the rig, run by run and channel by channel.
 
+// The choice of all runs.
+const ALL = '';
+
 function rig({ rig: ratios }) {
   if (!ratios.length) return null;
   const runs = [...new Map(ratios.map((ratio) => [ratio.run, ratio.role])).entries()];
   const channels = [...new Set(ratios.map((ratio) => ratio.channel))];
   const changed = ratios.some((ratio) => ratio.after);
-  const place = h('div', { class: 'columns' });
-  let charts = [];
-  const show = (run) => {
-    charts.forEach(forget);
-    charts = [];
-    const own = channels
-      .map((channel) => ratios.find((ratio) => ratio.run === run && ratio.channel === channel))
-      .filter((ratio) => ratio);
-    place.replaceChildren(...own.map((ratio) => ratioFigure(ratio, charts)));
-    charts.draw = () => own.forEach((ratio, at) => charts.push(...ratioPlots(ratio, place.children[at])));
-    if (place.isConnected) charts.draw();
-  };
+  const shown = picker('rig', {
+    control: choice,
+    label: 'Run',
+    options: [
+      ...runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
+      ...(runs.length > 1 ? [[ALL, 'all levels, measured']] : []),
+    ],
+    show: (run, place) =>
+      run === ALL
+        ? drawLevels(ratios, channels, place)
+        : drawRatios(
+            ratios.filter((ratio) => ratio.run === run),
+            channels,
+            place,
+          ),
+  });
   const element = section(
     'rig',
     'Rig fit',
@@ -27,24 +34,60 @@ function rig({ rig: ratios }) {
       key('measured', 'measured'),
       ' with a ',
       key('band', 'band'),
-      ' of two standard deviations of the noise and of what left and right differ by, and the model ',
-      key('start', 'at its start values'),
-      ', ',
-      key('before', 'fitted'),
-      changed ? [', and ', key('after', 'with what it lacked')] : null,
-      '. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve. Coherence near 1 means that what drives the axle explains its response.',
+      ' of two standard deviations of the noise and half of what left and right differ by; the ',
+      key('start', 'start values'),
+      ', the ',
+      key('before', 'fitted baseline model'),
+      changed ? [' and the ', key('after', 'extended model')] : null,
+      '. Coherence near 1 means that what drives the axle explains its response.',
+      zoomHint(),
     ),
-    choice(
-      'Run',
-      runs.map(([run, role]) => [run, `${runName(run)} (${roleName(role)})`]),
-      runs[0][0],
-      show,
-    ),
-    place,
+    shown.control,
+    shown.place,
     qualityTable(ratios, runs, channels),
   );
-  show(runs[0][0]);
-  return { element, draw: () => charts.draw() };
+  return { element, draw: shown.draw };
+}
+
+function drawRatios(ratios, channels, place) {
+  const own = channels.map((channel) => ratios.find((ratio) => ratio.channel === channel)).filter((ratio) => ratio);
+  const columns = own.map(ratioFigure);
+  place.replaceChildren(h('div', { class: 'columns' }, columns));
+  return own.flatMap((ratio, at) => ratioPlots(ratio, columns[at]));
+}
+
+// The measured ratios of all runs over each other: they differ where something is not linear.
+function drawLevels(ratios, channels, place) {
+  const parts = channels.map((channel) => ({
+    own: ratios.filter((ratio) => ratio.channel === channel),
+    column: h(
+      'div',
+      { class: 'column' },
+      h('h3', {}, channelName(channel)),
+      ['magnitude', 'phase'].map((part) =>
+        figure(`levels-${part}`, `All runs: ${part} of ${channelName(channel)}`, h('div', { class: 'canvas' })),
+      ),
+    ),
+  }));
+  place.replaceChildren(
+    h(
+      'div',
+      { class: 'columns' },
+      parts.map(({ column }) => column),
+    ),
+  );
+  return parts.flatMap(({ own, column }) => levelPlots(own, column));
+}
+
+function levelPlots(own, column) {
+  const at = [...new Set(own.flatMap((ratio) => ratio.frequency))].sort((a, b) => a - b);
+  const curves = (part) =>
+    own.map((ratio, place) => ({
+      role: PALETTE[place % PALETTE.length],
+      label: runName(ratio.run),
+      values: along(ratio.measured[part], ratio.frequency, at),
+    }));
+  return polarPlots(column, { at, sync: 'rig', gaps: false, curves });
 }
 
 function ratioFigure(ratio) {
@@ -62,7 +105,13 @@ function ratioFigure(ratio) {
       after,
       ratio.fitted || ratio.role !== 'fit' ? null : '; compared, not in the cost',
     ),
-    ['magnitude', 'phase', 'coherence'].map((part) => figure(`rig-${part}`, null, h('div', { class: 'canvas' }))),
+    ['magnitude', 'phase', 'coherence'].map((part) =>
+      figure(
+        `rig-${part}`,
+        `${runName(ratio.run)}: ${part} of ${channelName(ratio.channel)}`,
+        h('div', { class: 'canvas' }),
+      ),
+    ),
   );
 }
 
@@ -82,16 +131,12 @@ function coherenceRange(u, low) {
 }
 
 function polarCurves(ratio, part) {
-  const edge = (sign) =>
-    ratio.measured[part].map((value, at) => (value === null ? null : value + sign * ratio.band[part][at]));
   const curves = [
-    { role: 'band', values: edge(-1) },
-    { role: 'band', values: edge(1) },
-    { role: 'measured', values: ratio.measured[part] },
+    { role: 'measured', values: ratio.measured[part], error: ratio.band[part] },
     { role: 'start', values: ratio.start[part] },
-    { role: 'before', label: 'fitted', values: ratio.before[part] },
+    { role: 'before', values: ratio.before[part] },
   ];
-  if (ratio.after) curves.push({ role: 'after', label: 'with it', values: ratio.after[part] });
+  if (ratio.after) curves.push({ role: 'after', values: ratio.after[part] });
   return curves;
 }
 

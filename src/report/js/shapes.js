@@ -18,7 +18,7 @@ function shapeDrawing(parts) {
         y,
         width: Math.max(1, Math.abs(length)),
         height: 11,
-        style: `opacity:${(0.25 + 0.75 * Math.abs(along)).toFixed(2)}`,
+        style: `fill-opacity:${(0.25 + 0.75 * Math.abs(along)).toFixed(2)}`,
       }),
     );
   });

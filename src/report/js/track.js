@@ -4,20 +4,20 @@ const VARIANT_VIEW = [-0.02, 0.2];
 
 function track({ track: own, simulate }) {
   if (!own) return null;
-  const charts = [];
-  const traces = h('div', { class: 'columns two' });
-  const variants = h('div', { class: 'columns two' });
-  const runs = own.runs.map((run) => [
-    run.file,
-    `${plain(3.6 * run.speed, 3)} km/h, ${words(run.cleat)} (${roleName(run.role)})`,
-  ]);
-  const show = (file) => {
-    charts.splice(0).forEach(forget);
-    const run = own.runs.find((candidate) => candidate.file === file);
-    charts.push(...drawTraces(run, traces), ...drawVariants(run, variants));
-  };
-  const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
+  const options = own.runs.map((run) => [run.file, passageTitle(run)]);
   const first = own.runs[Math.floor(own.runs.length / 2)].file;
+  const runOf = (file) => own.runs.find((run) => run.file === file);
+  const pick = (name, draw) =>
+    picker(name, {
+      label: 'Run',
+      options,
+      first,
+      show: (file, place, text) => draw(runOf(file), place, text),
+    });
+  const [traces, variants] = [pick('traces', drawTraces), pick('variants', drawVariants)];
+  const changed = own.runs.some((run) => run.traces.some((trace) => trace.after));
+  // On paper every run stands by itself already.
+  const grid = own.runs.length > 1 && !view.printing ? passageGrid(own.runs) : null;
   const histograms = errorFigures(own.histograms);
   const element = section(
     'track',
@@ -28,25 +28,16 @@ function track({ track: own, simulate }) {
       'Accelerations ',
       key('measured', 'measured'),
       ' and simulated: ',
-      key('before', 'before'),
+      key('before', 'baseline model'),
       ', with the parameters of the rig fit',
-      changed
-        ? [', and ', key('after', 'with what was missing'), ', with the parameters that were found together with it']
-        : null,
+      changed ? [', and ', key('after', 'extended model'), ', with the parameters that were found with it'] : null,
       '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.',
     ),
     startCaution(own.at_start, changed),
-    select('Run', runs, first, show),
-    traces,
-    h('h3', {}, 'Errors over all runs'),
-    h(
-      'p',
-      {},
-      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
-    ),
-    h('div', { class: 'columns four' }, histograms.map((part) => part.element)),
-    summaryTable(simulate),
-    details('Every run', errorTable(simulate)),
+    traces.control,
+    traces.place,
+    grid ? [h('h3', {}, 'All runs side by side'), grid.control, grid.place] : null,
+    errorsPart(simulate, histograms),
     h('h3', {}, 'Variants of the model'),
     h(
       'p',
@@ -57,15 +48,36 @@ function track({ track: own, simulate }) {
       key('vertical', 'purely vertical on a point contact'),
       '.',
     ),
-    variants,
+    variants.control,
+    variants.place,
   );
   return {
     element,
     draw: () => {
-      show(first);
+      traces.draw();
+      variants.draw();
+      if (grid) grid.draw();
       histograms.forEach(({ element: place, own }) => histogramPlot(own, place.querySelector('.canvas')));
     },
   };
+}
+
+function errorsPart(simulate, histograms) {
+  return [
+    h('h3', {}, 'Errors over all runs'),
+    h(
+      'p',
+      {},
+      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
+    ),
+    h(
+      'div',
+      { class: 'columns four' },
+      histograms.map((part) => part.element),
+    ),
+    summaryTable(simulate),
+    details('Every run', errorTable(simulate)),
+  ];
 }
 
 // What no rig run sees is no more than a guess in the rides of the rig fit.
@@ -75,48 +87,51 @@ function startCaution(names, changed) {
   return h(
     'p',
     { class: 'caution' },
-    `No rig run or K&C curve determines ${own}: before, ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
-    changed ? ' What was found together with the effect is fitted to the cleat runs too.' : null,
+    `No rig run or K&C curve determines ${own}: in the baseline model ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
+    changed ? ' The extended model is fitted to the cleat runs too.' : null,
   );
 }
 
-function drawTraces(run, place) {
+function passageTitle({ speed, cleat, role }) {
+  return `${plain(3.6 * speed, 3)} km/h, ${words(cleat)} (${roleName(role)})`;
+}
+
+function drawTraces(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
-  place.replaceChildren(...traces.map((trace) => traceColumn(trace, 'trace')));
+  return drawAccelerations('trace', title, run, traces, place, { sync: 'track', curves: traceCurves });
+}
+
+function traceCurves(trace) {
+  return [
+    { role: 'measured', values: trace.measured },
+    { role: 'before', values: trace.before },
+    ...(trace.after ? [{ role: 'after', values: trace.after }] : []),
+  ];
+}
+
+function drawVariants(run, place, title) {
+  const vertical = run.traces.filter((trace) => trace.axis === 'z');
+  const curves = (trace) => [
+    { role: 'measured', values: trace.measured },
+    { role: trace.after ? 'after' : 'before', label: 'complete', values: trace.after || trace.before },
+    { role: 'locked', values: trace.locked },
+    { role: 'vertical', values: trace.vertical },
+  ];
+  return drawAccelerations('variant', title, run, vertical, place, { sync: 'variants', from: VARIANT_VIEW, curves });
+}
+
+function drawAccelerations(kind, title, run, traces, place, { curves, ...how }) {
+  const columns = traces.map((trace) => traceColumn(trace, kind, title));
+  place.replaceChildren(h('div', { class: 'columns two' }, columns));
   return traces.map((trace, at) =>
-    plot(place.children[at].querySelector('.canvas'), {
-      x: SECONDS,
+    plot(columns[at].querySelector('.canvas'), {
+      x: TIME,
       y: ACCELERATION,
       at: run.time,
-      sync: 'track',
-      curves: [
-        { role: 'measured', values: trace.measured },
-        { role: 'before', values: trace.before },
-        ...(trace.after ? [{ role: 'after', values: trace.after }] : []),
-      ],
+      ...how,
+      curves: curves(trace),
     }),
   );
-}
-
-function drawVariants(run, place) {
-  const vertical = run.traces.filter((trace) => trace.axis === 'z');
-  place.replaceChildren(...vertical.map((trace) => traceColumn(trace, 'variant')));
-  return vertical.map((trace, at) => {
-    const chart = plot(place.children[at].querySelector('.canvas'), {
-      x: SECONDS,
-      y: ACCELERATION,
-      at: run.time,
-      sync: 'variants',
-      curves: [
-        { role: 'measured', values: trace.measured },
-        { role: trace.after ? 'after' : 'before', label: 'complete', values: trace.after || trace.before },
-        { role: 'locked', values: trace.locked },
-        { role: 'vertical', values: trace.vertical },
-      ],
-    });
-    chart.setScale('x', { min: VARIANT_VIEW[0], max: VARIANT_VIEW[1] });
-    return chart;
-  });
 }
 
 function errorFigures(histograms) {
@@ -127,7 +142,7 @@ function errorFigures(histograms) {
     ['after_shake', 'after-shake'],
   ].flatMap(([metric, text]) =>
     wanted.map((name) => ({
-      element: figure(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, h('div', { class: 'canvas' })),
+      element: captioned(`histogram-${metric}-${name}`, `${words(name)}, ${text}`, h('div', { class: 'canvas' })),
       own: histograms[name][metric],
     })),
   );
@@ -152,9 +167,10 @@ function histogramPlot({ before, after }, place) {
   const most = Math.max(...sets.flatMap(([, own]) => own.counts));
   plot(place, {
     x: {
-      label: 'error, %',
+      label: 'error',
+      unit: '%',
       range: () => [low * width, high * width],
-      say: (v) => `${plain(v - width / 2, 3)} to ${plain(v + width / 2, 3)}`,
+      say: (v) => `${plain(v - width / 2, 3)} to ${plain(v + width / 2, 3)} %`,
     },
     y: { label: 'runs', whole: true, range: () => [0, most * 1.05] },
     at: bins.map((own) => (own + 0.5) * width),
@@ -168,10 +184,10 @@ function histogramPlot({ before, after }, place) {
 }
 
 const MODELS = [
-  ['before', 'before', ['z', 'x']],
-  ['after', 'with what was missing', ['z', 'x']],
-  ['longitudinally_locked', 'locked', ['z']],
-  ['pure_vertical', 'vertical', ['z']],
+  ['before', 'baseline', ['z', 'x']],
+  ['after', 'extended', ['z', 'x']],
+  ['longitudinally_locked', 'longitudinally locked', ['z']],
+  ['pure_vertical', 'purely vertical', ['z']],
 ];
 
 // A locked model does not move along x, so its errors there say nothing.
@@ -207,15 +223,15 @@ function errorTable(simulate) {
     runName(own.run),
     roleName(own.role),
     `${words(own.mass)} ${own.axis}`,
-    number(own.measured_peak),
-    number(own.simulated_peak),
+    acceleration(own.measured_peak),
+    acceleration(own.simulated_peak),
     percent(own.peak_error),
-    number(own.measured_after_shake),
-    number(own.simulated_after_shake),
+    acceleration(own.measured_after_shake),
+    acceleration(own.simulated_after_shake),
     percent(own.after_shake_error),
   ]);
   return table(
-    'Peaks and after-shakes, m/s²',
+    headed('Peaks and after-shakes', ACCELERATION.unit),
     [
       ['run', 'text'],
       ['role', 'text'],

@@ -2,72 +2,22 @@
 
 function verdict(data) {
   const { summary, discover } = data;
+  const falling = fallingFit(data);
   const element = section(
     'verdict',
     'Verdict',
     h('p', { class: 'lead' }, lead(data)),
     h('p', {}, consequence(discover, summary, data.kappa[0])),
+    falling && h('p', { class: 'caution' }, falling),
     h('div', { class: 'answers' }, [
       fitAnswer(data),
       cleatAnswer(data),
       gapAnswer(discover),
+      leftAnswer(discover),
       ...discover.effects.map((effect) => effectAnswer(effect, discover.effects)),
     ]),
   );
   return { element };
-}
-
-function lead({ summary, discover }) {
-  if (summary.verdict === 'found') return `Missing: ${discover.effects.map(placed).join(', and ')}.`;
-  return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
-}
-
-function consequence(discover, { verdict: kind }, likely) {
-  const judged =
-    discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
-  const [which, gap] = judged;
-  const before = `${number(gap.before)} times its uncertainty`;
-  const [best, ...alike] = discover.effects.filter((effect) => effect.one_of);
-  const [chosen] = best ? [best] : discover.effects;
-  const rival = chosen && chosen.rivals[0];
-  const next = rival
-    ? ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is lower by ${number(rival.behind, 2)} in the logarithm of the evidence.`
-    : '';
-  const place = likely
-    ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of what it leaves of the sweeps.`
-    : '';
-  switch (kind) {
-    case 'none':
-      return `On ${which} runs the model leaves a gap of ${before}; 1 is noise. No effect of the catalogue is called for.`;
-    case 'found':
-      return `On ${which} runs the model left a gap of ${before}; with what was missing, ${number(gap.after)} is left, and 1 is noise.${next}`;
-    case 'class':
-      return `On ${which} runs the model left a gap of ${before}; with ${added(discover.effects)} ${number(gap.after)} is left, and 1 is noise. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained as well, so that no model file is written.${next}`;
-    default:
-      return `On ${which} runs the model leaves a gap of ${before}, and nothing in the catalogue closes it. The map below shows where it is.${place}`;
-  }
-}
-
-function placed(effect) {
-  return `${words(effect.name)} at ${words(effect.at)}`;
-}
-
-// Of several that the data cannot tell apart it is one.
-function effectTitle(effect, effects) {
-  if (!effect.one_of) return placed(effect);
-  return `${effect === oneOf(effects) ? 'Either' : 'Or'} ${placed(effect)}`;
-}
-
-// The best of those.
-function oneOf(effects) {
-  return effects.find((effect) => effect.one_of);
-}
-
-// What the model after has beside the one before; `null` where that is nothing.
-function added(effects) {
-  const own = effects.filter((effect) => !effect.one_of || effect === oneOf(effects));
-  if (!own.length) return null;
-  return oneOf(effects) ? own.map(placed).join(' and ') : 'what was missing';
 }
 
 // A value before and after in the colours of both.
@@ -119,7 +69,23 @@ function cleatAnswer({ simulate }) {
 function gapAnswer({ gap, effects }) {
   const line = (what, { before, after }) =>
     before === null ? null : step(what, number(before), effects.length ? number(after) : null);
-  return answer('Gap over its uncertainty', line('fitted', gap.fit), line('held out', gap.held_out));
+  return answer('Residual, standard deviations', line('fitted', gap.fit), line('held out', gap.held_out));
+}
+
+// The sensors of which most is left.
+function leftAnswer({ left, effects }) {
+  const most = [...left].sort((a, b) => b.before_percent - a.before_percent).slice(0, 2);
+  const size = (value) => `${number(value, 2)} %`;
+  return answer(
+    'Left of the signal, worst sensors',
+    most.map((own) =>
+      step(
+        `${words(own.channel)}, ${LEFT_IN[own.kind]}`,
+        size(own.before_percent),
+        effects.length ? size(own.after_percent) : null,
+      ),
+    ),
+  );
 }
 
 function effectAnswer(effect, effects) {

@@ -186,7 +186,6 @@ fn side(points: &[(f64, f64)], sign: f64) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use qcar_dsl::units::Unit;
 
     use super::*;
 
@@ -194,7 +193,7 @@ mod tests {
         NewParameter {
             name: name.into(),
             effect_name: name.into(),
-            unit: Unit::ONE,
+            unit: "1".into(),
             start,
             range: (0.0, 10.0),
             known,

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use qcar_dsl::difference::Difference;
+use qcar_runtime::fit::report::Correlation;
 use serde::{Serialize, Serializer};
 
 use super::axle::Axle;
@@ -10,6 +11,7 @@ use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, r
 use super::gather::Study;
 use super::loops::{Loop, loops};
 use super::record::{Record, record};
+use super::records::{Replayed, records};
 use super::rig::{Ratio, ratios};
 use super::shapes::{Shapes, shapes};
 use super::summary::{Summary, summary};
@@ -30,6 +32,8 @@ pub struct Contents<'a> {
     loops: Vec<Loop>,
     rig: Vec<Ratio>,
     track: Option<Track<'a>>,
+    records: Vec<Replayed>,
+    correlations: &'a [Correlation],
     gap_map: GapMap,
     kappa: Vec<Explanation>,
     refitted: Vec<Refitted>,
@@ -90,9 +94,11 @@ impl<'a> Contents<'a> {
             loops: loops(study),
             rig,
             track: track(study),
+            records: records(study),
+            correlations: &study.fitted.fit.all_correlations,
             gap_map: GapMap {
-                before: patches(&discovery.before.gap.tiles),
-                after: patches(&discovery.after.gap.tiles),
+                before: patches(study, &discovery.before.gap.tiles),
+                after: patches(study, &discovery.after.gap.tiles),
             },
             kappa: explanations(study),
             refitted: refitted(study),

@@ -1,6 +1,7 @@
 //! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
+use qcar_runtime::campaign::Test;
 use qcar_runtime::discover::Kappa;
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::gap::Tile;
@@ -17,10 +18,14 @@ pub struct Patch {
     /// `harmonic`, `time`, `passage`, `travel`, `width` or `cycle`.
     kind: &'static str,
     harmonic: Option<usize>,
-    /// Hz of a harmonic, else s.
+    /// Hz of a harmonic, m of a travel, else s.
     span: (f64, f64),
+    /// Its file.
+    run: String,
     /// In the unit of its run: m/s of a sweep.
     level: f64,
+    /// Over an obstacle, m/s.
+    speed: Option<f64>,
     /// RMS over the uncertainty.
     strength: f64,
 }
@@ -50,8 +55,10 @@ struct Stiffness {
 }
 
 /// All parts, the strongest first.
-pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
+pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
     let patch = |tile: &Tile| Patch {
+        run: of.answer.evidence.runs[tile.run].name.clone(),
+        speed: speed(of, &of.answer.evidence.runs[tile.run].name),
         channel: format!("{} {}", tile.sensor.location, tile.sensor.axis.name()),
         kind: match tile.kind {
             Kind::Harmonic(_) => "harmonic",
@@ -67,6 +74,15 @@ pub fn patches(tiles: &[Tile]) -> Vec<Patch> {
         strength: rounded(tile.strength),
     };
     tiles.iter().map(patch).collect()
+}
+
+/// How fast a run rolls over its obstacle; `None` of other runs.
+fn speed(of: &Study, file: &str) -> Option<f64> {
+    let run = of.fitted.campaign.runs.iter().find(|run| run.file == file)?;
+    match &run.test {
+        Test::Cleat { speed, .. } => Some(*speed),
+        _ => None,
+    }
 }
 
 /// A parameter as the search has it, with all that was found.

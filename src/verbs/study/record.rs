@@ -35,7 +35,15 @@ struct Listed {
     role: &'static str,
     kind: &'static str,
     /// How it was driven.
-    drive: String,
+    drive: Vec<Drive>,
+}
+
+/// Something that a run was driven with or at.
+#[derive(Serialize)]
+struct Drive {
+    what: String,
+    value: f64,
+    unit: &'static str,
 }
 
 #[derive(Serialize)]
@@ -80,24 +88,39 @@ fn listed(run: &Run) -> Listed {
     let (kind, drive) = match &run.test {
         Test::Sweep(sweep) => (
             "sweep",
-            format!(
-                "{} m/s peak, {} to {} Hz",
-                sweep.peak_velocity, sweep.start_frequency, sweep.end_frequency
-            ),
+            vec![
+                drive("peak", sweep.peak_velocity, "m/s"),
+                drive("from", sweep.start_frequency, "Hz"),
+                drive("to", sweep.end_frequency, "Hz"),
+            ],
         ),
-        Test::Bounce => ("bounce", "quasi-static cycle".into()),
+        Test::Bounce => ("quasi-static bounce", Vec::new()),
         Test::DynamicBounce {
             peak_velocity,
             amplitude,
-        } => ("dynamic bounce", format!("{peak_velocity} m/s peak, {amplitude} m")),
-        Test::Longitudinal => ("longitudinal", "quasi-static cycle".into()),
-        Test::Cleat { speed, cleat, .. } => ("cleat", format!("{:.1} km/h over {cleat}", 3.6 * speed)),
-        Test::TimeHistory(recording) => ("time history", format!("{} Hz", recording.sample_rate)),
+        } => (
+            "dynamic bounce",
+            vec![
+                drive("peak", *peak_velocity, "m/s"),
+                drive("amplitude", *amplitude, "m"),
+            ],
+        ),
+        Test::Longitudinal => ("quasi-static longitudinal", Vec::new()),
+        Test::Cleat { speed, cleat, .. } => ("cleat", vec![drive(&format!("over {cleat} at"), 3.6 * speed, "km/h")]),
+        Test::TimeHistory(recording) => ("time history", vec![drive("sampled at", recording.sample_rate, "Hz")]),
     };
     Listed {
         file: run.file.clone(),
         role: if run.role == Role::Fit { "fit" } else { "held_out" },
         kind,
         drive,
+    }
+}
+
+fn drive(what: &str, value: f64, unit: &'static str) -> Drive {
+    Drive {
+        what: what.into(),
+        value,
+        unit,
     }
 }

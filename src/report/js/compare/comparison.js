@@ -5,16 +5,17 @@ function comparison(data) {
   const title = (own) => own.campaign || own.name.split('/').pop();
   const models = data.a.model === data.b.model ? `Model ${data.a.model}` : `Models ${data.a.model} and ${data.b.model}`;
   const names = title(data.a) === title(data.b) ? [data.a.name, data.b.name] : [title(data.a), title(data.b)];
-  const head = heading(
-    kinds[data.kind],
-    `${names[0]} beside ${names[1]}`,
-    key('before', `A, ${data.a.name}`),
-    h('br'),
-    key('after', `B, ${data.b.name}`),
-    h('br'),
-    models,
-  );
-  assemble(head, [
+  const head = () =>
+    heading(
+      kinds[data.kind],
+      `${names[0]} beside ${names[1]}`,
+      key('before', `A, ${data.a.name}`),
+      h('br'),
+      key('after', `B, ${data.b.name}`),
+      h('br'),
+      models,
+    );
+  const sections = () => [
     summary(data),
     moves(data),
     sides(data),
@@ -22,7 +23,8 @@ function comparison(data) {
     gradients(data),
     ratios(data),
     passages(data),
-  ]);
+  ];
+  assemble(() => [head(), sections()]);
 }
 
 comparison(reported());

@@ -4,15 +4,28 @@ function passages({ cleat, traces }) {
   if (!traces.length) return null;
   const places = [...new Set(cleat.runs.map((own) => `${own.mass}_${own.axis}`))];
   const first = places.includes('body_z') ? 'body_z' : places[0];
-  const charts = [];
-  const [columns, rows] = [h('div', { class: 'columns two' }), h('div', {})];
-  const showRun = (name) => {
-    charts.splice(0).forEach(forget);
-    charts.push(...passagePlots(traces.find((own) => own.run === name), columns));
-  };
-  const showPlace = (place) => rows.replaceChildren(passageTable(cleat.runs, place));
+  const shown = picker('passages', {
+    label: 'Run',
+    options: traces.map((own) => [own.run, passageName(own)]),
+    first: traces[Math.floor(traces.length / 2)].run,
+    show: (name, place, text) =>
+      passagePlots(
+        traces.find((own) => own.run === name),
+        place,
+        text,
+      ),
+  });
+  const tables = picker('passage tables', {
+    control: choice,
+    label: 'Mass',
+    options: places.map((place) => [place, words(place)]),
+    first,
+    show: (name, place) => {
+      place.replaceChildren(passageTable(cleat.runs, name));
+      return [];
+    },
+  });
   const count = Math.max(...traces.flatMap((own) => own.traces.map((trace) => trace.measured.length)));
-  const middle = traces[Math.floor(traces.length / 2)].run;
   const element = section(
     'cleat',
     'Over the cleat',
@@ -28,44 +41,35 @@ function passages({ cleat, traces }) {
       ][count],
       '. Time counts from where the wheel feels the cleat. The peak is the largest acceleration within the first 100 ms, the after-shake the root mean square of the second after it.',
     ),
-    select(
-      'Run',
-      traces.map((own) => [own.run, passageName(own)]),
-      middle,
-      showRun,
-    ),
-    columns,
+    shown.control,
+    shown.place,
     h('h3', {}, 'Peaks and after-shakes'),
-    choice(
-      'Mass',
-      places.map((place) => [place, words(place)]),
-      first,
-      showPlace,
-    ),
-    rows,
+    tables.control,
+    tables.place,
     spreadTable('B against A over all runs, simulated', cleat.summary),
     cleat.measured ? spreadTable('B against A over all runs, measured', cleat.measured) : null,
   );
   return {
     element,
     draw: () => {
-      showRun(middle);
-      showPlace(first);
+      shown.draw();
+      tables.draw();
     },
   };
 }
 
 function passageName({ speed, height, role }) {
-  return `${plain(3.6 * speed, 3)} km/h, ${plain(1e3 * height, 3)} mm${role ? ` (${roleName(role)})` : ''}`;
+  return `${plain(3.6 * speed, 3)} km/h, ${given(height, 'm')}${role ? ` (${roleName(role)})` : ''}`;
 }
 
-function passagePlots(run, place) {
+function passagePlots(run, place, title) {
   const traces = [...run.traces].sort((a, b) => a.mass.localeCompare(b.mass) || b.axis.localeCompare(a.axis));
-  place.replaceChildren(...traces.map((trace) => traceColumn(trace, 'passage')));
+  const columns = traces.map((trace) => traceColumn(trace, 'passage', title));
+  place.replaceChildren(h('div', { class: 'columns two' }, columns));
   return traces.map((trace, at) => {
     const roles = trace.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
-    return plot(place.children[at].querySelector('.canvas'), {
-      x: SECONDS,
+    return plot(columns[at].querySelector('.canvas'), {
+      x: TIME,
       y: ACCELERATION,
       at: run.time,
       sync: 'passages',
@@ -83,15 +87,15 @@ function passageTable(all, place) {
   const count = Math.max(...own.map((run) => run.peak.measured.length));
   const headings = [[], ['measured'], ['measured A', 'measured B']][count];
   const cells = (metric) => [
-    ...headings.map((heading, at) => number(metric.measured[at])),
-    h('span', { class: 'before' }, number(metric.a)),
-    h('span', { class: 'after' }, number(metric.b)),
+    ...headings.map((heading, at) => acceleration(metric.measured[at])),
+    h('span', { class: 'before' }, acceleration(metric.a)),
+    h('span', { class: 'after' }, acceleration(metric.b)),
     signed(metric.change),
   ];
   const columns = (name) =>
     [...headings, 'A', 'B', 'change'].map((text, at) => [at ? text : `${name}, ${text}`, 'number']);
   return table(
-    `Peaks and after-shakes of ${words(place)}, m/s²`,
+    headed(`Peaks and after-shakes of ${words(place)}`, ACCELERATION.unit),
     [['run', 'text'], ...columns('peak'), ...columns('after-shake')],
     own.map((run) => [passageName(run), ...cells(run.peak), ...cells(run.after_shake)]),
   );

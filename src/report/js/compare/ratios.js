@@ -4,15 +4,16 @@ function ratios(data) {
   const { ratios: all } = data;
   if (!all.length) return null;
   const runs = [...new Map(all.map((own) => [own.run || '', own.role])).entries()];
-  const place = h('div', { class: 'columns' });
-  let [charts, shown] = [[], runs[0][0]];
-  const show = (run) => {
-    charts.forEach(forget);
-    shown = run;
-    const own = all.filter((ratio) => (ratio.run || '') === run);
-    place.replaceChildren(...own.map(ratioColumn));
-    charts = own.flatMap((ratio, at) => comparedPlots(ratio, place.children[at]));
-  };
+  const shown = picker('ratios', {
+    control: choice,
+    label: 'Run',
+    options: runs.map(([run, role]) => [run, `${runName(run)}${role ? ` (${roleName(role)})` : ''}`]),
+    show: (run, place) =>
+      drawCompared(
+        all.filter((ratio) => (ratio.run || '') === run),
+        place,
+      ),
+  });
   const count = Math.max(...all.map((own) => own.measured.length));
   const element = section(
     'ratios',
@@ -28,20 +29,20 @@ function ratios(data) {
         [', and what was measured of ', key('measured-a', 'A'), ' and ', key('measured-b', 'B')],
       ][count],
       count ? [' with a ', key('band', 'band'), ' of two standard deviations'] : null,
-      '. The lower plots show B over A. Drag over a plot to zoom, double-click to see everything; a click in the legend hides a curve.',
+      '. The lower plots show B over A.',
+      zoomHint(),
     ),
-    runs.length > 1
-      ? choice(
-          'Run',
-          runs.map(([run, role]) => [run, `${runName(run)}${role ? ` (${roleName(role)})` : ''}`]),
-          runs[0][0],
-          show,
-        )
-      : null,
-    place,
+    shown.control,
+    shown.place,
     ratioTable(data),
   );
-  return { element, draw: () => show(shown) };
+  return { element, draw: shown.draw };
+}
+
+function drawCompared(own, place) {
+  const columns = own.map(ratioColumn);
+  place.replaceChildren(h('div', { class: 'columns' }, columns));
+  return own.flatMap((ratio, at) => comparedPlots(ratio, columns[at]));
 }
 
 function ratioColumn(ratio) {
@@ -61,14 +62,20 @@ function ratioColumn(ratio) {
           h('span', { class: 'after' }, of('B', b)),
         )
       : null,
-    ['magnitude', 'phase', 'change'].map((part) => figure(`ratio-${part}`, null, h('div', { class: 'canvas' }))),
+    ['magnitude', 'phase', 'change'].map((part) =>
+      figure(
+        `ratio-${part}`,
+        `${ratio.run ? `${runName(ratio.run)}: ` : ''}${part} of ${channelName(ratio.channel)}`,
+        h('div', { class: 'canvas' }),
+      ),
+    ),
   );
 }
 
 function comparedPlots(ratio, column) {
   const observed = ratio.measured_change;
   const change = {
-    y: { label: 'B over A, dB', range: aroundZero },
+    y: { label: 'B over A', unit: 'dB', range: aroundZero },
     height: 150,
     curves: [
       ...(observed ? [{ role: 'measured', values: observed.magnitude }] : []),
@@ -86,18 +93,12 @@ function aroundZero(u, low, high) {
 
 function sideCurves(ratio, part) {
   const roles = ratio.measured.length > 1 ? ['measured-a', 'measured-b'] : ['measured'];
-  const observed = ratio.measured.flatMap(({ value, band }, at) => {
-    const edge = (sign) => value[part].map((own, line) => (own === null ? null : own + sign * band[part][line]));
-    return [
-      { role: 'band', values: edge(-1) },
-      { role: 'band', values: edge(1) },
-      { role: roles[at], values: value[part] },
-    ];
-  });
-  return [
-    ...observed,
-    ...SIDES.map(([own, letter, role]) => ({ role, label: letter, values: ratio[own][part] })),
-  ];
+  const observed = ratio.measured.map(({ value, band }, at) => ({
+    role: roles[at],
+    values: value[part],
+    error: band[part],
+  }));
+  return [...observed, ...SIDES.map(([own, letter, role]) => ({ role, label: letter, values: ratio[own][part] }))];
 }
 
 function ratioTable({ transmissibility: all }) {

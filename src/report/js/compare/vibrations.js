@@ -23,7 +23,7 @@ function vibrations({ modes: pairs }) {
     ),
     figure(
       'modes',
-      null,
+      'Natural vibrations of A and B',
       table(
         'Natural vibrations',
         [

@@ -1,0 +1,91 @@
+// Each effect that was found, with its rivals; the laws that were learned where none was; and what would have been seen.
+
+function effectPart(effect, effects) {
+  return h(
+    'div',
+    {},
+    h('h3', {}, effectTitle(effect, effects)),
+    h(
+      'p',
+      {},
+      `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`,
+    ),
+    h('div', { class: 'columns two' }, strengthTable('What it is', effect), rivalTable(effect.rivals)),
+  );
+}
+
+function strengthTable(title, { parameters, stderr, units }) {
+  const rows = Object.entries(parameters).map(([name, value]) => {
+    const [error, unit] = [stderr[name], units[name]];
+    return [
+      name,
+      error === null ? quantity(value, unit) : measured(value, error, unit),
+      error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
+    ];
+  });
+  return table(
+    title,
+    [
+      ['parameter', 'text'],
+      ['value', 'number'],
+      ['standard error', 'text'],
+    ],
+    rows,
+  );
+}
+
+function rivalTable(rivals) {
+  if (!rivals.length) return null;
+  return table(
+    'Rivals, by how probable they are beside it',
+    [
+      ['effect', 'text sentence'],
+      ['probability', 'text sentence'],
+      ['judged', 'text sentence'],
+    ],
+    rivals.map((rival) => [
+      `${words(rival.effect)} at ${words(rival.at)}`,
+      odds(rival.behind),
+      rival.early ? 'before its fit had settled' : 'fitted to the end',
+    ]),
+  );
+}
+
+// A law says what the axle does, not why.
+function learnedPart({ laws, explained, gap }) {
+  const judged = gap.held_out.before === null ? gap.fit : gap.held_out;
+  return h(
+    'div',
+    {},
+    h('h3', {}, 'Learned from the data'),
+    h(
+      'p',
+      {},
+      `Without a cause, but with ${percent(explained, 3)} of the excess explained: the residual goes from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
+    ),
+    laws.map((law) => [
+      h('h4', {}, placed(law)),
+      h('p', {}, `${law.words}.`),
+      details(`Coefficients of the ${placed(law)}`, strengthTable(placed(law), law)),
+    ]),
+  );
+}
+
+// Where nothing is missing: an effect whose usual size is below the limit may be there, unseen.
+function visiblePart(visible) {
+  if (!visible.length) return null;
+  const sizes = ({ usual }) => Object.entries(usual).map(([name, value]) => `${name} ${number(value)}`);
+  return details(
+    'How clearly an effect of usual size would have been seen',
+    h('p', {}, 'The size over the least that would be certain, in SI units: below 1 it may be there, unseen.'),
+    table(
+      'Usual size over the least that would be certain',
+      [
+        ['effect', 'text'],
+        ['usual size', 'text sentence'],
+        ['over the limit', 'number'],
+      ],
+      visible.map((own) => [placed(own), sizes(own).join(', '), number(own.times_the_limit)]),
+    ),
+  );
+}

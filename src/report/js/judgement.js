@@ -1,0 +1,151 @@
+// The answer in sentences that say no more than is true.
+
+// Beyond both, a sensor has more left than noise and calibration explain: percent of its signal, as in discovery's own
+// verdict, and standard deviations.
+const MUCH = { percent: 5, deviations: 2 };
+
+// A rival whose evidence is lower by less than this has at least a twentieth of the probability of the answer.
+const APART = Math.log(20);
+
+const LEFT_IN = {
+  sweep: 'sweeps',
+  cleat: 'cleat runs',
+  record: 'time histories',
+  kc_force: 'K&C curves',
+  kc_hysteresis: 'the hysteresis of K&C curves',
+  kc_sine: 'K&C sines',
+};
+
+// What is left of each sensor by the model of the answer, the most first.
+function leftOver({ left, by_channel: deviations, effects }) {
+  const side = effects.length ? 'after' : 'before';
+  const parts = left.map((own) => ({
+    text: `${words(own.channel)} in ${LEFT_IN[own.kind]}`,
+    percent: own[`${side}_percent`],
+    deviations: deviations[own.channel] ? deviations[own.channel][side] : null,
+  }));
+  return parts.sort((a, b) => b.percent - a.percent);
+}
+
+function muchLeft(discover) {
+  return leftOver(discover).filter((own) => own.percent > MUCH.percent && own.deviations > MUCH.deviations);
+}
+
+function lead({ summary, discover }) {
+  if (summary.verdict !== 'found') {
+    return `${words(summary.missing.charAt(0).toUpperCase() + summary.missing.slice(1))}.`;
+  }
+  const names = together(discover.effects.map(placed));
+  const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
+  const doubt = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
+  return muchLeft(discover).length
+    ? `Partly explained by ${names}${doubt}. Much is left.`
+    : `Missing: ${names}${doubt}.`;
+}
+
+// What explains the runs as well as one of the effects of the answer, or better.
+function rivalsAlike({ effects }) {
+  return effects.filter((effect) => !effect.one_of).flatMap(({ rivals }) => rivals.filter((own) => own.behind < APART));
+}
+
+function consequence(discover, { verdict: kind }, likely) {
+  const judged =
+    discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
+  const [which, gap] = judged;
+  const before = `On ${which} runs the residual of the baseline model is ${number(gap.before)} standard deviations`;
+  const after = `that of the extended model ${number(gap.after)}; 1 is noise`;
+  const [best, ...alike] = discover.effects.filter((effect) => effect.one_of);
+  const chosen = best || discover.effects[0];
+  const place = likely
+    ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of what it leaves of the sweeps.`
+    : '';
+  switch (kind) {
+    case 'none':
+      return `${before}; 1 is noise. No effect of the catalogue is called for. ${mostLeft(discover)}`;
+    case 'found':
+      return `${before}, ${after}.${likelihood(discover)}${nextBest(chosen)} ${mostLeft(discover)}`;
+    case 'class':
+      return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}, and 1 is noise. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained as well, so that no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
+    default:
+      return `${before}, where 1 is noise, and nothing in the catalogue closes it. The map below shows where it is.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
+  }
+}
+
+function learnedLaw({ learned }) {
+  if (!learned) return '';
+  const laws = learned.laws.map(placed).join(' and ');
+  return ` Learned from the data, without a cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
+}
+
+function likelihood({ probability }) {
+  return probability === null
+    ? ''
+    : ` The answer has a probability of ${chance(probability)} among all that was tried.`;
+}
+
+function chance(probability) {
+  return probability > 0.999 ? 'more than 99.9 %' : percent(probability, 3);
+}
+
+function nextBest(chosen) {
+  const rival = chosen && chosen.rivals[0];
+  if (!rival) return '';
+  const settled = rival.early ? ', judged before its fit had settled' : '';
+  return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}${settled}.`;
+}
+
+// How much less probable what has so much less evidence is.
+function odds(behind) {
+  const power = Math.abs(behind) / Math.LN10;
+  if (power < 0.05) return 'as probable';
+  const times = power < 4 ? number(10 ** power, 2) : `10${superscript(Math.round(power))}`;
+  return `${times} times ${behind > 0 ? 'less' : 'more'} probable`;
+}
+
+// The worst sensor, by what is left of its signal.
+function mostLeft(discover) {
+  const [most] = leftOver(discover);
+  if (!most) return '';
+  const noise = most.deviations === null ? '' : `, ${number(most.deviations)} standard deviations`;
+  return `Most is left of ${most.text}: ${number(most.percent, 2)} % of the signal${noise}.`;
+}
+
+// The fit of the rig runs may fall while the model gets better.
+function fallingFit({ rig: ratios }) {
+  const parts = ['fit', 'held_out'].flatMap((role) => {
+    const own = ratios.filter((ratio) => ratio.role === role && ratio.quality_after);
+    const of = (quality, part) => mean(own.map((ratio) => ratio[quality][`fit_${part}`]));
+    return ['magnitude', 'phase']
+      .map((part) => [part, of('quality_before', part), of('quality_after', part)])
+      .filter(([, before, after]) => before !== null && number(after) !== number(before) && after < before)
+      .map(([part, before, after]) => `${part} from ${number(before)} to ${number(after)} % (${roleName(role)} runs)`);
+  });
+  if (!parts.length) return null;
+  return `The fit percentage falls: ${parts.join(', ')}. The baseline model was fitted to these ratios alone. The extended model is fitted to all runs, cleat and K&C runs too, each by its own uncertainty, so it may meet the sweeps less closely and the whole better.`;
+}
+
+// `a, b and c`
+function together(names) {
+  return names.length > 1 ? `${names.slice(0, -1).join(', ')} and ${names[names.length - 1]}` : names.join('');
+}
+
+function placed(effect) {
+  return `${words(effect.name)} at ${words(effect.at)}`;
+}
+
+// Of several that the data cannot tell apart it is one.
+function effectTitle(effect, effects) {
+  if (!effect.one_of) return placed(effect);
+  return `${effect === oneOf(effects) ? 'Either' : 'Or'} ${placed(effect)}`;
+}
+
+// The best of those.
+function oneOf(effects) {
+  return effects.find((effect) => effect.one_of);
+}
+
+// What the extended model has beside the baseline; `null` where that is nothing.
+function added(effects) {
+  const own = effects.filter((effect) => !effect.one_of || effect === oneOf(effects));
+  return own.length ? own.map(placed).join(' and ') : null;
+}

@@ -1,0 +1,37 @@
+// What a curve stands for decides how it is drawn: in figures, in their legends and in the text.
+
+const ROLES = {
+  measured: { label: 'measured', width: 4 },
+  'measured-a': { label: 'measured A', width: 4 },
+  'measured-b': { label: 'measured B', width: 4 },
+  band: { label: 'band', width: 0 },
+  start: { label: 'start values', width: 1.3, dash: [2, 4] },
+  before: { label: 'baseline', width: 1.6, dash: [7, 4] },
+  after: { label: 'extended', width: 1.6 },
+  change: { label: 'B over A', width: 1.6 },
+  locked: { label: 'longitudinally locked', width: 1.4, dash: [10, 3, 2, 3] },
+  vertical: { label: 'purely vertical', width: 1.4, dash: [2, 3] },
+};
+
+// Runs of several levels beside each other.
+const PALETTE = ['after', 'before', 'locked', 'vertical', 'start'];
+
+// A short piece of such a line, or a block of such a bar or band.
+function sample(role, filled = role === 'band') {
+  const { width, dash } = ROLES[role];
+  const [fill, stroke] = filled ? [`var(--${role})`, 'none'] : ['none', `var(--${role})`];
+  return svg(
+    'svg',
+    { class: 'sample', viewBox: '0 0 26 10', width: 26, height: 10, 'aria-hidden': 'true' },
+    svg('path', {
+      d: filled ? 'M0 1H26V9H0Z' : 'M0 5H26',
+      style: `fill:${fill};stroke:${stroke}`,
+      'stroke-width': width,
+      'stroke-dasharray': dash && !filled ? dash.join(' ') : null,
+    }),
+  );
+}
+
+function key(role, text) {
+  return h('span', { class: `key ${role}` }, sample(role), text);
+}

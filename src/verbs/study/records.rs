@@ -1,0 +1,114 @@
+//! Records over time: what was measured, what the models of the search leave of it, and what travel drove a force.
+
+use qcar_runtime::campaign::{Quantity, Role};
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::evidence::{Kind, Series, Stimulus};
+use qcar_runtime::discover::explain::Explanation;
+use qcar_runtime::transmissibility::Point;
+use serde::Serialize;
+
+use super::gather::Study;
+use crate::report::rounded::curve;
+
+/// A sensor in a record.
+#[derive(Serialize)]
+pub struct Replayed {
+    run: String,
+    role: &'static str,
+    /// The sensor.
+    channel: String,
+    quantity: &'static str,
+    unit: &'static str,
+    /// s.
+    time: Vec<f64>,
+    measured: Vec<f64>,
+    before: Vec<f64>,
+    after: Option<Vec<f64>>,
+    /// RMS of what is left over the RMS of what was measured, without its mean.
+    nrms_before: f64,
+    nrms_after: Option<f64>,
+    /// Of a force: the travel that was prescribed.
+    travel: Option<Travel>,
+}
+
+/// A prescribed motion at the times of a record.
+#[derive(Serialize)]
+struct Travel {
+    /// m.
+    displacement: Vec<f64>,
+    /// m/s.
+    velocity: Vec<f64>,
+}
+
+/// The records of a study.
+pub fn records(of: &Study) -> Vec<Replayed> {
+    let (evidence, discovery) = (&of.answer.evidence, &of.answer.discovery);
+    let extended = !discovery.findings.is_empty();
+    let series = evidence.series.iter().enumerate();
+    let timed = series.filter(|(_, series)| series.kind == Kind::Time);
+    let replayed = timed.map(|(place, series)| {
+        let run = &evidence.runs[series.run];
+        let model = |of: &Explanation| modelled(of, place, series);
+        let measured: Vec<f64> = series.value.iter().map(|value| value.re).collect();
+        let before = model(&discovery.before);
+        let after = extended.then(|| model(&discovery.after));
+        Replayed {
+            run: run.name.clone(),
+            role: if run.role == Role::Fit { "fit" } else { "held_out" },
+            channel: format!("{} {}", series.sensor.location, series.sensor.axis.name()),
+            quantity: series.sensor.quantity.name(),
+            unit: series.sensor.quantity.unit(),
+            time: curve(series.at.iter().copied()),
+            nrms_before: nrms(&measured, &before),
+            nrms_after: after.as_ref().map(|after| nrms(&measured, after)),
+            measured: curve(measured),
+            before: curve(before),
+            after: after.map(curve),
+            travel: travel(evidence, series),
+        }
+    });
+    replayed.collect()
+}
+
+/// What a model shows, from what it leaves.
+fn modelled(of: &Explanation, place: usize, series: &Series) -> Vec<f64> {
+    let left = of.gap.residuals[place].iter().zip(&series.sigma);
+    let modelled = series
+        .value
+        .iter()
+        .zip(left)
+        .map(|(value, (residual, sigma))| value.re - residual * sigma);
+    modelled.collect()
+}
+
+fn nrms(measured: &[f64], modelled: &[f64]) -> f64 {
+    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
+    let left: f64 = measured.iter().zip(modelled).map(|(a, b)| (a - b).powi(2)).sum();
+    let all: f64 = measured.iter().map(|value| (value - mean).powi(2)).sum();
+    (left / all).sqrt()
+}
+
+/// The travel beside a force, where one was prescribed.
+fn travel(evidence: &Evidence, series: &Series) -> Option<Travel> {
+    let Stimulus::History { inputs, rate, .. } = &evidence.runs[series.run].stimulus else {
+        return None;
+    };
+    let input = |(point, _): &&(Point, Vec<f64>)| moves(point, series);
+    let (_, samples) = inputs.signals.iter().find(input)?;
+    let place = |time: f64| ((time - inputs.start) * rate).round() as usize;
+    let slope = |at: usize| {
+        let (low, high) = (at.saturating_sub(1), (at + 1).min(samples.len() - 1));
+        (samples[high] - samples[low]) * rate / (high - low) as f64
+    };
+    Some(Travel {
+        displacement: curve(series.at.iter().map(|&time| samples[place(time)])),
+        velocity: curve(series.at.iter().map(|&time| slope(place(time)))),
+    })
+}
+
+/// Whether an input is the travel over which a force is drawn.
+fn moves(input: &Point, series: &Series) -> bool {
+    input.quantity == Quantity::Displacement
+        && series.sensor.quantity == Quantity::Force
+        && input.axis == series.sensor.axis
+}
