@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use qcar_dsl::check::Checked;
 use qcar_dsl::front::check_text;
 use qcar_dsl::parse::parse_text;
-use qcar_dsl::patch::{Patch, Patched};
+use qcar_dsl::patch::{Ordinate, Patch, Patched};
 use qcar_dsl::source::Source;
 
 fn models() -> PathBuf {
@@ -50,13 +50,22 @@ fn patched(patch: &Patch, model: &Checked, place: &str) -> Patched {
 }
 
 fn effects() -> Vec<Patch> {
+    in_folder("effects")
+}
+
+fn in_folder(folder: &str) -> Vec<Patch> {
     let read = |file: &PathBuf| Patch::read(read(file)).unwrap_or_else(|report| panic!("{report}"));
-    files("effects").iter().map(read).collect()
+    files(folder).iter().map(read).collect()
+}
+
+fn law(name: &str) -> Patch {
+    let named = |law: &Patch| law.effect().name.text == name;
+    in_folder("laws").into_iter().find(named).expect("it is shipped")
 }
 
 #[test]
 fn every_effect_prints_as_the_same_tree() {
-    for file in files("effects") {
+    for file in files("effects").into_iter().chain(files("laws")) {
         let first = parse_text(&read(&file), 0);
         assert!(first.mistakes.is_empty(), "{}", file.display());
         let printed = Source {
@@ -77,7 +86,7 @@ fn every_effect_prints_as_the_same_tree() {
 fn every_effect_compiles_wherever_it_applies() {
     for file in files("axles") {
         let model = checked(&file);
-        for effect in effects() {
+        for effect in effects().into_iter().chain(in_folder("laws")) {
             for patched in effect.candidates(&model, &|_| None) {
                 let warnings = patched.model.warnings();
                 assert!(warnings.diagnostics.is_empty(), "{}\n{warnings}", patched.model.name);
@@ -90,6 +99,54 @@ fn every_effect_compiles_wherever_it_applies() {
 fn a_patched_model_is_a_file_that_reads_well() {
     let patched = patched(&effect("suspended_mass"), &model("axle_c"), "body");
     insta::assert_snapshot!(patched.text("Evidence: none yet."));
+}
+
+#[test]
+fn laws_apply_at_whatever_has_such_a_term() {
+    let model = model("axle_c");
+    let places = |name: &str| law(name).places(&model);
+    assert_eq!(places("damping_law"), ["damper", "top_mount", "wheel_bushing_x"]);
+    assert_eq!(places("elastic_law"), ["spring", "top_mount", "wheel_bushing_x"]);
+    assert_eq!(places("relaxation_law"), ["spring", "top_mount", "tire", "wheel_bushing_x"]);
+    assert_eq!(places("tire_law"), ["tire"]);
+}
+
+/// The points of a curve are numbers, parameters, or products of these; what it is over may be a part of a parameter.
+#[test]
+fn curves_are_read_from_the_tables_of_a_law() {
+    let curves = law("damping_law").curves();
+    assert_eq!(curves.len(), 1);
+    assert_eq!((curves[0].over.as_str(), curves[0].scale.as_deref()), ("v", Some("v_ref")));
+    let product = |names: &[&str]| Ordinate::Product(names.iter().map(|name| name.to_string()).collect());
+    let points = &curves[0].points;
+    assert!(points.contains(&(0.0, Ordinate::Number(1.0))));
+    assert!(points.contains(&(0.15, product(&["to_low_rebound"]))));
+    assert!(points.contains(&(-0.4, product(&["to_low_compression", "to_half_compression"]))));
+    // Standing, the deflection of a tyre is minus its stretch.
+    let tire = &law("tire_law").curves()[0];
+    assert_eq!((tire.over.as_str(), tire.points[0].0), ("s", -2.0));
+    assert!(law("memory_law").curves().is_empty());
+}
+
+/// An effect that was found is a file of its own: put into the model again it starts where it was found.
+#[test]
+fn an_effect_is_written_with_the_values_that_were_found() {
+    let model = model("axle_c");
+    let first = patched(&law("damping_law"), &model, "damper");
+    let mut found = first.parameters.clone();
+    for (k, own) in found.iter_mut().enumerate() {
+        own.start = own.range.0 + (own.range.1 - own.range.0) * (k as f64 + 1.0) / 20.0;
+    }
+    let text = law("damping_law").text_at(&found);
+    let again = Patch::read(Source {
+        name: "found.axle".into(),
+        text,
+    });
+    let again = patched(&again.unwrap_or_else(|report| panic!("{report}")), &model, "damper");
+    for (own, found) in again.parameters.iter().zip(&found) {
+        assert_eq!(own.name, found.name);
+        assert!((own.start / found.start - 1.0).abs() < 0.01, "{} is {}", own.name, own.start);
+    }
 }
 
 /// A cycle is no radian: what is declared in Hz is printed so, of an effect and of the model that holds it.

@@ -17,7 +17,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
                 ("sigma1", [200.0, 300.0, 400.0]),
             ],
         ),
-        "coulomb_friction|bouc_wen_hysteresis",
+        "coulomb_friction|bouc_wen_hysteresis|elasto_slip_friction",
     ),
     (
         entry(
@@ -26,7 +26,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
             "a",
             &[("f_coulomb", [30.0, 60.0, 150.0]), ("v_slip", [0.002, 0.002, 0.004])],
         ),
-        "coulomb_friction|bouc_wen_hysteresis",
+        "coulomb_friction|bouc_wen_hysteresis|elasto_slip_friction",
     ),
     (
         entry(
@@ -35,7 +35,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
             "c",
             &[("f_slip", [30.0, 80.0, 200.0]), ("k_stick", [100e3, 200e3, 400e3])],
         ),
-        "coulomb_friction|bouc_wen_hysteresis",
+        "coulomb_friction|bouc_wen_hysteresis|elasto_slip_friction",
     ),
     (
         entry(
@@ -61,7 +61,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
             "c",
             &[("exponent", [0.9, 0.75, 0.6]), ("v_same", [0.15, 0.15, 0.15])],
         ),
-        "digressive_damper|segmented_polynomial_damper",
+        "digressive_damper|segmented_polynomial_damper|compliant_digressive_damper",
     ),
     (
         entry(
@@ -70,7 +70,7 @@ pub const OTHER_LAWS: [(Entry, &str); 13] = [
             "a",
             &[("digression", [0.3, 0.6, 0.9]), ("asymmetry", [1.1, 1.4, 1.8])],
         ),
-        "digressive_damper|segmented_polynomial_damper|asymmetric_damper",
+        "digressive_damper|segmented_polynomial_damper|asymmetric_damper|compliant_digressive_damper",
     ),
     (
         entry("soft_play", "damper", "c", &[("gap", [0.001, 0.002, 0.004])]),
