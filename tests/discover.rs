@@ -102,6 +102,18 @@ fn friction_and_what_yields_beside_it_are_named_in_a_real_damper() {
     assert!(left < 12.0, "{left} %");
 }
 
+/// Fitted to one record of a band that slips, and judged on others at another frequency and another tension.
+#[test]
+fn friction_with_memory_and_backlash_is_named_in_a_real_device() {
+    let answer = measured("friction_damper");
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    let effect = &answer["effects"][0];
+    assert_eq!(effect["name"], "elasto_slip_friction", "{answer}");
+    assert_eq!(effect["form"], "with_backlash", "{answer}");
+    let left = answer["left"][0]["after_percent"].as_f64().expect("a number");
+    assert!(left < 20.0, "{left} %");
+}
+
 /// With the damper bolted to the body nothing is left to move on the K&C rig.
 #[test]
 fn a_top_mount_that_the_model_lacks_is_found() {
