@@ -273,7 +273,7 @@ fn what_is_known_of_an_effect_is_not_estimated() {
 fn a_faint_effect_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
-    let truth = [("k_maxwell", 140e3), ("relaxation_frequency", 8.0)];
+    let truth = [("k_maxwell", 120e3), ("relaxation_frequency", 8.0)];
     let order = Order {
         cleats: false,
         noise: 0.06,

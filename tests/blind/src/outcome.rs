@@ -293,6 +293,6 @@ fn candidate(value: &Value) -> Option<String> {
 
 /// `sensor/kind:percent`.
 fn left(value: &Value) -> Option<String> {
-    let (sensor, kind) = (value["sensor"].as_str()?, value["kind"].as_str()?);
-    Some(format!("{sensor}/{kind}:{:.2}", value["percent"].as_f64()?))
+    let (sensor, kind) = (value["channel"].as_str()?, value["kind"].as_str()?);
+    Some(format!("{sensor}/{kind}:{:.2}", value["after_percent"].as_f64()?))
 }

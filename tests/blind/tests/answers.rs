@@ -40,7 +40,7 @@ fn a_full_answer_is_read() {
         "alike": [],
         "candidates": [{"effect": "free_play", "at": "damper", "form": null, "probability": 0.02, "explained": 0.4}],
         "explained": 0.99,
-        "left": [{"sensor": "body_z", "kind": "sweep", "percent": 1.5}],
+        "left": [{"channel": "body_z", "kind": "sweep", "before_percent": 4.0, "after_percent": 1.5}],
         "learned": {"at": "damper", "words": "stiff", "file": null, "explained": 0.9},
         "seconds": 12.0,
     });
