@@ -10,7 +10,14 @@ use qcar_dsl::syntax::Item;
 use crate::catalogue::looks_like_a_path;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
-use crate::workshop::Catalogue;
+
+/// What may be missing in a model.
+pub struct Catalogue {
+    /// The effects.
+    pub effects: Vec<Patch>,
+    /// Laws that name no cause.
+    pub laws: Vec<Patch>,
+}
 
 /// All shipped effects, by name.
 ///

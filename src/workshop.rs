@@ -14,16 +14,9 @@ use qcar_runtime::discover::nuisance::Form;
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
 
+use crate::effects::Catalogue;
 use crate::evaluated::Evaluated;
 use crate::scales::scales;
-
-/// What may be missing in a model.
-pub struct Catalogue {
-    /// The effects.
-    pub effects: Vec<Patch>,
-    /// Laws that name no cause.
-    pub laws: Vec<Patch>,
-}
 
 /// A model on the bench, and the catalogue beside it.
 #[derive(Clone)]

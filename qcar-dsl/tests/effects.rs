@@ -107,7 +107,10 @@ fn laws_apply_at_whatever_has_such_a_term() {
     let places = |name: &str| law(name).places(&model);
     assert_eq!(places("damping_law"), ["damper", "top_mount", "wheel_bushing_x"]);
     assert_eq!(places("elastic_law"), ["spring", "top_mount", "wheel_bushing_x"]);
-    assert_eq!(places("relaxation_law"), ["spring", "top_mount", "tire", "wheel_bushing_x"]);
+    assert_eq!(
+        places("relaxation_law"),
+        ["spring", "top_mount", "tire", "wheel_bushing_x"]
+    );
     assert_eq!(places("tire_law"), ["tire"]);
 }
 
@@ -116,7 +119,10 @@ fn laws_apply_at_whatever_has_such_a_term() {
 fn curves_are_read_from_the_tables_of_a_law() {
     let curves = law("damping_law").curves();
     assert_eq!(curves.len(), 1);
-    assert_eq!((curves[0].over.as_str(), curves[0].scale.as_deref()), ("v", Some("v_ref")));
+    assert_eq!(
+        (curves[0].over.as_str(), curves[0].scale.as_deref()),
+        ("v", Some("v_ref"))
+    );
     let product = |names: &[&str]| Ordinate::Product(names.iter().map(|name| name.to_string()).collect());
     let points = &curves[0].points;
     assert!(points.contains(&(0.0, Ordinate::Number(1.0))));
@@ -145,7 +151,12 @@ fn an_effect_is_written_with_the_values_that_were_found() {
     let again = patched(&again.unwrap_or_else(|report| panic!("{report}")), &model, "damper");
     for (own, found) in again.parameters.iter().zip(&found) {
         assert_eq!(own.name, found.name);
-        assert!((own.start / found.start - 1.0).abs() < 0.01, "{} is {}", own.name, own.start);
+        assert!(
+            (own.start / found.start - 1.0).abs() < 0.01,
+            "{} is {}",
+            own.name,
+            own.start
+        );
     }
 }
 
