@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use super::assembly::Placed;
 use super::race::{Finalist, race};
 use super::screen::Prospect;
-use super::verdict::{Set, closed};
+use super::verdict::{Set, closed, predicts};
 use super::{News, Progress, explained, looks};
 use crate::discover::evidence::Evidence;
 use crate::discover::numbers::EXPLAINED;
@@ -15,7 +15,8 @@ use crate::discover::search::{Finding, Learned};
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;
 
-/// The laws that the evidence wants beside a set; `None` where it wants none.
+/// The laws that the evidence wants beside a set; `None` where it wants none, or where they do not predict the runs that
+/// judge.
 pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     for _ in 0..MOST_LAWS {
@@ -29,7 +30,7 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
         }
         best = Some(more);
     }
-    best
+    best.filter(|best| predicts(best, base, evidence) && closed(&base.explanation, &best.explanation, evidence) > 0.0)
 }
 
 /// The most probable law at the most probable place beside a set.

@@ -275,14 +275,19 @@ fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let part = (0..sets.len()).filter(is_less).max_by(order);
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
-            let predicts = log_score(&sets[best], evidence) > log_score(&sets[part], evidence);
-            !predicts || part != 0 && closes < EXPLAINED
+            !predicts(&sets[best], &sets[part], evidence) || part != 0 && closes < EXPLAINED
         };
         match part.filter(withdrawn) {
             Some(part) => best = part,
             None => return best,
         }
     }
+}
+
+/// True where a set predicts the runs that judge better than another does, or where there are none.
+pub fn predicts(set: &Set, other: &Set, evidence: &Evidence) -> bool {
+    let nothing_judges = evidence.of_role(Role::HeldOut).next().is_none();
+    nothing_judges || log_score(set, evidence) > log_score(other, evidence)
 }
 
 /// Logarithm of the likelihood of the runs that judge, but for a constant (the logarithmic score).
