@@ -5,6 +5,7 @@ use std::f64::consts::{PI, TAU};
 use crate::corner::{BELT, BODY, COORDINATES, Corner, Push, RESONATOR, STATES, State, WHEEL};
 use crate::hidden::Laws;
 use crate::integrate::step;
+use crate::other_law::Other;
 use crate::random::Random;
 
 /// Peak velocity of what is called quasi-static, m/s.
@@ -13,6 +14,8 @@ const SLOW: f64 = 0.008;
 const RUN_IN: f64 = 2.0;
 /// Step of the integration, s, at most.
 const STEP: f64 = 5e-4;
+/// A damper that is many times harder at the ends of the travel holds a light top mount so fast that steps are so much shorter.
+const STIFF: f64 = 10.0;
 
 /// A vertical sine of the wheel.
 struct Sine {
@@ -50,10 +53,14 @@ impl Sine {
         let (axle, laws) = (corner.axle, &laws);
         let corner = Corner { axle, laws };
         let derivative = |t: f64, y: &State| corner.derivative(0.5, &self.clamped(t, y), Push::default(), false);
-        let finer = (apart / STEP).ceil();
+        let most = match &laws.other {
+            Some(Other::PositionDamper { .. }) => STEP / STIFF,
+            _ => STEP,
+        };
+        let finer = (apart / most).ceil();
         let mut y = [0.0; STATES];
-        for i in 0..(RUN_IN / STEP) as usize {
-            y = step(i as f64 * STEP - RUN_IN, &y, STEP, &derivative);
+        for i in 0..(RUN_IN / most) as usize {
+            y = step(i as f64 * most - RUN_IN, &y, most, &derivative);
         }
         let wheel = axle.m_wheel - laws.belt.map_or(0.0, |belt| belt.m_belt);
         let mut rows = Vec::new();
