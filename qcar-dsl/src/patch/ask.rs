@@ -9,7 +9,7 @@ use crate::resolve::resolve;
 use crate::syntax::{Expression, Let, Name, Statement};
 
 /// What somebody knows: values of the model's parameters by name, and of its
-/// [reference values](super::scale) by theirs.
+/// [reference values](super::Scale) by theirs.
 pub type Values<'a> = &'a dyn Fn(&str) -> Option<f64>;
 
 /// A derived quantity that a model is asked for.
