@@ -26,7 +26,7 @@ pub(crate) struct Law {
     pub words: String,
     /// Units of its parameters.
     pub units: BTreeMap<String, String>,
-    /// Its name, and its effect file with the values that were found.
+    /// The name of its effect file, which tells one law at two places apart, and the text with the values that were found.
     name: String,
     text: String,
     /// Where that was written.
@@ -73,7 +73,7 @@ fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter]) -> Law {
             .iter()
             .map(|own| (own.effect_name.clone(), own.unit.to_string()))
             .collect(),
-        name: finding.effect.clone(),
+        name: format!("learned_{}_at_{}.axle", finding.effect, finding.at),
         text: patch.text_at(&parameters),
         file: None,
     }
@@ -87,9 +87,8 @@ impl LearnedModel {
     pub(super) fn write(&mut self, folder: &Path) -> Result<(), Failure> {
         self.model.write(folder)?;
         for law in &mut self.laws {
-            let name = format!("learned_{}.axle", law.name);
-            put(folder, &name, &law.text)?;
-            law.file = Some(folder.join(name));
+            put(folder, &law.name, &law.text)?;
+            law.file = Some(folder.join(&law.name));
         }
         Ok(())
     }
