@@ -4,12 +4,12 @@
 //! be wrong to the extent of their calibration, a refit takes out what parameters can explain, and what is left is the
 //! gap. Nothing here knows an effect, or an axle, by name.
 
+// The numbers of the search that no data give.
+pub mod numbers;
 // What a campaign holds: series of measured values with their uncertainty.
 pub mod evidence;
 // What a model says of the evidence.
 pub mod predict;
-// The numbers of the search that no data give.
-pub mod numbers;
 // What any model of this kind misses.
 pub mod discrepancy;
 // What sensors may be wrong by, in all runs alike.
@@ -27,9 +27,9 @@ pub mod kappa;
 pub mod candidate;
 // How well a model explains the evidence.
 pub mod explain;
+// What a search answers.
+pub mod answer;
 // Which effect is missing.
-pub mod search;
-// The same by evidence.
 pub mod select;
 
 pub use evidence::Evidence;

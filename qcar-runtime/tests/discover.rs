@@ -6,7 +6,6 @@ mod strut;
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::evidence::{Evidence, Kind, Run, Series, Stimulus};
-use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
 use qcar_runtime::discover::nuisance::{Form, Nuisance};
 use qcar_runtime::discover::refit::refit_with;
@@ -105,6 +104,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
         series,
         two_sided: false,
         notices: Vec::new(),
+        numbers: Default::default(),
     }
 }
 
@@ -167,22 +167,13 @@ fn a_smooth_calibration_error_leaves_no_gap() {
 
 /// 4 % at one of three sensors that are good to 0.7 % each: all would have to be wrong, and that is no explanation.
 #[test]
-fn a_gain_beyond_calibration_strains_the_sensors_and_is_told_when_suspected() {
+fn a_gain_beyond_calibration_is_told_when_suspected() {
     let model = Strut::new(PLAIN);
-    let strain = |evidence: &Evidence| {
-        let (refit, gap) = fitted(&model, evidence);
-        let named = Vec::new();
-        Explanation { named, refit, gap }.strain()
-    };
-    let usual = |location: &str| if location == "pad" { 1.006 } else { 0.996 };
-    assert!(strain(&evidence(&model, &TRUTH, |location, _| usual(location))) < 5.0);
-
     let wrong = evidence(
         &model,
         &TRUTH,
         |location, _| if location == "wheel" { 1.04 } else { 1.0 },
     );
-    assert!(strain(&wrong) > 10.0, "{}", strain(&wrong));
     let (base, _) = fitted(&model, &wrong);
     let suspected = Nuisance::of(&wrong).suspecting("wheel", Some(Axis::Z), Form::Gain(0), 1.0);
     let suspected = suspected.expect("the wheel has a sensor");

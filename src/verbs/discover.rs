@@ -8,10 +8,10 @@ use std::time::Instant;
 use clap::Args;
 use qcar_dsl::check::Checked;
 use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::explain::{Given, Setting};
-use qcar_runtime::discover::predict::PredictError;
-use qcar_runtime::discover::search::{Discovery, Finding, News, Progress, Verdict, discover};
+use qcar_runtime::discover::numbers::Numbers;
 use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
@@ -56,9 +56,9 @@ pub struct Arguments {
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// Search by the rules of the first version, for comparison
-    #[arg(long, hide = true)]
-    by_rules: bool,
+    /// Multiply a number that the search assumes, to see what the answer owes to it
+    #[arg(long, hide = true, value_name = "NAME=FACTOR", value_parser = multiplied)]
+    assume: Option<Numbers>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -86,10 +86,6 @@ pub(crate) struct Answer {
     pub seconds: f64,
 }
 
-/// A search for what is missing.
-pub(crate) type Search =
-    fn(Box<dyn Workshop>, &Setting, &Evidence, Progress<'_>) -> std::result::Result<Discovery, PredictError>;
-
 /// The model with the effects in it.
 pub(crate) struct Written {
     /// Its name.
@@ -110,11 +106,19 @@ impl Written {
     }
 }
 
+/// The numbers of the search with one of them multiplied.
+fn multiplied(text: &str) -> Result<Numbers, String> {
+    let expected = || format!("NAME=FACTOR is expected, NAME one of {}", Numbers::NAMES.join(", "));
+    let (name, factor) = text.split_once('=').ok_or_else(expected)?;
+    let factor: f64 = factor.parse().map_err(|_| expected())?;
+    Numbers::default().with(name, factor).ok_or_else(expected)
+}
+
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
-    let search = if arguments.by_rules { discover } else { select::discover };
-    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), search)?;
+    let numbers = arguments.assume.clone().unwrap_or_default();
+    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), numbers)?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -132,7 +136,7 @@ pub(crate) fn answer(
     campaign: &Campaign,
     model: Option<&str>,
     out: Option<&Path>,
-    search: Search,
+    numbers: Numbers,
 ) -> Result<Answer, Failure> {
     let begun = Instant::now();
     let bench = bench(campaign, model)?;
@@ -145,6 +149,7 @@ pub(crate) fn answer(
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let mut evidence = Evidence::from_campaign(campaign, bench.model().about())?;
+    evidence.numbers = numbers;
     let bench = bench.measured(&evidence);
     let begun_with = OnceLock::new();
     let told = |news: News<'_>| match news {
@@ -159,7 +164,7 @@ pub(crate) fn answer(
             }
         }
     };
-    let discovery = search(Box::new(bench.clone()), &setting, &evidence, &told);
+    let discovery = select::discover(Box::new(bench.clone()), &setting, &evidence, &told);
     drop(showing);
     out.inspect(|folder| leave(folder, Vec::new()));
     let discovery =

@@ -20,7 +20,7 @@ use std::ops::Range;
 use banded::Banded;
 
 use super::evidence::{Evidence, Kind, Series, Stimulus};
-use super::numbers::{COMMON_TO_LEVELS, CORRELATION_OCTAVES, EXPECTED_DISCREPANCY};
+use super::numbers::Numbers;
 use crate::campaign::Role;
 use crate::transmissibility::Point;
 
@@ -42,8 +42,10 @@ struct Group {
     weight: f64,
     /// The correlation, in units of the noise, for a `τ` of one.
     correlation: Banded,
-    /// The least that any model misses.
+    /// The least that any model misses,
     least: f64,
+    /// and what is expected before any measurement.
+    expected: f64,
     tau: f64,
     /// Cholesky factor of the covariance in units of the noise; `None` without discrepancy.
     factor: Option<Banded>,
@@ -96,7 +98,7 @@ impl Discrepancy {
         }
         let groups = groups
             .into_iter()
-            .map(|(key, least, values)| Group::new(key, least, values));
+            .map(|(key, least, values)| Group::new(key, least, values, &evidence.numbers));
         Self {
             groups: groups.collect(),
         }
@@ -124,7 +126,7 @@ impl Discrepancy {
     pub fn cost(&self) -> f64 {
         self.groups
             .iter()
-            .map(|group| group.log_determinant() + prior(group.tau))
+            .map(|group| group.log_determinant() + group.prior(group.tau))
             .sum()
     }
 
@@ -153,11 +155,6 @@ impl Discrepancy {
     }
 }
 
-/// Minus the logarithm of the prior of `τ`, but for a constant: an exponential law, which allows zero.
-fn prior(tau: f64) -> f64 {
-    tau / EXPECTED_DISCREPANCY
-}
-
 /// A value of a group.
 struct Value {
     run: usize,
@@ -172,7 +169,7 @@ struct Value {
 /// The values of a series whose first residual stands in row `first`.
 fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
     let parts = if series.kind.complex() { 2 } else { 1 };
-    let (places, signal) = (places(series), signal(evidence, series));
+    let (places, signal) = (places(series, &evidence.numbers), signal(evidence, series));
     let of = |k: usize| Value {
         run: series.run,
         place: places[k],
@@ -185,10 +182,11 @@ fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
 
 /// Where the values of a series stand, in units of the distance at which correlation ends: of harmonics a part of an
 /// octave, of records half a period of their own mean frequency, of a cycle of travel a quarter of it.
-fn places(series: &Series) -> Vec<f64> {
+fn places(series: &Series, numbers: &Numbers) -> Vec<f64> {
     let distance = match series.kind {
         Kind::Harmonic(_) | Kind::Cycle(_) => {
-            return series.at.iter().map(|at| at.log2() / CORRELATION_OCTAVES).collect();
+            let octaves = series.at.iter().map(|at| at.log2());
+            return octaves.map(|at| at / numbers.correlation_octaves).collect();
         }
         Kind::Travel | Kind::Width => (series.at[series.at.len() - 1] - series.at[0]) / 4.0,
         Kind::Time | Kind::Passage => series.half_a_period(),
@@ -254,7 +252,7 @@ fn rms(values: &[f64]) -> f64 {
 }
 
 impl Group {
-    fn new(key: Key, least: f64, mut values: Vec<Value>) -> Self {
+    fn new(key: Key, least: f64, mut values: Vec<Value>, numbers: &Numbers) -> Self {
         values.sort_by(|a, b| a.place.total_cmp(&b.place));
         let correlated = |row: usize| -> Range<usize> {
             values[..row].partition_point(|other| values[row].place - other.place >= 1.0)..row + 1
@@ -262,7 +260,7 @@ impl Group {
         let kind = key.kind;
         let entry = |row: usize, column: usize| {
             let (a, b) = (&values[row], &values[column]);
-            let levels = if a.run == b.run { 1.0 } else { COMMON_TO_LEVELS };
+            let levels = if a.run == b.run { 1.0 } else { numbers.common_to_levels };
             a.scale * b.scale * levels * correlation(kind, (a.place - b.place).abs())
         };
         let weight = match kind {
@@ -276,6 +274,7 @@ impl Group {
             parts: values.first().map_or(1, |value| value.parts),
             correlation: Banded::new(values.len(), correlated, entry),
             least,
+            expected: numbers.expected_discrepancy,
             tau: 0.0,
             factor: None,
         };
@@ -286,6 +285,11 @@ impl Group {
     fn set(&mut self, tau: f64) {
         self.tau = tau;
         self.factor = (tau > 0.0).then(|| self.factor(tau));
+    }
+
+    /// Minus the logarithm of the prior of `τ`, but for a constant: an exponential law, which allows zero.
+    fn prior(&self, tau: f64) -> f64 {
+        tau / self.expected
     }
 
     fn factor(&self, tau: f64) -> Banded {
@@ -326,7 +330,7 @@ impl Group {
             factor.forward(&mut values);
             square(&values) + self.weight * factor.log_diagonal()
         };
-        residual.iter().map(of_part).sum::<f64>() + prior(tau)
+        residual.iter().map(of_part).sum::<f64>() + self.prior(tau)
     }
 
     /// Golden section over the logarithm of `τ`, then against none at all.

@@ -27,6 +27,7 @@ use means::Means;
 use nalgebra::Complex;
 pub use restart::{Restart, Spread, is_seen};
 
+use super::numbers::Numbers;
 use crate::campaign::{Axis, Campaign, Quantity, Role, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{About, Signal, SignalKind};
@@ -47,6 +48,8 @@ pub struct Evidence {
     pub two_sided: bool,
     /// What was left out, and why, as sentences for the engineer.
     pub notices: Vec<String>,
+    /// What a search assumes of it.
+    pub numbers: Numbers,
 }
 
 /// A run of the campaign.
@@ -334,6 +337,7 @@ impl Evidence {
             series: Vec::new(),
             two_sided: campaign.channels.iter().any(|channel| channel.side == Side::Right),
             notices: Vec::new(),
+            numbers: Numbers::default(),
         };
         for run in &campaign.runs {
             evidence.add(campaign, about, run)?;
@@ -431,6 +435,7 @@ impl Evidence {
             series: series.collect(),
             two_sided: self.two_sided,
             notices: self.notices.clone(),
+            numbers: self.numbers.clone(),
         }
     }
 

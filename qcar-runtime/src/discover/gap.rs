@@ -82,56 +82,6 @@ impl Gap {
     }
 }
 
-impl Gap {
-    /// The gap of each run, and the sum of the squares of its residuals; NaN and zero of one without series.
-    pub fn by_run(&self, evidence: &Evidence) -> Vec<(f64, f64)> {
-        let of_run = |run: usize| {
-            let series = evidence.series.iter().zip(&self.residuals);
-            let of_run = series.filter(|(series, _)| series.run == run);
-            let residuals: Vec<f64> = of_run.flat_map(|(_, residuals)| residuals.iter().copied()).collect();
-            let gap = rms(residuals.iter().copied());
-            let squares = residuals.iter().map(|residual| residual * residual).sum();
-            (gap, squares)
-        };
-        (0..evidence.runs.len()).map(of_run).collect()
-    }
-}
-
-impl Gap {
-    /// The largest gap of one sensor in values of one kind, of the fitted or of the held-out runs: what a few values show
-    /// clearly many others may dilute. Few values alone are not looked at.
-    pub fn local(&self, evidence: &Evidence) -> f64 {
-        const FEW: usize = 100;
-        let mut groups: BTreeMap<_, Vec<f64>> = BTreeMap::new();
-        for role in [Role::Fit, Role::HeldOut] {
-            for (place, series) in evidence.of_role(role) {
-                let group = groups
-                    .entry((role == Role::Fit, &series.sensor, series.kind))
-                    .or_default();
-                group.extend(&self.residuals[place]);
-            }
-        }
-        let many = groups.into_values().filter(|group| group.len() >= FEW);
-        many.map(|group| rms(group.into_iter())).fold(0.0, f64::max)
-    }
-
-    /// The share of the variance of these runs' records over time for which the model does not account; `None` without
-    /// such records.
-    pub fn missed(&self, evidence: &Evidence, role: Role) -> Option<f64> {
-        let of_role = evidence.of_role(role);
-        let shares: Vec<f64> = of_role
-            .filter(|(_, series)| series.kind == Kind::Time)
-            .map(|(place, series)| {
-                let residuals = self.residuals[place].iter().zip(&series.sigma);
-                let missed = rms(residuals.map(|(residual, sigma)| residual * sigma));
-                let mean = series.value.iter().map(|value| value.re).sum::<f64>() / series.value.len() as f64;
-                (missed / rms(series.value.iter().map(|value| value.re - mean))).powi(2)
-            })
-            .collect();
-        (!shares.is_empty()).then(|| shares.iter().sum::<f64>() / shares.len() as f64)
-    }
-}
-
 /// Root of the mean square; NaN of nothing.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));

@@ -107,8 +107,6 @@ pub struct Nuisance {
     pub without_offset: Vec<(Point, String)>,
     /// The states of a model with which records begin.
     pub beginnings: Vec<Beginning>,
-    /// Coefficients from which a search begins; zero beyond those that are known.
-    pub start: Vec<f64>,
 }
 
 /// A state of a model when a record begins: how far it is from where a sensor saw it, or from rest.
@@ -159,7 +157,6 @@ impl Nuisance {
             ),
             suspects: Vec::new(),
             beginnings: Vec::new(),
-            start: Vec::new(),
         }
     }
 

@@ -1,33 +1,105 @@
 //! Every number of discovery that is not a fact of the data, each with its source, or said to be a choice.
 
-/// Standard deviation that is expected of a discrepancy before any measurement, in parts of the signal. A choice that no
-/// source gives. The prior is exponential, so that zero is allowed; it is also the limit beyond which a model is `unknown`.
-pub const EXPECTED_DISCREPANCY: f64 = 0.05;
+/// What a search assumes. The default is what `qcar discover` uses.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Numbers {
+    /// Standard deviation that is expected of a discrepancy before any measurement, in parts of the signal. A choice that no
+    /// source gives. The prior is exponential, so that zero is allowed; it is also the limit beyond which a model is `unknown`.
+    pub expected_discrepancy: f64,
 
-/// Correlation of the discrepancy of one sensor between two runs of one kind: what a model misses is in part a function of
-/// frequency alone, such as a missing mode, and in part of level, such as a law. Without more knowledge, half and half.
-pub const COMMON_TO_LEVELS: f64 = 0.5;
+    /// Correlation of the discrepancy of one sensor between two runs of one kind: what a model misses is in part a function of
+    /// frequency alone, such as a missing mode, and in part of level, such as a law. Without more knowledge, half and half.
+    pub common_to_levels: f64,
 
-/// Distance at which discrepancies of two frequencies have nothing in common, octaves: the half-power bandwidth of a mode
-/// with a damping ratio of a quarter. That ratio is a choice.
-pub const CORRELATION_OCTAVES: f64 = 0.7;
+    /// Distance at which discrepancies of two frequencies have nothing in common, octaves: the half-power bandwidth of a mode
+    /// with a damping ratio of a quarter. That ratio is a choice.
+    pub correlation_octaves: f64,
 
-/// Rate of false alarms: the threshold of the screening is where one clean campaign in a hundred has a candidate above it.
-/// Of `m` candidates the largest gain in the logarithm of the likelihood exceeds `ln(m / rate)` by chance in at most this
-/// share of draws (Chernoff's bound of the χ² distribution with one degree of freedom, summed over the candidates).
-pub const FALSE_ALARMS: f64 = 0.01;
+    /// Rate of false alarms: the threshold of the screening is where one clean campaign in a hundred has a candidate above it.
+    /// Of `m` candidates the largest gain in the logarithm of the likelihood exceeds `ln(m / rate)` by chance in at most this
+    /// share of draws (Chernoff's bound of the χ² distribution with one degree of freedom, summed over the candidates).
+    pub false_alarms: f64,
 
-/// Odds of a further effect beside one that is there, before any measurement: ten single causes for each pair.
-/// A choice, not a measurement: it counts 2.3 in the logarithm of the evidence.
-pub const FURTHER: f64 = 0.1;
+    /// Odds of a further effect beside one that is there, before any measurement: ten single causes for each pair.
+    /// A choice, not a measurement: it counts 2.3 in the logarithm of the evidence.
+    pub further: f64,
+
+    /// Probability that an answer may be wrong: the usual level of significance.
+    pub doubt: f64,
+
+    /// Share of the excess of the squared gap that an answer may leave on the runs that judge: what leaves more was a part of
+    /// the truth at best, and is listed as a candidate. A choice, made after clean hardware draws of seed 3 had been given a
+    /// name: later seeds have to judge it.
+    pub left: f64,
+}
 
 /// Effects of a set. A choice: the time of a search grows with each.
 pub const MOST_EFFECTS: usize = 3;
 
-/// Probability from which an answer is given as one: the usual level of significance.
-pub const CERTAIN: f64 = 0.95;
+impl Default for Numbers {
+    fn default() -> Self {
+        Self {
+            expected_discrepancy: 0.05,
+            common_to_levels: 0.5,
+            correlation_octaves: 0.7,
+            false_alarms: 0.01,
+            further: 0.1,
+            doubt: 0.05,
+            left: 0.2,
+        }
+    }
+}
 
-/// Share of the excess of the squared gap that an answer has to close on the runs that judge: what leaves more was a part of
-/// the truth at best, and is listed as a candidate. A choice, made after clean
-/// hardware draws of seed 3 had been given a name: later seeds have to judge it.
-pub const EXPLAINED: f64 = 0.8;
+impl Numbers {
+    /// Their names.
+    pub const NAMES: [&str; 7] = [
+        "expected_discrepancy",
+        "common_to_levels",
+        "correlation_octaves",
+        "false_alarms",
+        "further",
+        "doubt",
+        "left",
+    ];
+
+    /// The same with one of them multiplied, to see what an answer owes to it; `None` where none has that name.
+    pub fn with(mut self, name: &str, factor: f64) -> Option<Self> {
+        let own = match name {
+            "expected_discrepancy" => &mut self.expected_discrepancy,
+            "common_to_levels" => &mut self.common_to_levels,
+            "correlation_octaves" => &mut self.correlation_octaves,
+            "false_alarms" => &mut self.false_alarms,
+            "further" => &mut self.further,
+            "doubt" => &mut self.doubt,
+            "left" => &mut self.left,
+            _ => return None,
+        };
+        *own *= factor;
+        Some(self)
+    }
+
+    /// The least probability of an answer that is given as one.
+    pub fn certain(&self) -> f64 {
+        1.0 - self.doubt
+    }
+
+    /// The least share of the excess that an answer has to close.
+    pub fn explained(&self) -> f64 {
+        1.0 - self.left
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Numbers;
+
+    #[test]
+    fn every_number_has_a_name() {
+        let numbers = Numbers::default();
+        for name in Numbers::NAMES {
+            let changed = numbers.clone().with(name, 1.3).expect("it is one of them");
+            assert_ne!(changed, numbers, "{name}");
+        }
+        assert_eq!(numbers.with("luck", 1.3), None);
+    }
+}

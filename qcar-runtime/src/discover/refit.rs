@@ -185,32 +185,9 @@ pub fn refit_with(
     nuisance: Nuisance,
     evaluations: usize,
 ) -> Result<Refit, PredictError> {
-    let mut errors = nuisance.start.clone();
-    // Where the records of an earlier search began is another search's to find.
-    errors.truncate(nuisance.of_sensors());
-    refit_from(model, (values, &errors), free, evidence, nuisance, evaluations)
-}
-
-/// The same from a place that an earlier search came to: values, and the errors of sensors with the logarithms of the
-/// recorded side's factors behind them, zero beyond those that are known.
-///
-/// # Errors
-/// Where the model lacks what was measured.
-pub fn refit_from(
-    model: &dyn Model,
-    (values, errors): (&Values, &[f64]),
-    free: &[Free],
-    evidence: &Evidence,
-    nuisance: Nuisance,
-    evaluations: usize,
-) -> Result<Refit, PredictError> {
-    let (errors, factors) = errors.split_at(errors.len().min(nuisance.of_sensors()));
     let nuisance = nuisance.beginning(model.about(), evidence);
     let nuisance = offset::once(nuisance, model, values, free, evidence)?;
     let mut start: Vec<f64> = free.iter().map(|free| values.as_slice()[free.parameter]).collect();
-    start.extend(errors);
-    start.resize(free.len() + nuisance.len(), 0.0);
-    start.extend(factors);
     let mut posterior = Posterior::new(model, values.clone(), free, evidence, nuisance);
     start.resize(posterior.variables(), 0.0);
     let outcome = posterior.search(&start, evaluations)?;

@@ -1,6 +1,8 @@
 //! Which effect is missing: sets of effects compared by their evidence, judged on runs that no fit has seen.
 
-// The order of the data: what can be fitted,
+// The order of the data: an effect in a model,
+mod taken;
+// what can be fitted,
 pub mod assembly;
 // what each candidate would gain without a fit,
 mod screen;
@@ -23,14 +25,14 @@ use screen::screen;
 use verdict::{Set, judged};
 use visible::visible;
 
+use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
 use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
 use super::explain::{Explanation, Setting};
-use super::numbers::{CERTAIN, EXPLAINED, FALSE_ALARMS, FURTHER, MOST_EFFECTS};
+use super::numbers::{MOST_EFFECTS, Numbers};
 use super::predict::PredictError;
 use super::refit::Refit;
-use super::search::{Discovery, Learned, News, Progress, Verdict, told};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -68,10 +70,10 @@ pub fn discover(
     let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
     let alone = sets[0].clone();
     let mut discovery = judged(sets, evidence);
-    if is_unexplained(&discovery) {
+    if is_unexplained(&discovery, &evidence.numbers) {
         let learned = learn::learn(&alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(&alone, learned, evidence));
-        discovery.take(learned);
+        discovery.take(learned, &evidence.numbers);
     }
     if discovery.verdict == Verdict::None {
         let steady = evidence.less(&refit.unsteady).hurried();
@@ -81,8 +83,8 @@ pub fn discover(
 }
 
 /// True where something is missing that no effect of the catalogue explains, be it less than models of this kind leave.
-fn is_unexplained(discovery: &Discovery) -> bool {
-    let is_improbable = |probability: f64| probability < 1.0 - CERTAIN;
+fn is_unexplained(discovery: &Discovery, numbers: &Numbers) -> bool {
+    let is_improbable = |probability: f64| probability < numbers.doubt;
     match discovery.verdict {
         Verdict::Unknown => true,
         Verdict::None => discovery.probability.is_some_and(is_improbable),
@@ -92,8 +94,8 @@ fn is_unexplained(discovery: &Discovery) -> bool {
 
 impl Discovery {
     /// Takes a law up: one that closes most of a gap tells that something is missing, however little that is.
-    fn take(&mut self, learned: Option<Learned>) {
-        let closes = learned.as_ref().is_some_and(|own| own.explained >= EXPLAINED);
+    fn take(&mut self, learned: Option<Learned>, numbers: &Numbers) {
+        let closes = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
         if closes && self.verdict == Verdict::None {
             self.verdict = Verdict::Unknown;
             self.probability = None;
@@ -186,7 +188,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
     let prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
-    let least = (candidates.len() as f64 / FALSE_ALARMS).ln();
+    let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
@@ -196,7 +198,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let further = if set.assembly.effects().is_empty() {
         1.0
     } else {
-        FURTHER
+        evidence.numbers.further
     };
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::patch::{Curve, NewParameter, Ordinate, Patch};
-use qcar_runtime::discover::search::{Finding, Learned};
+use qcar_runtime::discover::answer::{Finding, Learned};
 
 use super::Written;
 use crate::failure::Failure;

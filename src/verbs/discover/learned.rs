@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use qcar_runtime::discover::search::Finding;
+use qcar_runtime::discover::answer::Finding;
 use serde::Serialize;
 
 use super::Answer;

@@ -4,10 +4,10 @@ use std::cmp::Ordering;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
 use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::gap::Tile;
-use qcar_runtime::discover::search::{Finding, Probable, Rival, Verdict, Visible};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -77,7 +77,7 @@ struct Seen<'a> {
 
 #[derive(Serialize)]
 struct Evidence {
-    /// Rise of the logarithm of the evidence with all that was found; of a search by rules the fall of the sum of squares.
+    /// Rise of the logarithm of the evidence with all that was found.
     log_evidence: f64,
     /// Share of the excess of the held-out gap.
     gap_closed: f64,

@@ -4,8 +4,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use qcar_runtime::discover::answer::Finding;
 use qcar_runtime::discover::explain::Explanation;
-use qcar_runtime::discover::search::Finding;
 
 use super::{figure, patched, render};
 use crate::workshop::Bench;

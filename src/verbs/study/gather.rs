@@ -5,6 +5,7 @@ use std::time::Instant;
 
 use qcar_dsl::schedule::Compiled;
 use qcar_runtime::campaign::{Campaign, Test};
+use qcar_runtime::discover::numbers::Numbers;
 use qcar_runtime::error::InputError;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::Roles;
@@ -74,12 +75,7 @@ pub fn gather(folder: &Path, model: Option<&str>, out: &Path) -> Result<Study, F
     let campaign = &fitted.campaign;
     let gradients = gradients(campaign, out)?;
     let discovery = out.join("discovery");
-    let mut answer = discover::answer(
-        campaign,
-        model,
-        Some(&discovery),
-        qcar_runtime::discover::select::discover,
-    )?;
+    let mut answer = discover::answer(campaign, model, Some(&discovery), Numbers::default())?;
     discover::write(&mut answer, &discovery)?;
     let after = after(campaign, &answer)?;
     let track = track(&fitted, after.as_ref(), out)?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::Path;
 
-use qcar_runtime::discover::search::Verdict;
+use qcar_runtime::discover::answer::Verdict;
 use qcar_runtime::fit::quality::Quality;
 use serde::Serialize;
 

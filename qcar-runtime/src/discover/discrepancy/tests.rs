@@ -31,7 +31,12 @@ fn group(places: &[f64], scale: f64) -> Group {
             band: (1.0, 2.0),
         }),
     };
-    Group::new(key, 0.0, places.iter().enumerate().map(value).collect())
+    Group::new(
+        key,
+        0.0,
+        places.iter().enumerate().map(value).collect(),
+        &Numbers::default(),
+    )
 }
 
 /// The covariance written out, by a dense factorisation.

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use super::taken::Taken;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::discrepancy::Discrepancy;
 use crate::discover::evidence::Evidence;
@@ -11,7 +12,6 @@ use crate::discover::gap::Gap;
 use crate::discover::nuisance::{Beginning, Form, Nuisance};
 use crate::discover::predict::{Free, PredictError};
 use crate::discover::refit::{Refit, Start, fit, settle};
-use crate::discover::search::Taken;
 use crate::model::Model;
 use crate::response::parameters::Values;
 

@@ -8,9 +8,8 @@ use super::race::{Finalist, race};
 use super::screen::Prospect;
 use super::verdict::{Set, closed, predicts};
 use super::{News, Progress, explained, looks};
+use crate::discover::answer::{Finding, Learned};
 use crate::discover::evidence::Evidence;
-use crate::discover::numbers::EXPLAINED;
-use crate::discover::search::{Finding, Learned};
 
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;
@@ -21,7 +20,7 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
     let mut best: Option<Set> = None;
     for _ in 0..MOST_LAWS {
         let from = best.as_ref().unwrap_or(base);
-        let enough = closed(&base.explanation, &from.explanation, evidence) >= EXPLAINED;
+        let enough = closed(&base.explanation, &from.explanation, evidence) >= evidence.numbers.explained();
         let Some(more) = (!enough).then(|| with_law(from, evidence, progress)).flatten() else {
             break;
         };

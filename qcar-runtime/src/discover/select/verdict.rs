@@ -2,11 +2,11 @@
 
 use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
+use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
 use crate::discover::explain::Explanation;
-use crate::discover::numbers::{CERTAIN, EXPECTED_DISCREPANCY, EXPLAINED};
-use crate::discover::search::{Discovery, Finding, Probable, Rival, Verdict};
+use crate::discover::numbers::Numbers;
 
 /// A set of effects with its fit.
 #[derive(Clone)]
@@ -109,11 +109,11 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
 /// The answer. The first set is that of the base model.
 pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     let answers = answers(&sets);
-    let credible = credible(&sets, &answers);
+    let credible = credible(&sets, &answers, &evidence.numbers);
     let before = sets[0].explanation.clone();
     let predictive = predictive(&sets, credible[0], evidence);
     // What explains less than most of the gap is not the answer, however probable beside the others.
-    let explains = closed(&before, &sets[predictive].explanation, evidence) >= EXPLAINED;
+    let explains = closed(&before, &sets[predictive].explanation, evidence) >= evidence.numbers.explained();
     let best = if explains { predictive } else { 0 };
     let after = sets[best].explanation.clone();
     let finding = |set: &Set, own: &Placed| Finding {
@@ -157,7 +157,7 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
         );
     }
     let verdict = match (findings.is_empty(), alike) {
-        (true, _) if is_missing(&sets[best]) => Verdict::Unknown,
+        (true, _) if is_missing(&sets[best], &evidence.numbers) => Verdict::Unknown,
         (true, _) => Verdict::None,
         (false, 0) => Verdict::Found,
         (false, _) => Verdict::Class,
@@ -188,23 +188,23 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
 }
 
 /// True where a model leaves more of any sensor than models of its kind do.
-fn is_missing(set: &Set) -> bool {
+fn is_missing(set: &Set, numbers: &Numbers) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
     discrepancy
         .flat_map(|own| own.missed())
-        .any(|missed| missed.tau > EXPECTED_DISCREPANCY)
+        .any(|missed| missed.tau > numbers.expected_discrepancy)
 }
 
-/// The smallest list of sets that holds [`CERTAIN`] of the probability, without those that only add to another one of it. It is the
+/// The smallest list of sets that is certain, without those that only add to another one of it. It is the
 /// base model alone unless that is less probable than the others have to be certain.
-fn credible(sets: &[Set], answers: &[Answer]) -> Vec<usize> {
+fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
     let none = answers.iter().find(|own| sets[own.set].assembly.effects().is_empty());
-    if let Some(none) = none.filter(|none| none.probability > 1.0 - CERTAIN) {
+    if let Some(none) = none.filter(|none| none.probability > numbers.doubt) {
         return vec![none.set];
     }
     let mut sum = 0.0;
     let held = answers.iter().take_while(|own| {
-        let wanted = sum < CERTAIN;
+        let wanted = sum < numbers.certain();
         sum += own.probability;
         wanted
     });
@@ -275,7 +275,7 @@ fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let part = (0..sets.len()).filter(is_less).max_by(order);
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
-            !predicts(&sets[best], &sets[part], evidence) || part != 0 && closes < EXPLAINED
+            !predicts(&sets[best], &sets[part], evidence) || part != 0 && closes < evidence.numbers.explained()
         };
         match part.filter(withdrawn) {
             Some(part) => best = part,

@@ -8,11 +8,11 @@ use rayon::prelude::*;
 use super::assembly::Assembly;
 use super::log_prior;
 use super::screen::{Point, Tangent};
+use crate::discover::answer::Visible;
 use crate::discover::candidate::Candidate;
 use crate::discover::evidence::Evidence;
-use crate::discover::numbers::CERTAIN;
+use crate::discover::numbers::Numbers;
 use crate::discover::refit::Refit;
-use crate::discover::search::Visible;
 
 /// Each effect of the model at each place, in its usual form, the best seen first.
 pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {
@@ -29,7 +29,7 @@ pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<V
         let nuisance = (nuisance, coefficients.as_slice());
         let there = refit.residuals_of(hypothesis.model(), &values, nuisance, assembly.model(), evidence)?;
         let gain = tangent.trace(&there)? / 2.0;
-        let times = (gain / needed(candidate, &candidates, gain)).sqrt();
+        let times = (gain / needed(candidate, &candidates, gain, &evidence.numbers)).sqrt();
         times.is_finite().then(|| Visible {
             effect: candidate.effect.clone(),
             at: candidate.at.clone(),
@@ -48,7 +48,7 @@ pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<V
 
 /// What an effect has to gain in the logarithm of the likelihood to be certain: the odds against it, and for each of its
 /// parameters the part of its range that such a gain would leave (the Occam factor).
-fn needed(candidate: &Candidate, all: &[Candidate], gain: f64) -> f64 {
-    let odds = (CERTAIN / (1.0 - CERTAIN)).ln() - log_prior(candidate, all);
+fn needed(candidate: &Candidate, all: &[Candidate], gain: f64, numbers: &Numbers) -> f64 {
+    let odds = (numbers.certain() / numbers.doubt).ln() - log_prior(candidate, all);
     odds + candidate.unknowns() as f64 * (1.0 + 2.0 * gain).ln() / 2.0
 }

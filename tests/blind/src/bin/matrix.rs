@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 
 use qcar_blind::matrix::{Case, Kind, cases};
-use qcar_blind::outcome::{HEADER, Outcome};
+use qcar_blind::outcome::{HEADER, Outcome, Place};
 use qcar_blind::tables::tables;
 
 const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
@@ -25,7 +25,9 @@ const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
   --jobs N        so many searches at once, each with one thread
   --out FILE      adds a line for each case
   --resume        leaves out the cases that FILE has, unless their search failed
-  --keep FOLDER   leaves the campaigns there, and takes those that are there";
+  --keep FOLDER   leaves the campaigns there, and takes those that are there
+  --perturb A,B   searches each case again with each of these assumed numbers (discover/numbers.rs) 30 % lower and higher,
+                  and counts the answers that change";
 
 /// The file in which a kept campaign has its strength.
 const STRENGTH: &str = "strength.txt";
@@ -51,6 +53,7 @@ struct Asked {
     out: Option<PathBuf>,
     resume: bool,
     keep: Option<PathBuf>,
+    perturb: Vec<String>,
 }
 
 fn run() -> Result<(), String> {
@@ -62,6 +65,9 @@ fn run() -> Result<(), String> {
         return Ok(());
     }
     let asked = asked(words)?;
+    if !asked.perturb.is_empty() {
+        return perturb(&asked);
+    }
     let mut outcomes = match &asked.out {
         Some(out) if asked.resume && out.exists() => read(out)?,
         _ => Vec::new(),
@@ -85,6 +91,7 @@ fn asked(words: Vec<String>) -> Result<Asked, String> {
         out: None,
         resume: false,
         keep: None,
+        perturb: Vec::new(),
     };
     let mut words = words.into_iter();
     while let Some(word) = words.next() {
@@ -101,6 +108,7 @@ fn asked(words: Vec<String>) -> Result<Asked, String> {
             "--part" => asked.part = part(&value)?,
             "--jobs" => asked.jobs = number(&value)?,
             "--keep" => asked.keep = Some(value.into()),
+            "--perturb" => asked.perturb = value.split(',').map(str::to_owned).collect(),
             "--out" => asked.out = Some(value.into()),
             _ => return Err(format!("what is {word}?")),
         }
@@ -161,7 +169,7 @@ fn answer_all(asked: &Asked, cases: &[Case]) -> Result<Vec<Outcome>, String> {
     let (next, outcomes) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
     let job = || {
         while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
-            let outcome = answer(asked, case)?;
+            let outcome = answer(asked, case, None)?;
             let mut outcomes = outcomes.lock().map_err(|e| e.to_string())?;
             println!("{}", outcome.line());
             if let Some(out) = &asked.out {
@@ -190,13 +198,45 @@ fn add_line(out: &Path, outcome: &Outcome) -> std::io::Result<()> {
     writeln!(file, "{}", outcome.line())
 }
 
-fn answer(asked: &Asked, case: &Case) -> Result<Outcome, String> {
+/// What each answer owes to each assumed number: prints those that change, and how many of all do.
+fn perturb(asked: &Asked) -> Result<(), String> {
+    let (mut changed, mut all) = (0, 0);
+    for case in wanted(asked) {
+        let usual = answer(asked, &case, None)?;
+        for (name, factor) in asked.perturb.iter().flat_map(|name| [(name, 0.7), (name, 1.3)]) {
+            let other = answer(asked, &case, Some(&format!("{name}={factor}")))?;
+            all += 1;
+            if (&other.verdict, &other.named, &other.alike) != (&usual.verdict, &usual.named, &usual.alike) {
+                changed += 1;
+                println!(
+                    "{}: {name} times {factor}: {}, was {}",
+                    case.name,
+                    told(&other),
+                    told(&usual)
+                );
+            }
+        }
+        println!("{}: {changed} of {all} answers changed so far", case.name);
+    }
+    Ok(())
+}
+
+/// A verdict with its names.
+fn told(outcome: &Outcome) -> String {
+    let names = outcome.named.iter().chain(&outcome.alike).map(Place::words);
+    format!("{} {}", outcome.verdict, names.collect::<Vec<_>>().join(" "))
+}
+
+fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, String> {
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
     let keep = asked.keep.as_deref().unwrap_or(passing.path());
     let folder = keep.join(case.name.replace([' ', '/', ':'], "_"));
     let strength = campaign(case, &folder)?;
     let mut command = Command::new(&asked.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
+    if let Some(assume) = assume {
+        command.args(["--assume", assume]);
+    }
     if asked.jobs > 1 {
         command.env("RAYON_NUM_THREADS", "1");
     }

@@ -1,4 +1,4 @@
-//! An effect that was taken into the model: what of it is unknown, and what an explanation says of that.
+//! What of an effect in a model is to be found, and what an explanation says of it.
 
 use crate::discover::candidate::{Added, Candidate, Change};
 use crate::discover::explain::Explanation;
@@ -7,17 +7,12 @@ use crate::discover::nuisance::{Form, Nuisance};
 /// An effect in the model.
 #[derive(Clone)]
 pub struct Taken {
-    /// Its name.
-    pub effect: String,
-    /// Its place.
-    pub at: String,
-    /// What is to be found of it.
-    pub unknowns: Vec<Unknown>,
+    unknowns: Vec<Unknown>,
 }
 
 /// A number that belongs to an effect, by its name in the effect.
 #[derive(Clone)]
-pub enum Unknown {
+enum Unknown {
     /// A parameter of the model, by its name there.
     Parameter(String, String),
     /// A coefficient of the sensors' errors.
@@ -37,11 +32,7 @@ impl Taken {
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };
-        Taken {
-            effect: candidate.effect.clone(),
-            at: candidate.at.clone(),
-            unknowns,
-        }
+        Taken { unknowns }
     }
 
     /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
