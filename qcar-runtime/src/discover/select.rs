@@ -65,19 +65,24 @@ pub fn discover(
         let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
         next = is_open.then_some(best);
     }
-    let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress)?;
+    let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress);
     sets.extend(without);
-    let (assembly, refit) = (sets[0].assembly.clone(), sets[0].explanation.refit.clone());
-    let alone = sets[0].clone();
-    let mut discovery = judged(sets, evidence);
+    let alone = &sets[0];
+    let mut discovery = judged(&sets, evidence);
     if is_unexplained(&discovery, &evidence.numbers) {
-        let learned = learn::learn(&alone, evidence, progress);
-        let learned = learned.map(|learned| learn::told(&alone, learned, evidence));
+        let learned = learn::learn(alone, evidence, progress);
+        let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
+    } else if let Some(several) = several(&sets, &discovery) {
+        // Names may make up together for one law that the catalogue does not have.
+        let law = learn::single(alone, evidence, progress);
+        let law = law.filter(|law| law.log_posterior() > several.log_posterior());
+        discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
+        let refit = &alone.explanation.refit;
         let steady = evidence.less(&refit.unsteady).hurried();
-        discovery.visible = visible(&assembly, &refit, &looks(&steady).fine);
+        discovery.visible = visible(&alone.assembly, refit, &looks(&steady).fine);
     }
     Ok(discovery)
 }
@@ -102,6 +107,35 @@ impl Discovery {
         }
         self.learned = learned.filter(|_| self.verdict == Verdict::Unknown);
     }
+
+    /// Withdraws what was found for a law that is more probable.
+    fn prefer(&mut self, law: Option<Learned>) {
+        if law.is_some() {
+            self.verdict = Verdict::Unknown;
+            self.probability = None;
+            self.findings.clear();
+            self.alike = 0;
+            self.after = self.before.clone();
+            self.learned = law;
+        }
+    }
+}
+
+/// The set that was found, where it has several effects.
+fn several<'s>(sets: &'s [Set], discovery: &Discovery) -> Option<&'s Set> {
+    let found = discovery.told_apart().0;
+    let is_it = |set: &&Set| {
+        let effects = set.assembly.effects().iter();
+        let is_found = |own: &Placed| {
+            found
+                .iter()
+                .any(|finding| (&*finding.effect, &*finding.at) == own.name())
+        };
+        set.assembly.effects().len() == found.len() && effects.clone().all(is_found)
+    };
+    let order = |a: &&Set, b: &&Set| a.log_posterior().total_cmp(&b.log_posterior());
+    let found = sets.iter().filter(is_it).max_by(order);
+    found.filter(|set| set.assembly.effects().len() > 1)
 }
 
 /// The most probable set.
@@ -195,16 +229,11 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     }
     let entering = entrants(&candidates, &prospects, least);
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
-    let further = if set.assembly.effects().is_empty() {
-        1.0
-    } else {
-        evidence.numbers.further
-    };
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
         let explanation = explained(&hypothesis, finalist.refit, evidence)?;
-        let prior = set.log_prior + log_prior(candidate, &candidates) + further.ln();
+        let prior = set.log_prior + log_prior(candidate, &candidates) + set.odds_of_another(&evidence.numbers).ln();
         Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
     };
     let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
@@ -237,39 +266,30 @@ fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     -((effects.len() * of_effect) as f64).ln()
 }
 
-/// The set less one of its effects each: what is not missed was only a step on the way.
-fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
-    let effects = set.assembly.effects();
-    let mut sets = Vec::new();
-    for left_out in 0..effects.len().saturating_sub(1) {
-        progress(News::Doing(&format!(
-            "fitting without {} at {}",
-            effects[left_out].effect, effects[left_out].at
-        )));
-        let others: Vec<&Placed> = effects
-            .iter()
-            .enumerate()
-            .filter(|(k, _)| *k != left_out)
-            .map(|(_, own)| own)
-            .collect();
-        let Some(assembly) = base.assembly.with_all(&others) else {
-            continue;
-        };
-        let from = set.assembly.hypothesis().place(&set.explanation.refit);
-        let hypothesis = assembly.hypothesis();
-        let mut from = from;
-        from.errors.truncate(base.assembly.hypothesis().sensor_errors());
-        let steady = evidence.less(&set.explanation.refit.unsteady).hurried();
-        let Ok(refit) = hypothesis.fit(&from, &steady, (2, 15)) else {
-            continue;
-        };
-        let Some(explanation) = explained(&hypothesis, refit, evidence) else {
-            continue;
-        };
-        let share = set.log_prior * others.len() as f64 / effects.len() as f64;
-        sets.push(Set::new(assembly, explanation, share));
+/// The set less one of its effects each: what is not missed was only a step on the way. The last needs no look: the set
+/// was extended by it.
+fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
+    let steps = 0..set.assembly.effects().len().saturating_sub(1);
+    if !steps.is_empty() {
+        progress(News::Doing("fitting with one effect less"));
     }
-    Ok(sets)
+    let without = |left_out| without(left_out, set, base, evidence);
+    steps.into_par_iter().filter_map(without).collect()
+}
+
+/// The set less one of its effects, by its place; `None` where that cannot be fitted.
+fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
+    let effects = set.assembly.effects();
+    let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
+    let assembly = base.assembly.with_all(&others)?;
+    let hypothesis = assembly.hypothesis();
+    let mut from = set.assembly.hypothesis().place(&set.explanation.refit);
+    from.errors.truncate(base.assembly.hypothesis().sensor_errors());
+    let steady = evidence.less(&set.explanation.refit.unsteady).hurried();
+    let refit = hypothesis.fit(&from, &steady, (2, 15)).ok()?;
+    let explanation = explained(&hypothesis, refit, evidence)?;
+    let share = set.log_prior * others.len() as f64 / effects.len() as f64;
+    Some(Set::new(assembly, explanation, share))
 }
 
 /// Every so many-th line of the coarse and the medium look.

@@ -29,7 +29,18 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
         }
         best = Some(more);
     }
-    best.filter(|best| predicts(best, base, evidence) && closed(&base.explanation, &best.explanation, evidence) > 0.0)
+    best.filter(|best| holds(best, base, evidence))
+}
+
+/// The one law that the evidence wants beside a set; `None` as for [`learn`].
+pub fn single(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+    let law = with_law(base, evidence, progress)?;
+    (law.log_posterior() > base.log_posterior() && holds(&law, base, evidence)).then_some(law)
+}
+
+/// True where laws predict the runs that judge.
+fn holds(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
+    predicts(learned, base, evidence) && closed(&base.explanation, &learned.explanation, evidence) > 0.0
 }
 
 /// The most probable law at the most probable place beside a set.
@@ -52,7 +63,7 @@ fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Se
         &looks(&steady),
         progress,
     );
-    let prior = set.log_prior - (laws.len() as f64).ln();
+    let prior = set.log_prior - (laws.len() as f64).ln() + set.odds_of_another(&evidence.numbers).ln();
     let fitted = finalists.into_par_iter().filter_map(|Finalist { candidate, refit }| {
         let candidate = &laws[candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;

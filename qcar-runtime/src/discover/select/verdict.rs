@@ -40,6 +40,14 @@ impl Set {
         self.explanation.refit.log_evidence + self.log_prior
     }
 
+    /// Odds of one effect more, before any measurement.
+    pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
+        match self.assembly.effects() {
+            [] => 1.0,
+            _ => numbers.further,
+        }
+    }
+
     /// What is told of its effects.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
@@ -107,11 +115,11 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
 }
 
 /// The answer. The first set is that of the base model.
-pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
-    let answers = answers(&sets);
-    let credible = credible(&sets, &answers, &evidence.numbers);
+pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
+    let answers = answers(sets);
+    let credible = credible(sets, &answers, &evidence.numbers);
     let before = sets[0].explanation.clone();
-    let predictive = predictive(&sets, credible[0], evidence);
+    let predictive = predictive(sets, credible[0], evidence);
     // What explains less than most of the gap is not the answer, however probable beside the others.
     let explains = closed(&before, &sets[predictive].explanation, evidence) >= evidence.numbers.explained();
     let best = if explains { predictive } else { 0 };
@@ -177,7 +185,7 @@ pub fn judged(sets: Vec<Set>, evidence: &Evidence) -> Discovery {
     Discovery {
         verdict,
         probability,
-        candidates: candidates(&sets, &answers, &before, evidence),
+        candidates: candidates(sets, &answers, &before, evidence),
         findings,
         alike,
         before,
