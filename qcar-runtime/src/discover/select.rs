@@ -17,12 +17,13 @@ mod visible;
 
 use std::sync::Arc;
 
+use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use race::{Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, judged};
+use verdict::{Set, closed, judged, predictive};
 use visible::visible;
 
 use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
@@ -63,7 +64,7 @@ pub fn discover(
         let best = best(&sets);
         tell(&sets[best], progress);
         let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
-        next = is_open.then_some(best);
+        next = (is_open && !is_settled(&sets, best, evidence)).then_some(best);
     }
     let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress);
     sets.extend(without);
@@ -85,6 +86,13 @@ pub fn discover(
         discovery.visible = visible(&alone.assembly, refit, &looks(&steady).fine);
     }
     Ok(discovery)
+}
+
+/// True where a part of the set is an answer, and what the set has beyond that would be withdrawn.
+fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
+    let answer = predictive(sets, set, evidence);
+    let closes = closed(&sets[0].explanation, &sets[answer].explanation, evidence);
+    answer != set && closes >= evidence.numbers.explained()
 }
 
 /// True where something is missing that no effect of the catalogue explains, be it less than models of this kind leave.
@@ -165,7 +173,6 @@ const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     let looks = looks(evidence);
     let hypothesis = assembly.hypothesis();
-    // What cannot be predicted at all is an error here, where among many it only drops out.
     let starts = SPREAD.par_iter().map(|&spread| {
         let from = Place {
             named: setting_spread(&assembly, spread),
@@ -176,20 +183,21 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
         };
         hypothesis.fit(&from, &looks.coarse, BASE[0])
     });
-    let starts: Vec<_> = starts.collect();
-    let mut fitted = Vec::new();
-    for start in starts {
-        match start {
-            Ok(refit) => fitted.push(refit),
-            Err(error) if fitted.is_empty() => return Err(error),
-            Err(_) => {}
-        }
-    }
+    let (fitted, refused): (Vec<_>, Vec<_>) = starts.partition_map(|start| match start {
+        Ok(refit) => Either::Left(refit),
+        Err(error) => Either::Right(error),
+    });
+    let is_number = |refit: &Refit| refit.log_evidence.is_finite();
     let order = |a: &Refit, b: &Refit| a.log_evidence.total_cmp(&b.log_evidence);
-    let best = fitted.into_iter().max_by(order).ok_or(PredictError::NoNumber)?;
+    // What cannot be predicted at all is an error here, where among many it only drops out.
+    let refusal = refused.into_iter().next().unwrap_or(PredictError::NoNumber);
+    let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(refusal)?;
     let medium = hypothesis.fit(&hypothesis.place(&best), &looks.medium, BASE[1])?;
     let fine = hypothesis.fit(&hypothesis.place(&medium), &looks.fine, BASE[2])?;
     let explanation = hypothesis.explanation(fine, evidence)?;
+    if !is_number(&explanation.refit) {
+        return Err(PredictError::NoNumber);
+    }
     Ok(Set::new(assembly, explanation, 0.0))
 }
 

@@ -272,7 +272,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
 
 /// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
 /// what does not predict, and what changes next to nothing, is withdrawn.
-fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
+pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return best;
     }
