@@ -340,6 +340,40 @@ pub fn noise() -> impl FnMut() -> f64 {
     }
 }
 
+/// Friction that is far stiffer than its sample rate follows gives no number: that is no answer.
+#[test]
+fn a_model_that_gives_no_number_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = folder.path().join("stiff.axle");
+    let text = "axle stiff {
+    \"A drive with a friction that no step follows\"
+    param m_body: kg = 100 in 0.1..1e5 \"Mass\";
+    param c_body: N s/m = 200 in 0.01..1e6 \"Drag\";
+    known param f_offset: N = 0 in -1e4..1e4 \"Offset\";
+    direction x {
+        mass body = m_body;
+        force motor on body;
+        link damper: body {
+            damper c_body;
+            force = f_offset;
+            state f_dry: N;
+            rate f_dry = (1e9 N/m) * (v - abs(v) * f_dry / (3 N));
+            force = f_dry;
+        }
+        output body.position;
+    }
+}
+";
+    fs::write(&model, text).expect("a model file");
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/emps");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+    let output = command.arg("discover").arg(campaign).arg("--model").arg(&model).output();
+    let output = output.expect("qcar runs");
+    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
+    let words = String::from_utf8_lossy(&output.stderr);
+    assert!(words.contains("no finite response"), "{words}");
+}
+
 #[test]
 fn pure_noise_says_nothing() {
     let folder = tempfile::tempdir().expect("a folder");
