@@ -367,9 +367,19 @@ fn a_model_that_gives_no_number_is_refused() {
     fs::write(&model, text).expect("a model file");
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/emps");
     let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
-    let output = command.arg("discover").arg(campaign).arg("--model").arg(&model).output();
+    let output = command
+        .arg("discover")
+        .arg(campaign)
+        .arg("--model")
+        .arg(&model)
+        .output();
     let output = output.expect("qcar runs");
-    assert_eq!(output.status.code(), Some(2), "{}", String::from_utf8_lossy(&output.stdout));
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "{}",
+        String::from_utf8_lossy(&output.stdout)
+    );
     let words = String::from_utf8_lossy(&output.stderr);
     assert!(words.contains("no finite response"), "{words}");
 }

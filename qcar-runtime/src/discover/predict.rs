@@ -6,6 +6,8 @@ mod linear;
 mod nonlinear;
 // Recorded inputs at the nodes of an integration.
 mod input;
+// From one of them to the next.
+mod stepper;
 // A model driven by them.
 mod replay;
 // What sweeps add to the balance, since they never settle.

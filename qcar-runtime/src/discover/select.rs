@@ -23,12 +23,11 @@ use rayon::prelude::*;
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use race::{Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, judged, predictive};
+use verdict::{Set, closed, is_missing, judged, predictive};
 use visible::visible;
 
 use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
 use super::candidate::{Candidate, Workshop};
-use super::discrepancy::Discrepancy;
 use super::evidence::{Evidence, Stimulus};
 use super::explain::{Explanation, Setting};
 use super::numbers::{MOST_EFFECTS, Numbers};
@@ -176,10 +175,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     let starts = SPREAD.par_iter().map(|&spread| {
         let from = Place {
             named: setting_spread(&assembly, spread),
-            sides: Default::default(),
-            errors: Vec::new(),
-            begun: Vec::new(),
-            discrepancy: Discrepancy::of(&looks.coarse, Role::Fit),
+            ..Place::given(&looks.coarse)
         };
         hypothesis.fit(&from, &looks.coarse, BASE[0])
     });
@@ -229,7 +225,14 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     // What sweeps show beyond steady harmonics changes little with one effect more.
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
-    let prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
+    let mut prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
+    if is_missing(set, &evidence.numbers) {
+        // Where the parameters of a model are that leaves much says little of where they are beside the right effect.
+        let given = Place::given(&looks.coarse);
+        for prospect in &mut prospects {
+            prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);
+        }
+    }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !prospects.iter().any(worth) {
@@ -274,15 +277,16 @@ fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     -((effects.len() * of_effect) as f64).ln()
 }
 
-/// The set less one of its effects each: what is not missed was only a step on the way. The last needs no look: the set
-/// was extended by it.
+/// The set less one of its effects each: what is not missed was only a step on the way. That holds for the last too: from
+/// here its part may come to a better place than that from which the set was extended.
 fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
-    let steps = 0..set.assembly.effects().len().saturating_sub(1);
-    if !steps.is_empty() {
-        progress(News::Doing("fitting with one effect less"));
+    let effects = set.assembly.effects().len();
+    if effects < 2 {
+        return Vec::new();
     }
+    progress(News::Doing("fitting with one effect less"));
     let without = |left_out| without(left_out, set, base, evidence);
-    steps.into_par_iter().filter_map(without).collect()
+    (0..effects).into_par_iter().filter_map(without).collect()
 }
 
 /// The set less one of its effects, by its place; `None` where that cannot be fitted.

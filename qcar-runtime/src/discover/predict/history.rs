@@ -48,22 +48,18 @@ pub(super) fn history(
         &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
     )?;
     let start = inputs.start;
-    let shifts: Vec<Option<&Free>> = std::iter::once(None).chain(free.iter().map(Some)).collect();
     let begin = begin(model.about(), misread.begun(run));
-    let runs: Vec<(f64, Replayed)> = shifts
+    let base = &replay.run(values.as_slice(), &begin);
+    let moved: Vec<(f64, Replayed)> = free
         .par_iter()
-        .map(|shift| {
+        .map(|free| {
             let mut values = values.clone();
-            let step = shift.map_or(1.0, |free| {
-                let value = values.as_slice()[free.parameter];
-                let step = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower));
-                values.set(free.parameter, value + step);
-                step
-            });
-            (step, replay.run(values.as_slice(), &begin))
+            let value = values.as_slice()[free.parameter];
+            let step = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower));
+            values.set(free.parameter, value + step);
+            (step, replay.like(base, values.as_slice(), &begin))
         })
         .collect();
-    let base = &runs[0].1;
     let elsewhere: Vec<(usize, f64)> = if begun {
         unknown(model.about(), spread)
     } else {
@@ -99,7 +95,7 @@ pub(super) fn history(
         let name = |state: usize| model.about().states[state].name.to_string();
         Prediction {
             series: *place,
-            slopes: runs[1..].iter().map(|(step, own)| slope(*step, own)).collect(),
+            slopes: moved.iter().map(|(step, own)| slope(*step, own)).collect(),
             begun: elsewhere
                 .iter()
                 .map(|(state, step, own)| (name(*state), slope(*step, own)))

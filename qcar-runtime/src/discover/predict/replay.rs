@@ -1,12 +1,13 @@
-//! A model driven by what was recorded, at fixed steps: what its sensors would have recorded.
+//! A model driven by what was recorded: what its sensors would have recorded.
 //!
 //! Inputs are known at nodes that are half a step apart, so that the classical Runge-Kutta method never has to guess
-//! between them, and the same record costs the same time for every parameter set.
+//! between them; a step is halved where a law is too stiff for it.
 
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use super::input::{Between, Recorded, rows};
+use super::stepper::Stepper;
 use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, output_of};
 
@@ -27,29 +28,37 @@ pub struct Replay<'a> {
     /// At some samples, in their order: states and what they are then. All others go on, from zero at first.
     restarts: Vec<(usize, Vec<(usize, f64)>)>,
     readings: Vec<Reading>,
-    /// For each fineness that was needed, the inputs at each node.
-    nodes: [OnceLock<Vec<Vec<f64>>>; FINER.len()],
+    /// The inputs at each node.
+    nodes: OnceLock<Vec<Vec<f64>>>,
 }
 
 /// What a replay gives.
 pub struct Replayed {
-    /// For each reading its samples; not finite from where the model runs away even at the finest steps.
+    /// For each reading its samples; not finite from where the model runs away even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
     /// All states at each sample.
     states: Vec<Vec<f64>>,
     /// They one sample later than the last.
     end: Vec<f64>,
-    /// Place of the fineness that was needed.
-    finer: usize,
+    /// How often each step was halved.
+    halvings: Vec<u8>,
+}
+
+/// How long the steps of a replay are.
+#[derive(Clone, Copy)]
+enum Steps<'r> {
+    /// As the laws need it.
+    Found,
+    /// As those of another replay.
+    Like(&'r Replayed),
+    /// The same, as long as the two differ.
+    Beside(&'r Replayed),
 }
 
 /// Periods until a motion is taken for one that repeats, whether it does or not,
 const PERIODS: usize = 60;
 /// and by what share of their largest value states may still differ from a period to the next.
 const REPEATED: f64 = 1e-9;
-
-/// How many times finer the steps are taken when a replay runs away: laws may be stiffer than any sampling foresees.
-const FINER: [usize; 2] = [1, 4];
 
 impl<'a> Replay<'a> {
     /// Prepares a replay; the nodes of `how` are overruled.
@@ -72,29 +81,32 @@ impl<'a> Replay<'a> {
 
     /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
     pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        let last = FINER.len() - 1;
-        let replays = (0..last).map(|finer| self.replay(p, begin, finer));
-        let is_finite = |signal: &Vec<f64>| signal.last().is_some_and(|last| last.is_finite());
-        let mut replays = replays.filter(|replayed| replayed.signals.iter().all(is_finite));
-        replays.next().unwrap_or_else(|| self.replay(p, begin, last))
+        self.repeated(p, begin, Steps::Found)
+    }
+
+    /// The same in the steps of another replay: their difference is that of parameters alone.
+    pub fn like(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
+        self.repeated(p, begin, Steps::Like(other))
     }
 
     /// The same beside another replay, and no longer than the two differ: from there on it is that one.
     pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        let rest = vec![0.0; self.model.about().states.len()];
-        self.advance(p, (rest, begin), other.finer, Some(other))
+        self.advance(p, (self.rest(), begin), Steps::Beside(other))
+    }
+
+    fn rest(&self) -> Vec<f64> {
+        vec![0.0; self.model.about().states.len()]
     }
 
     /// From rest, or of a motion that repeats a period of it.
-    fn replay(&self, p: &[f64], begin: &[(usize, f64)], finer: usize) -> Replayed {
-        let rest = vec![0.0; self.model.about().states.len()];
-        let mut replayed = self.advance(p, (rest, begin), finer, None);
+    fn repeated(&self, p: &[f64], begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
+        let mut replayed = self.advance(p, (self.rest(), begin), steps);
         let periods = if self.how.periodic { PERIODS } else { 0 };
         for _ in 0..periods {
             if replayed.repeats() {
                 break;
             }
-            replayed = self.advance(p, (replayed.end, &[]), finer, None);
+            replayed = self.advance(p, (replayed.end, &[]), steps);
         }
         replayed
     }
@@ -110,34 +122,31 @@ impl<'a> Replay<'a> {
         (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
     }
 
-    /// From a state with some of it elsewhere, as long as it is not that of another replay.
-    fn advance(
-        &self,
-        p: &[f64],
-        (mut x, begin): (Vec<f64>, &[(usize, f64)]),
-        finer: usize,
-        other: Option<&Replayed>,
-    ) -> Replayed {
-        let steps = steps(self.how.rate) * FINER[finer];
-        let inputs = self.nodes[finer].get_or_init(|| self.inputs(steps));
+    /// From a state with some of it elsewhere.
+    fn advance(&self, p: &[f64], (mut x, begin): (Vec<f64>, &[(usize, f64)]), taken: Steps<'_>) -> Replayed {
+        let steps = steps(self.how.rate);
+        let inputs = self.nodes.get_or_init(|| self.inputs(steps));
         let about = self.model.about();
         let mut constants = vec![0.0; about.constants];
         self.model.prepare(p, &mut constants);
         let mut restarts = self.restarts.iter().peekable();
         let mut y = vec![0.0; about.outputs.len()];
-        let mut stages = Stages::new(x.len());
-        let h = 1.0 / (self.how.rate * steps as f64);
+        let mut stepper = Stepper::new(self.model, &constants, 1.0 / (self.how.rate * steps as f64));
+        let mut halvings = Vec::with_capacity(inputs.len() / 2);
         let (mut signals, mut states) = (vec![Vec::new(); self.readings.len()], Vec::new());
         let mut apart = vec![0.0_f64; x.len()];
         for (sample, nodes) in inputs.chunks(2 * steps).enumerate() {
             let first = 2 * steps * sample;
             if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
                 seen.iter().for_each(|&(state, value)| x[state] = value);
+                stepper.forget();
             }
             if sample == 0 {
                 begin.iter().for_each(|&(state, by)| x[state] += by);
             }
-            if let Some(other) = other.filter(|other| has_joined(&x, &other.states[sample], &mut apart)) {
+            if let Steps::Beside(other) = taken
+                && has_joined(&x, &other.states[sample], &mut apart)
+            {
                 let rest = signals.iter_mut().zip(&other.signals);
                 rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
                 break;
@@ -153,14 +162,21 @@ impl<'a> Replay<'a> {
             for node in (first..first + nodes.len()).step_by(2) {
                 let nodes = [node, node + 1, self.end(node, inputs.len())];
                 let inputs = nodes.map(|node| inputs[node].as_slice());
-                stages.advance(self.model, &constants, inputs, h, &mut x);
+                halvings.push(match taken {
+                    Steps::Found => stepper.find(inputs, &mut x),
+                    Steps::Like(other) | Steps::Beside(other) => {
+                        let known = other.halvings[halvings.len()];
+                        stepper.follow(inputs, known, &mut x);
+                        known
+                    }
+                });
             }
         }
         Replayed {
             signals,
             states,
             end: x,
-            finer,
+            halvings,
         }
     }
 
@@ -200,10 +216,11 @@ fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     joined
 }
 
-/// Steps of at most a millisecond, and at least four a sample, whose band may reach up to half its rate.
+/// Steps of at most a millisecond, and at least two a sample, whose band may reach up to half its rate: they are halved where
+/// that is too long.
 fn steps(rate: f64) -> usize {
     const LONGEST: f64 = 1e-3;
-    ((1.0 / (rate * LONGEST)).ceil() as usize).max(4)
+    ((1.0 / (rate * LONGEST)).ceil() as usize).max(2)
 }
 
 /// Where a sensor's signal is found.
@@ -229,35 +246,5 @@ pub fn reading(about: &About, signal: &crate::model::Signal) -> Result<Reading, 
             quantity: "signal as it was measured",
             model: about.name.to_string(),
         }),
-    }
-}
-
-/// The stages of a step.
-struct Stages {
-    k: [Vec<f64>; 4],
-    x: Vec<f64>,
-}
-
-impl Stages {
-    fn new(states: usize) -> Self {
-        Self {
-            k: std::array::from_fn(|_| vec![0.0; states]),
-            x: vec![0.0; states],
-        }
-    }
-
-    /// `inputs` at the start, the middle and the end of the step.
-    fn advance(&mut self, model: &dyn Model, constants: &[f64], inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
-        model.derivative(constants, x, inputs[0], &mut self.k[0]);
-        for (stage, input, share) in [(1, 1, 0.5), (2, 1, 0.5), (3, 2, 1.0)] {
-            for ((to, x), k) in self.x.iter_mut().zip(&*x).zip(&self.k[stage - 1]) {
-                *to = x + share * h * k;
-            }
-            model.derivative(constants, &self.x, inputs[input], &mut self.k[stage]);
-        }
-        let [k0, k1, k2, k3] = &self.k;
-        for (i, x) in x.iter_mut().enumerate() {
-            *x += h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
-        }
     }
 }

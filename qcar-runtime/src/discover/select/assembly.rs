@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use super::taken::Taken;
+use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::discrepancy::Discrepancy;
 use crate::discover::evidence::Evidence;
@@ -65,6 +66,19 @@ pub struct Place {
     pub begun: Vec<(Beginning, f64)>,
     /// What the model is taken to miss.
     pub discrepancy: Discrepancy,
+}
+
+impl Place {
+    /// The values that the campaign gives, with sensors that are right and nothing missed.
+    pub fn given(evidence: &Evidence) -> Self {
+        Self {
+            named: BTreeMap::new(),
+            sides: BTreeMap::new(),
+            errors: Vec::new(),
+            begun: Vec::new(),
+            discrepancy: Discrepancy::of(evidence, Role::Fit),
+        }
+    }
 }
 
 impl Assembly {
@@ -280,7 +294,7 @@ impl<'a> Hypothesis<'a> {
             errors: &errors,
             begun: &from.begun,
             centre: &self.values(&BTreeMap::new())?,
-            discrepancy: from.discrepancy.carried_to(evidence, crate::campaign::Role::Fit),
+            discrepancy: from.discrepancy.carried_to(evidence, Role::Fit),
         };
         fit(self.model, start, &free, evidence, self.nuisance.clone(), budget)
     }

@@ -53,6 +53,7 @@ fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Se
     let start = |candidate: usize| Prospect {
         candidate,
         starts: vec![(here.clone(), 0.0)],
+        afresh: None,
     };
     let all: Vec<Prospect> = (0..laws.len()).map(start).collect();
     let steady = evidence.less(&refit.unsteady).hurried();

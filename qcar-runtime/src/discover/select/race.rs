@@ -128,7 +128,8 @@ pub fn race(
         } else {
             1
         };
-        field.extend(prospect.starts[..starts].iter().map(|(place, _)| Runner {
+        let starts = prospect.starts[..starts].iter().map(|(place, _)| place);
+        field.extend(starts.chain(&prospect.afresh).map(|place| Runner {
             candidate: prospect.candidate,
             hypothesis,
             place: place.clone(),

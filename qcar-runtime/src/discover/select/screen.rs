@@ -25,9 +25,17 @@ pub struct Prospect {
     pub candidate: usize,
     /// Where fits should begin, the best first, with what each would gain in the logarithm of the likelihood.
     pub starts: Vec<(Place, f64)>,
+    /// Another start, of which the screening knows nothing.
+    pub afresh: Option<Place>,
 }
 
 impl Prospect {
+    /// Begins from a place too, with the usual values of the candidate.
+    pub fn start_from(&mut self, place: &Place, assembly: &Assembly, candidate: &Candidate) {
+        let hypothesis = assembly.hypothesis_with(candidate);
+        self.afresh = hypothesis.map(|own| Point::usual(candidate).at(place, &own, candidate));
+    }
+
     /// What the best start would gain.
     pub fn gain(&self) -> f64 {
         self.starts.first().map_or(0.0, |start| start.1)
@@ -80,6 +88,7 @@ pub fn screen(
         (!starts.is_empty()).then_some(Prospect {
             candidate: place,
             starts,
+            afresh: None,
         })
     });
     let mut all: Vec<Prospect> = all.collect();

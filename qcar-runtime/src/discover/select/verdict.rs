@@ -196,7 +196,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
 }
 
 /// True where a model leaves more of any sensor than models of its kind do.
-fn is_missing(set: &Set, numbers: &Numbers) -> bool {
+pub fn is_missing(set: &Set, numbers: &Numbers) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
     discrepancy
         .flat_map(|own| own.missed())
