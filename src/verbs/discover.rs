@@ -31,6 +31,8 @@ pub(crate) mod places;
 mod left;
 // The law that was learned where no effect explains the gap.
 pub(crate) mod law;
+// One of the findings in words.
+mod finding;
 // What was learned, as text and JSON.
 mod learned;
 // The answer as text and JSON.

@@ -14,9 +14,10 @@ mod noise;
 mod restart;
 // Any other excitation: the responses themselves.
 mod history;
+// A record as means around given instants.
+pub mod means;
 // Rides over an obstacle: their impact and after-shake.
 pub(super) mod cleat;
-pub mod means;
 // Quasi-static K&C cycles.
 pub(super) mod travel;
 // K&C sines.

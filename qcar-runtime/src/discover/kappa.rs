@@ -6,10 +6,10 @@
 //! of a model are its places, the best scalar of a line is linear least squares, and no refit is needed. `H(s,F)`
 //! comes from one finite change of the parameter, by the same formula.
 
-// The responses of all sensors line by line, and what explains them.
-mod lines;
 // A straight line through a few complex values.
 mod straight;
+// The responses of all sensors line by line, and what explains them.
+mod lines;
 // What κ looks like.
 mod shape;
 

@@ -8,10 +8,10 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
-// what law is missing where the catalogue has none,
-mod learn;
 // how probable each set is,
 mod verdict;
+// what law is missing where the catalogue has none,
+mod learn;
 // and which effects would have been seen.
 mod visible;
 
