@@ -6,10 +6,8 @@
 
 // The numbers of the search that no data give.
 pub mod numbers;
-// What a campaign holds: series of measured values with their uncertainty.
-pub mod evidence;
-// What a model says of the evidence.
-pub mod predict;
+// What was measured, beside what a model says of it.
+pub mod observe;
 // What any model of this kind misses.
 pub mod discrepancy;
 // What sensors may be wrong by, in all runs alike.
@@ -32,8 +30,7 @@ pub mod answer;
 // Which effect is missing.
 pub mod select;
 
-pub use evidence::Evidence;
 pub use gap::Gap;
 pub use kappa::{Kappa, Place, Sweeps, kappa_map};
-pub use predict::Free;
+pub use observe::{Evidence, Free};
 pub use refit::{Refit, refit};

@@ -5,9 +5,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evidence::{Evidence, Stimulus};
 use super::nuisance::Nuisance;
-use super::predict::{Misread, PredictError, Prediction, predict_begun};
+use super::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;

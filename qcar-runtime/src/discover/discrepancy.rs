@@ -19,8 +19,8 @@ use std::ops::Range;
 
 use banded::Banded;
 
-use super::evidence::{Evidence, Kind, Series, Stimulus};
 use super::numbers::Numbers;
+use super::observe::{Evidence, Kind, Series, Stimulus};
 use crate::campaign::Role;
 use crate::transmissibility::Point;
 

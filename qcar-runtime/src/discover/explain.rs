@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::gap::Gap;
-use super::predict::PredictError;
+use super::observe::PredictError;
 use super::refit::Refit;
 use crate::model::About;
 use crate::response::parameters::Values;

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use super::beginning::beginnings;
-use super::evidence::{Evidence, Kind, Series};
-use super::predict::{PredictError, predict_sides, unsteady};
+use super::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
 use super::refit::{Refit, scaled};
 use crate::campaign::Role;
 use crate::model::Model;
@@ -19,7 +18,7 @@ pub struct Gap {
     pub held_out: f64,
     /// The same by series, in the order of the evidence.
     pub series: Vec<f64>,
-    /// The residuals of every series, as [`Series::residuals`](super::evidence::Series::residuals) counts them.
+    /// The residuals of every series, as [`Series::residuals`](super::observe::Series::residuals) counts them.
     pub residuals: Vec<Vec<f64>>,
     /// Where it is, the strongest first.
     pub tiles: Vec<Tile>,

@@ -19,9 +19,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Kind, Stimulus};
 use super::gap::Gap;
-use super::predict::{Free, PredictError, predict};
+use super::observe::{Evidence, Free, Kind, PredictError, Stimulus, predict};
 use super::refit::{Refit, refit};
 use crate::campaign::Role;
 use crate::model::Model;

@@ -11,8 +11,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::evidence::{Evidence, Kind, Run, Series, Stimulus};
-use super::predict::{Misread, Prediction};
+use super::observe::{Evidence, Kind, Misread, Prediction, Run, Series, Stimulus};
 use crate::campaign::{Axis, Role};
 use crate::model::{About, State};
 use crate::transmissibility::Point;

@@ -18,9 +18,8 @@ mod settle;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::discrepancy::Discrepancy;
-use super::evidence::Evidence;
 use super::nuisance::{Beginning, Nuisance};
-use super::predict::{Free, PredictError, Prediction};
+use super::observe::{Evidence, Free, PredictError, Prediction};
 use crate::campaign::Role;
 use crate::least_squares::{Problem, Stop};
 use crate::model::Model;

@@ -28,10 +28,9 @@ use visible::visible;
 use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
 use super::candidate::{Candidate, Workshop};
 use super::discrepancy::Discrepancy;
-use super::evidence::{Evidence, Stimulus};
 use super::explain::{Explanation, Setting};
 use super::numbers::{MOST_EFFECTS, Numbers};
-use super::predict::PredictError;
+use super::observe::{Evidence, PredictError, Stimulus};
 use super::refit::Refit;
 use crate::campaign::Role;
 

@@ -5,9 +5,9 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
-use qcar_runtime::discover::evidence::Kind;
 use qcar_runtime::discover::explain::Explanation;
 use qcar_runtime::discover::gap::Tile;
+use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 

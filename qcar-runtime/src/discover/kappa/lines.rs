@@ -8,8 +8,7 @@ use nalgebra::Complex;
 
 use super::straight::Straight;
 use super::{Kappa, KappaRun, Place};
-use crate::discover::evidence::{Evidence, Kind, Series};
-use crate::discover::predict::Prediction;
+use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::refit::Refit;
 use crate::transmissibility::Point;
 

@@ -3,9 +3,8 @@
 use nalgebra::DVector;
 
 use crate::campaign::Role;
-use crate::discover::evidence::{Evidence, Run, Stimulus};
 use crate::discover::nuisance::Nuisance;
-use crate::discover::predict::{Free, PredictError, Prediction, predict_sides};
+use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, Stimulus, predict_sides};
 use crate::model::Model;
 use crate::response::parameters::Values;
 

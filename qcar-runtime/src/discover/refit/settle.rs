@@ -2,8 +2,7 @@
 
 use super::{Posterior, Refit};
 use crate::campaign::Role;
-use crate::discover::evidence::{Evidence, Series, Stimulus};
-use crate::discover::predict::{PredictError, unsteady};
+use crate::discover::observe::{Evidence, PredictError, Series, Stimulus, unsteady};
 use crate::model::Model;
 
 /// Rounds of a refit with what its sweeps add to their steady harmonics: the second has it from where the first arrived.

@@ -11,7 +11,7 @@ use super::assembly::{Assembly, Hypothesis, Place};
 use super::screen::Prospect;
 use super::{News, Progress};
 use crate::discover::candidate::Candidate;
-use crate::discover::evidence::Evidence;
+use crate::discover::observe::Evidence;
 use crate::discover::refit::Refit;
 
 /// What the rounds look at.

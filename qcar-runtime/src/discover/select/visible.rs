@@ -10,8 +10,8 @@ use super::log_prior;
 use super::screen::{Point, Tangent};
 use crate::discover::answer::Visible;
 use crate::discover::candidate::Candidate;
-use crate::discover::evidence::Evidence;
 use crate::discover::numbers::Numbers;
+use crate::discover::observe::Evidence;
 use crate::discover::refit::Refit;
 
 /// Each effect of the model at each place, in its usual form, the best seen first.

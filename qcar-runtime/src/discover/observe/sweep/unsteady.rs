@@ -11,12 +11,11 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use rayon::prelude::*;
 
-use super::input::{Between, Recorded};
-use super::replay::{Reading, Replay, reading};
-use super::{Misread, PredictError, excitation, linear, nonlinear};
+use super::measured::{AROUND, ORDERS};
+use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
-use crate::discover::evidence::sweep::{AROUND, ORDERS};
-use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
+use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Series, Stimulus, order_of, signal_of};
 use crate::model::{Model, Signal};
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
@@ -79,9 +78,9 @@ fn of_run(
     }
     let about = model.about();
     let steady = if about.linear {
-        linear::sweep(model, values, &[], evidence, run)?
+        linear(model, values, &[], evidence, run)?
     } else {
-        nonlinear::sweep(model, values, louder, &[], evidence, run)?
+        nonlinear(model, values, louder, &[], evidence, run)?
     };
     let sensors = steady
         .iter()
@@ -108,7 +107,7 @@ fn of_run(
 }
 
 /// What the sensors of a sweep would have recorded, sample by sample, from rest on.
-pub(super) fn replayed(
+pub fn replayed(
     model: &dyn Model,
     values: &Values,
     evidence: &Evidence,

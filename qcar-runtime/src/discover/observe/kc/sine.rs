@@ -9,8 +9,9 @@ use std::f64::consts::TAU;
 use nalgebra::{Complex, DMatrix, DVector};
 
 use super::travel::{FLOOR, sensor};
-use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus};
 use crate::campaign::{Axis, Campaign, DynamicCurve};
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::InputError;
 use crate::model::About;
 
@@ -22,7 +23,7 @@ const OTHER: f64 = 0.01;
 
 impl Evidence {
     /// Reads a sine of `amplitude` m that crosses its middle at `peak_velocity` m/s.
-    pub(super) fn add_sine(
+    pub(in crate::discover::observe) fn add_sine(
         &mut self,
         campaign: &Campaign,
         about: &About,

@@ -8,8 +8,9 @@
 
 use nalgebra::Complex;
 
-use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus};
 use crate::campaign::{Axis, Campaign, Quantity, Role, Test};
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::InputError;
 use crate::kc::{SineSamples, sines};
 use crate::model::{About, StateKind};
@@ -29,12 +30,12 @@ const FEWEST_VALUES: usize = 5;
 /// The direction of travel is that over so many parts of the curve before and behind a sample.
 const DIRECTION_PARTS: usize = 100;
 /// Of the largest force: how straight a load cell is.
-pub(super) const FLOOR: f64 = 0.001;
+pub const FLOOR: f64 = 0.001;
 /// Speed of a quasi-static rig, m/s: a whole cycle through 0.15 m of travel takes half a minute or longer.
 const RIG: f64 = 0.01;
 
 impl Evidence {
-    pub(super) fn add_travel(
+    pub(in crate::discover::observe) fn add_travel(
         &mut self,
         campaign: &Campaign,
         about: &About,
@@ -69,7 +70,7 @@ impl Evidence {
     }
 
     /// What the rig moves and holds in a model; leaves a notice where the model has no such parts.
-    pub(super) fn on_rig(
+    pub fn on_rig(
         &mut self,
         campaign: &Campaign,
         about: &About,
@@ -92,7 +93,7 @@ impl Evidence {
 }
 
 /// The sensor of the force on the wheel.
-pub(super) fn sensor(axis: Axis) -> Point {
+pub fn sensor(axis: Axis) -> Point {
     Point {
         location: LOCATION.into(),
         axis,

@@ -4,8 +4,10 @@ use std::path::PathBuf;
 
 use nalgebra::Complex;
 
-use super::{Evidence, Kind, LEAST_NOISE, Run, Series, Stimulus, is_motion};
 use crate::campaign::{Campaign, Sweep};
+use crate::discover::observe::sensor::is_motion;
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
 use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Swept};
@@ -13,10 +15,10 @@ use crate::transmissibility::{Point, points, signal};
 
 /// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
 /// proportion.
-pub(in crate::discover) const ORDERS: usize = 3;
+pub const ORDERS: usize = 3;
 
 /// Wide enough for eight unknowns a line, and narrow enough to follow a mode.
-pub(in crate::discover) const AROUND: Neighbourhood = Neighbourhood {
+pub const AROUND: Neighbourhood = Neighbourhood {
     lines: 10,
     width: 0.035,
 };
@@ -37,7 +39,7 @@ const FLOOR: f64 = 0.002;
 const OF_SIDES: f64 = 0.005;
 
 impl Evidence {
-    pub(super) fn add_sweep(
+    pub(in crate::discover::observe) fn add_sweep(
         &mut self,
         campaign: &Campaign,
         about: &About,

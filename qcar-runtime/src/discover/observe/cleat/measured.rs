@@ -2,9 +2,9 @@
 
 use nalgebra::Complex;
 
-use super::means::Means;
-use super::{Evidence, Kind, Passage, Run, Series, Stimulus, signal_of};
 use crate::campaign::Campaign;
+use crate::discover::observe::run::PATIENT;
+use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
 use crate::error::InputError;
 use crate::model::About;
 use crate::response::signal::output_of;
@@ -19,7 +19,7 @@ const HALF: f64 = 5e-3;
 /// From where the tyre's circle comes to the obstacle, s: impact and after-shake.
 const DURATION: f64 = 1.0;
 /// The most that the clock of a record may be off, s: a trigger, and the error of the speed over the run-in.
-pub(in crate::discover) const TIMING: f64 = 5e-3;
+pub const TIMING: f64 = 5e-3;
 /// The most that a sensor may be ahead of the others, s.
 const AHEAD: f64 = 0.01;
 /// What no model of a tyre on an edge gets right, and no second sensor of a pair: this share of the envelope.
@@ -30,14 +30,9 @@ const FLOOR: f64 = 0.002;
 const AROUND: usize = 10;
 /// A quiet start with fewer samples tells no noise.
 const QUIET: usize = 20;
-/// The most steps for a second of a ride.
-const PATIENT: f64 = 1e5;
-/// The same among many. Five hundred to two thousand are enough for what cars have; dry friction that a search has made next
-/// to none, and as stiff as ever, takes ten times as many.
-pub(super) const HURRIED: f64 = 4e3;
 
 impl Evidence {
-    pub(super) fn add_cleat(
+    pub(in crate::discover::observe) fn add_cleat(
         &mut self,
         campaign: &Campaign,
         about: &About,

@@ -3,12 +3,17 @@
 //! Inputs are known at nodes that are half a step apart, so that the classical Runge-Kutta method never has to guess
 //! between them, and the same record costs the same time for every parameter set.
 
+// Recorded inputs at the nodes of an integration.
+mod input;
+
+pub use input::{Between, Recorded};
+
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-use super::input::{Between, Recorded, rows};
 use crate::model::{About, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, output_of};
+use input::rows;
 
 /// Where a sensor's signal is found while time goes on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,8 +2,8 @@
 
 use nalgebra::Complex;
 
-use super::{Free, PredictError, Prediction, excitation};
-use crate::discover::evidence::{Evidence, Kind, Series, Stimulus, order_of, signal_of};
+use super::excitation;
+use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
@@ -13,7 +13,7 @@ use crate::response::signal::output_of;
 const HARMONICS: usize = 5;
 
 /// Of a run that was driven harder by the factor `louder` than its reference shows.
-pub(super) fn sweep(
+pub fn sweep(
     model: &dyn Model,
     values: &Values,
     louder: f64,

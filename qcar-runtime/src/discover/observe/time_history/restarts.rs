@@ -8,28 +8,10 @@
 use std::f64::consts::TAU;
 
 use crate::campaign::{Quantity, Role};
-use crate::model::{About, Matrix, State, StateKind};
+use crate::discover::observe::{Restart, Spread, is_seen};
+use crate::model::{About, Matrix, StateKind};
 use crate::spectrum::{Trend, transform};
 use crate::transmissibility::Point;
-
-/// What sensors saw at one sample of a record.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Restart {
-    /// Number of the sample.
-    pub sample: usize,
-    /// Sensors of position and velocity with their values, SI.
-    pub seen: Vec<(Point, f64)>,
-}
-
-/// How far a model may be, when a record begins, from where sensors saw it or, where none did, from rest: standard
-/// deviations, SI.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Spread {
-    /// Of what a sensor of position or velocity saw.
-    pub seen: Vec<(Point, f64)>,
-    /// Of other positions, velocities and forces, as far as the record tells how large they become; zero where it does not.
-    pub unseen: [f64; 3],
-}
 
 /// The offset of a sensor that tells where a record begins, over the RMS value of what it reads.
 const OFFSET: f64 = 0.1;
@@ -63,34 +45,6 @@ impl Spread {
             unseen,
         }
     }
-
-    /// Of a state of the model; `None` where nothing is known of its size. Angles are taken on a lever of a metre.
-    pub fn sigma(&self, state: &State) -> Option<f64> {
-        let seen = self
-            .seen
-            .iter()
-            .find(|(point, _)| is_seen(state, point))
-            .map(|(_, sigma)| *sigma);
-        let [position, velocity, force] = self.unseen;
-        let unseen = match &*state.unit {
-            "m" | "rad" | "1" if state.kind != StateKind::Inner => position,
-            "m" => position,
-            "m/s" | "rad/s" | "1/s" => velocity,
-            "N" => force,
-            _ => 0.0,
-        };
-        seen.or(Some(unseen)).filter(|sigma| *sigma > 0.0)
-    }
-}
-
-/// True where a sensor shows a state itself.
-pub fn is_seen(state: &State, point: &Point) -> bool {
-    let kind = match point.quantity {
-        Quantity::Displacement => StateKind::Position,
-        Quantity::Velocity => StateKind::Velocity,
-        Quantity::Acceleration | Quantity::Force => return false,
-    };
-    state.kind == kind && state.location == point.location && state.axis == point.axis.name()
 }
 
 /// The farthest from the mean.
@@ -117,7 +71,7 @@ fn middle(y: &[f64], rate: f64) -> f64 {
 const WINDOWS: usize = 20;
 
 /// Where a model begins that is driven by a record with these responses, and where it is set right.
-pub(super) fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate: f64) -> Vec<Restart> {
+pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate: f64) -> Vec<Restart> {
     let moving =
         |(point, _): &&(Point, Vec<f64>)| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
     let seen = responses.iter().filter(moving).map(|(point, y)| (point.clone(), y[0]));
@@ -147,7 +101,7 @@ fn shows_drift(about: &About, point: &Point) -> bool {
 }
 
 /// True of the position of a mass on which nothing depends: no link holds it.
-pub(super) fn drifts(about: &About, state: usize) -> bool {
+pub fn drifts(about: &About, state: usize) -> bool {
     let matters = |entry: &crate::model::Entry| entry.matrix == Matrix::A && usize::from(entry.column) == state;
     about.states[state].kind == StateKind::Position && !about.matrices.iter().any(matters)
 }

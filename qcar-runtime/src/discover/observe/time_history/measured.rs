@@ -2,11 +2,11 @@
 
 use nalgebra::Complex;
 
-use super::band::Band;
 use super::noise::noise;
-use super::restart::{Spread, drifts, restarts};
-use super::{Evidence, Kind, LEAST_NOISE, Recordings, Run, Series, Stimulus, excitation_of};
+use super::restarts::{drifts, restarts};
 use crate::campaign::{Campaign, History, Recording};
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
 use crate::transmissibility::{Point, points, signal};
@@ -19,7 +19,7 @@ const MOST: usize = 2000;
 const FLOOR: f64 = 0.005;
 
 impl Evidence {
-    pub(super) fn add_history(
+    pub(in crate::discover::observe) fn add_history(
         &mut self,
         campaign: &Campaign,
         about: &About,

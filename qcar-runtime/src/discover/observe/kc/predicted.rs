@@ -5,8 +5,7 @@ use std::f64::consts::{PI, TAU};
 use nalgebra::Complex;
 
 use super::bench::{Bench, Instant};
-use super::{Free, PredictError, Prediction};
-use crate::discover::evidence::{Evidence, Kind, Series, Stimulus};
+use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus};
 use crate::model::Model;
 use crate::response::parameters::Values;
 
@@ -25,7 +24,7 @@ const PARTS: usize = 48;
 const TURNING: usize = 3;
 const FINER: usize = 8;
 
-pub(super) fn travel(
+pub fn travel(
     model: &dyn Model,
     values: &Values,
     free: &[Free],

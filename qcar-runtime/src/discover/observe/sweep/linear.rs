@@ -2,13 +2,13 @@
 
 use nalgebra::Complex;
 
-use super::{Free, PredictError, Prediction, excitation};
-use crate::discover::evidence::{Evidence, Kind, Stimulus, signal_of};
+use super::excitation;
+use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Stimulus, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
 
-pub(super) fn sweep(
+pub fn sweep(
     model: &dyn Model,
     values: &Values,
     free: &[Free],

@@ -7,10 +7,8 @@
 use nalgebra::Complex;
 use rayon::prelude::*;
 
-use super::{Delay, Free, PredictError, Prediction};
-use crate::discover::evidence::cleat::TIMING;
-use crate::discover::evidence::means::Means;
-use crate::discover::evidence::{Evidence, Passage, Series, signal_of};
+use super::measured::TIMING;
+use crate::discover::observe::{Delay, Evidence, Free, Means, Passage, PredictError, Prediction, Series, signal_of};
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::signal::output_of;
@@ -25,7 +23,7 @@ const PART_OF_RANGE: f64 = 1e-2;
 /// Steps to the best shift; the first is nearly all.
 const STEPS: usize = 4;
 
-pub(super) fn passage(
+pub fn passage(
     model: &dyn Model,
     values: &Values,
     late: &[f64],

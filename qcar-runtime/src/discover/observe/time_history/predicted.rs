@@ -3,10 +3,11 @@
 use nalgebra::Complex;
 use rayon::prelude::*;
 
-use super::input::{Between, Recorded};
-use super::replay::{Reading, Replay, Replayed, reading};
-use super::{Delay, Free, Misread, PredictError, Prediction};
-use crate::discover::evidence::{Evidence, Spread, Stimulus, excitation_of, is_seen, order_of, signal_of};
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, Replayed, reading};
+use crate::discover::observe::{
+    Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
+    order_of, signal_of,
+};
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
@@ -20,7 +21,7 @@ const PART_OF_RANGE: f64 = 1e-3;
 const OF_SPREAD: f64 = 1e-4;
 
 /// What the sensors of a run show, differentiated along `free` and, where `begun`, along the states at its beginning.
-pub(super) fn history(
+pub fn history(
     model: &dyn Model,
     values: &Values,
     misread: &Misread,
@@ -78,7 +79,7 @@ pub(super) fn history(
         })
         .collect();
     let shown = |replayed: &Replayed, column: usize| stimulus.of_band(&replayed.signals[column]);
-    let predict = |(column, (place, series)): (usize, &(usize, &crate::discover::evidence::Series))| {
+    let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
         let late = misread.late.get(*place).copied().unwrap_or(0.0);
         let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
             series
@@ -116,7 +117,7 @@ pub(super) fn history(
 }
 
 /// What the sensors of a run would have recorded, sample by sample, of the band that is compared.
-pub(super) fn replayed(
+pub fn replayed(
     model: &dyn Model,
     values: &Values,
     misread: &Misread,
