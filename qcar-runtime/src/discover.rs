@@ -8,10 +8,8 @@
 pub mod numbers;
 // What was measured, beside what a model says of it.
 pub mod observe;
-// What any model of this kind misses.
-pub mod discrepancy;
-// What sensors may be wrong by, in all runs alike.
-pub mod nuisance;
+// What differs between a measurement and a model that is right.
+pub mod noise;
 // Parameters and sensor errors that explain the evidence best.
 pub mod refit;
 // Where records begin that only judge.

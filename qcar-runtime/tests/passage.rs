@@ -9,7 +9,7 @@ use std::fs;
 use std::path::Path;
 
 use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::nuisance::{Form, Nuisance};
+use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Kind, Means, predict};
 use qcar_runtime::discover::refit::refit_with;
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};

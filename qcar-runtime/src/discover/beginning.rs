@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::nuisance::Nuisance;
+use super::noise::Nuisance;
 use super::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
 use crate::campaign::Role;
 use crate::model::Model;

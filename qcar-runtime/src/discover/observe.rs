@@ -2,7 +2,7 @@
 //!
 //! A data set is made of series. Every series knows its run, its sensor and what its values are; every run its role, its
 //! level and what drove it. Uncertainty is the noise of a value, independent from line to line. What is common to all lines
-//! of a sensor, such as its calibration, is not in it: see [`nuisance`](super::nuisance). Each kind of run has a module of
+//! of a sensor, such as its calibration, is not in it: see [`noise`](super::noise). Each kind of run has a module of
 //! its own, which reads what was measured and predicts the same of a model.
 
 // Sensors in the words of a model.

@@ -17,8 +17,7 @@ mod settle;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::discrepancy::Discrepancy;
-use super::nuisance::{Beginning, Nuisance};
+use super::noise::{Beginning, Discrepancy, Nuisance};
 use super::observe::{Evidence, Free, PredictError, Prediction};
 use crate::campaign::Role;
 use crate::least_squares::{Problem, Stop};

@@ -27,8 +27,8 @@ use visible::visible;
 
 use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
 use super::candidate::{Candidate, Workshop};
-use super::discrepancy::Discrepancy;
 use super::explain::{Explanation, Setting};
+use super::noise::Discrepancy;
 use super::numbers::{MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Stimulus};
 use super::refit::Refit;

@@ -3,7 +3,7 @@
 use nalgebra::DVector;
 
 use crate::campaign::Role;
-use crate::discover::nuisance::Nuisance;
+use crate::discover::noise::Nuisance;
 use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, Stimulus, predict_sides};
 use crate::model::Model;
 use crate::response::parameters::Values;

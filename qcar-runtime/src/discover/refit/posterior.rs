@@ -7,8 +7,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::Refit;
 use crate::campaign::Role;
-use crate::discover::discrepancy::Discrepancy;
-use crate::discover::nuisance::{Nuisance, STRAINED};
+use crate::discover::noise::{Discrepancy, Nuisance, STRAINED};
 use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, Series, Stimulus, predict_sides};
 use crate::least_squares::information::Information;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};

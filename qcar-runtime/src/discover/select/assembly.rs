@@ -5,10 +5,9 @@ use std::sync::Arc;
 
 use super::taken::Taken;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::discrepancy::Discrepancy;
 use crate::discover::explain::{Explanation, Given, Setting};
 use crate::discover::gap::Gap;
-use crate::discover::nuisance::{Beginning, Form, Nuisance};
+use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::discover::refit::{Refit, Start, fit, settle};
 use crate::model::Model;

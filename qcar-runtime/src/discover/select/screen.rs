@@ -13,8 +13,7 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Hypothesis, Place};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
-use crate::discover::discrepancy::Discrepancy;
-use crate::discover::nuisance::Form;
+use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::{Evidence, PredictError};
 use crate::discover::refit::Refit;
 

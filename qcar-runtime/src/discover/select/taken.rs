@@ -2,7 +2,7 @@
 
 use crate::discover::candidate::{Added, Candidate, Change};
 use crate::discover::explain::Explanation;
-use crate::discover::nuisance::{Form, Nuisance};
+use crate::discover::noise::{Form, Nuisance};
 
 /// An effect in the model.
 #[derive(Clone)]

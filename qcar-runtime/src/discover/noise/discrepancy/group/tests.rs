@@ -1,3 +1,5 @@
+use std::mem::discriminant;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::*;
