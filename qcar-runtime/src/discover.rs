@@ -10,25 +10,18 @@ pub mod numbers;
 pub mod observe;
 // What differs between a measurement and a model that is right.
 pub mod noise;
-// Parameters and sensor errors that explain the evidence best.
-pub mod refit;
-// Where records begin that only judge.
-pub mod beginning;
-// What is left, in units of uncertainty: how much, and where.
-pub mod gap;
+// Parameters given the evidence, and what they leave.
+pub mod posterior;
 // What would have to be added, and at which place.
 pub mod kappa;
 
 // What might be missing.
 pub mod candidate;
-// How well a model explains the evidence.
-pub mod explain;
 // What a search answers.
 pub mod answer;
 // Which effect is missing.
 pub mod select;
 
-pub use gap::Gap;
 pub use kappa::{Kappa, Place, Sweeps, kappa_map};
 pub use observe::{Evidence, Free};
-pub use refit::{Refit, refit};
+pub use posterior::{Gap, Refit, refit};

@@ -8,7 +8,7 @@ use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
 use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
-use qcar_runtime::discover::refit::refit_with;
+use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;

@@ -11,7 +11,7 @@ use std::path::Path;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Kind, Means, predict};
-use qcar_runtime::discover::refit::refit_with;
+use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;

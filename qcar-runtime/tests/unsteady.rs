@@ -13,7 +13,7 @@ use std::path::Path;
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::discover::observe::{Kind, Misread, Stimulus, predict, unsteady};
-use qcar_runtime::discover::refit::{refit, settle};
+use qcar_runtime::discover::posterior::{refit, settle};
 use qcar_runtime::discover::{Evidence, Free, Gap};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;

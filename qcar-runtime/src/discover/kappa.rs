@@ -19,9 +19,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::Complex;
 
-use super::gap::Gap;
 use super::observe::{Evidence, Free, Kind, PredictError, Stimulus, predict};
-use super::refit::{Refit, refit};
+use super::posterior::{Gap, Refit, refit};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;

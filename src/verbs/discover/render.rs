@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
-use qcar_runtime::discover::explain::Explanation;
-use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::{Explanation, Tile};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
@@ -219,7 +218,7 @@ fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
             .iter()
             .zip(residuals)
             .filter(|(series, _)| series.sensor == *sensor);
-        qcar_runtime::discover::gap::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
+        qcar_runtime::discover::posterior::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
     };
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
     let named = sensors.into_iter().map(|sensor| {

@@ -3,8 +3,8 @@
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;
 use qcar_runtime::discover::Kappa;
-use qcar_runtime::discover::gap::Tile;
 use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::Tile;
 use serde::Serialize;
 
 use super::gather::Study;

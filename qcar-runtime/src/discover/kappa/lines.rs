@@ -9,7 +9,7 @@ use nalgebra::Complex;
 use super::straight::Straight;
 use super::{Kappa, KappaRun, Place};
 use crate::discover::observe::{Evidence, Kind, Prediction, Series};
-use crate::discover::refit::Refit;
+use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;
 
 /// Lines on each side over which a change is taken as straight: a smooth law bends little over them, chance does not

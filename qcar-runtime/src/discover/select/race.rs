@@ -12,7 +12,7 @@ use super::screen::Prospect;
 use super::{News, Progress};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
-use crate::discover::refit::Refit;
+use crate::discover::posterior::Refit;
 
 /// What the rounds look at.
 pub struct Fidelity {

@@ -15,7 +15,7 @@ use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::{Evidence, PredictError};
-use crate::discover::refit::Refit;
+use crate::discover::posterior::Refit;
 
 /// A candidate with the places from which it should be fitted.
 pub struct Prospect {

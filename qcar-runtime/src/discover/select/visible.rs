@@ -12,7 +12,7 @@ use crate::discover::answer::Visible;
 use crate::discover::candidate::Candidate;
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
-use crate::discover::refit::Refit;
+use crate::discover::posterior::Refit;
 
 /// Each effect of the model at each place, in its usual form, the best seen first.
 pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {

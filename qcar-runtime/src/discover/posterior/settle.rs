@@ -1,6 +1,7 @@
 //! The end of a refit: what its sweeps show beyond their steady harmonics.
 
-use super::{Posterior, Refit};
+use super::problem::Posterior;
+use super::refit::Refit;
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, PredictError, Series, Stimulus, unsteady};
 use crate::model::Model;

@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use super::beginning::beginnings;
-use super::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
-use super::refit::{Refit, scaled};
+use super::refit::Refit;
+use super::residual::scaled;
 use crate::campaign::Role;
+use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
 use crate::model::Model;
 use crate::transmissibility::Point;
 

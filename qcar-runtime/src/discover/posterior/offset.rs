@@ -18,7 +18,7 @@ const ROUNDING: f64 = 1e-9;
 ///
 /// # Errors
 /// Where the model lacks what was measured.
-pub(super) fn once(
+pub fn once(
     mut nuisance: Nuisance,
     model: &dyn Model,
     values: &Values,

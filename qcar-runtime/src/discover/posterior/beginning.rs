@@ -5,9 +5,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::noise::Nuisance;
-use super::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
 use crate::campaign::Role;
+use crate::discover::noise::Nuisance;
+use crate::discover::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
 use crate::model::Model;
 use crate::response::parameters::Values;
 

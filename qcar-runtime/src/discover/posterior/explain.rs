@@ -3,8 +3,8 @@
 use std::collections::BTreeMap;
 
 use super::gap::Gap;
-use super::observe::PredictError;
 use super::refit::Refit;
+use crate::discover::observe::PredictError;
 use crate::model::About;
 use crate::response::parameters::Values;
 
