@@ -5,7 +5,7 @@ mod strut;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
-use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
+use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
 use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use qcar_runtime::discover::posterior::refit_with;

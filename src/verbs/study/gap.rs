@@ -127,7 +127,7 @@ pub fn explanations(of: &Study) -> Vec<Explanation> {
     sites(&of.answer).into_iter().take(SHOWN).map(explanation).collect()
 }
 
-fn stiffness(of: &qcar_runtime::discover::kappa::KappaRun) -> Stiffness {
+fn stiffness(of: &qcar_runtime::discover::locate::KappaRun) -> Stiffness {
     Stiffness {
         level: of.level,
         frequency: curve(of.frequency.iter().copied()),

@@ -19,7 +19,7 @@ pub struct Gap {
     pub held_out: f64,
     /// The same by series, in the order of the evidence.
     pub series: Vec<f64>,
-    /// The residuals of every series, as [`Series::residuals`](super::observe::Series::residuals) counts them.
+    /// The residuals of every series, as [`Series::residuals`] counts them.
     pub residuals: Vec<Vec<f64>>,
     /// Where it is, the strongest first.
     pub tiles: Vec<Tile>,

@@ -6,8 +6,8 @@
 
 use nalgebra::Complex;
 
+use super::kappa::{Kappa, KappaRun, Place};
 use super::straight::Straight;
-use super::{Kappa, KappaRun, Place};
 use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;

@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
-use super::{Kappa, KappaRun, Place};
+use super::kappa::{Kappa, KappaRun, Place};
 
 /// The coarse law behind a κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
