@@ -16,7 +16,7 @@ mod lines;
 mod map;
 // Those that explain the sweeps.
 mod sweeps;
-// What κ looks like.
+// Which kind of law that is.
 mod shape;
 
 pub use kappa::{Kappa, KappaRun, Place};

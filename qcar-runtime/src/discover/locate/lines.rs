@@ -12,7 +12,7 @@ use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;
 
-/// Lines on each side over which a change is taken as straight: a smooth law bends little over them, chance does not
+/// Lines on each side over which a change is taken as straight: a smooth law hardly curves over them, chance does not
 /// care.
 const SMOOTH: usize = 2;
 
@@ -139,9 +139,9 @@ impl Lines {
                 let along = direction.of(sensor);
                 for line in 0..run.frequency.len() {
                     let q = changes[line].0;
-                    let told = along.map_or(Complex::ZERO, |along| along[line] * q / (1.0 + q * h[line]));
+                    let explained = along.map_or(Complex::ZERO, |along| along[line] * q / (1.0 + q * h[line]));
                     let weight = sensor.sigma[line].powi(-2);
-                    left += (sensor.residual[line] - told).norm_sqr() * weight;
+                    left += (sensor.residual[line] - explained).norm_sqr() * weight;
                     all += sensor.residual[line].norm_sqr() * weight;
                 }
             }

@@ -17,7 +17,7 @@ const FINITE: f64 = 0.3;
 
 /// κ at every place of the model, the best explanation first.
 ///
-/// Held-out runs are not looked at. The base model is best refitted with some tolerance
+/// Held-out runs are left out. The base model is best refitted with some tolerance
 /// ([`Evidence::tolerant`]), since a wrong model that is pressed to fit hides its fault in all its parameters.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! What κ looks like: the coarse law behind it.
+//! Which kind of law a κ belongs to.
 
 use std::f64::consts::TAU;
 
@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::kappa::{Kappa, KappaRun, Place};
 
-/// The coarse law behind a κ.
+/// The kind of law that a κ belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
@@ -41,19 +41,19 @@ impl Shape {
     }
 }
 
-/// A law is taken for what it is like if it accounts for so much of κ,
+/// A law is of a kind if that accounts for so much of κ,
 const ENOUGH: f64 = 0.8;
 /// and leaves no more than so many times what the best leaves.
 const AS_GOOD: f64 = 1.5;
 /// κ depends on the level where the difference between levels is more than this share of it.
 const DIFFERS: f64 = 0.5;
-/// Least relative uncertainty of κ: a coarse look.
+/// Least relative uncertainty of κ: a coarse classification.
 const COARSE: f64 = 0.05;
 /// Natural frequencies (Hz), damping ratios and relaxation frequencies (Hz) that are tried.
 const FREQUENCIES: [f64; 13] = [1.0, 1.5, 2.2, 3.3, 4.7, 6.8, 10.0, 12.0, 15.0, 22.0, 33.0, 47.0, 100.0];
 const RATIOS: [f64; 3] = [0.05, 0.15, 0.4];
 
-/// What κ looks like.
+/// The kind of law of a κ.
 pub fn shape(kappa: &Kappa) -> Shape {
     if let Some(shape) = over_level(&kappa.runs) {
         return shape;
@@ -78,7 +78,7 @@ pub fn shape(kappa: &Kappa) -> Shape {
     shares.iter().find(like).map_or(Shape::Other, |(shape, _)| *shape)
 }
 
-/// What κ looks like where it depends on the level; `None` where it does not.
+/// The kind of law of a κ that depends on the level; `None` where it does not.
 fn over_level(runs: &[KappaRun]) -> Option<Shape> {
     let by_level = |a: &&KappaRun, b: &&KappaRun| a.level.total_cmp(&b.level);
     let (small, large) = (runs.iter().min_by(by_level)?, runs.iter().max_by(by_level)?);

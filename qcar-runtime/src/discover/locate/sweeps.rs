@@ -22,7 +22,7 @@ pub struct Sweeps {
 const TOLERANCE: f64 = 0.1;
 
 impl Sweeps {
-    /// Looks for the places that explain what a refitted model leaves of the sweeps.
+    /// Finds the places that explain what a fitted model leaves of the sweeps.
     ///
     /// # Errors
     /// Where the model lacks what was measured.

@@ -11,7 +11,7 @@ use crate::discover::observe::{Evidence, Kind, Misread, Prediction, Run, Series,
 
 impl Nuisance {
     /// How late the sensor of each series is against what drove its run, where that is no phase, and how much harder each
-    /// run was driven than its reference shows: in proportion to the amplitude nothing would come of that, but laws bend.
+    /// run was driven than its reference shows: a linear model is not changed by that, a nonlinear one is.
     pub fn misread(&self, evidence: &Evidence, coefficients: &[f64]) -> Misread {
         let late = |series: &Series| {
             let delays = self.late_by(evidence, series).into_iter();

@@ -4,7 +4,7 @@
 mod measured;
 // What a linear model says.
 mod linear;
-// What a model says whose laws are not linear.
+// What a nonlinear model says.
 mod nonlinear;
 // What a sweep shows beyond its steady harmonics, since it never settles.
 mod unsteady;

@@ -1,4 +1,4 @@
-//! A data set in part, or with other eyes: what searches look at.
+//! A data set in part, or with other uncertainty: what the stages of a search are fitted to.
 
 use nalgebra::Complex;
 
@@ -31,7 +31,7 @@ impl Evidence {
         hurried
     }
 
-    /// The same with every so many-th value of each series, for a first look; of a history and a ride their beginning,
+    /// The same with every so many-th value of each series, for a coarse fit; of a history and a ride their beginning,
     /// since a model has to be driven through whatever it is held against.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
@@ -82,7 +82,7 @@ impl Evidence {
 impl Stimulus {
     /// Leaves less of a record through which a model has to be driven, so many times less of a history and half of a
     /// ride whose values stand `at` these times: when it ends now, and by how much fewer of its values are then to be
-    /// looked at. Anything else stays.
+    /// compared. Anything else stays.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
             // Part of a period is no period.

@@ -18,7 +18,7 @@ pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evide
     refit_with(model, values, free, evidence, Nuisance::of(evidence), MOST_EVALUATIONS)
 }
 
-/// How often a refit may evaluate the model unless told otherwise.
+/// How often a refit may evaluate the model by default.
 const MOST_EVALUATIONS: usize = 60;
 
 /// The same with sensors that may be wrong as `nuisance` says, and at most so many evaluations.
@@ -46,13 +46,13 @@ pub fn refit_with(
 pub struct Start<'a> {
     /// All parameters.
     pub values: &'a Values,
-    /// The errors of sensors with the logarithms of the recorded side's factors behind them, zero beyond those that are known.
+    /// The errors of sensors with the logarithms of the recorded side's factors after them, zero beyond those that are known.
     pub errors: &'a [f64],
     /// With which states records were found to begin; others begin as they are seen.
     pub begun: &'a [(Beginning, f64)],
     /// Where the priors of the parameters are centred.
     pub centre: &'a Values,
-    /// What the model is taken to miss at first.
+    /// The discrepancy to begin with.
     pub discrepancy: Discrepancy,
 }
 

@@ -1,4 +1,4 @@
-//! What is left between measurement and model, in units of uncertainty: how much, and where.
+//! The residuals of a fit over all runs, in units of their uncertainty: how large they are, and where.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sid
 use crate::model::Model;
 use crate::transmissibility::Point;
 
-/// The gap of a model after its refit. 1 is the noise.
+/// The gap of a model after its fit: its residuals over their uncertainty. An RMS of 1 is the noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
     /// RMS of (measured - modelled) over its uncertainty, on the runs that were fitted; NaN without any.

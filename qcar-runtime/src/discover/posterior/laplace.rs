@@ -15,12 +15,12 @@ impl Posterior<'_> {
     pub fn refit(&mut self, outcome: Outcome) -> Refit {
         let count = self.free.len();
         let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
-        // Not knowing where a parameter is tells nothing of where it is.
-        let told = outcome
+        // The priors of free parameters are no information: errors are those of the data.
+        let informative = outcome
             .jacobian
             .rows(0, self.residuals + self.sigmas.len())
             .into_owned();
-        let information = Information::new(&told, &inside);
+        let information = Information::new(&informative, &inside);
         self.move_to(&outcome.x);
         Refit {
             values: self.values.clone(),

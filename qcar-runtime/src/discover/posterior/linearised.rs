@@ -39,7 +39,7 @@ impl Refit {
         posterior.side = side;
         posterior.by_evidence = self.discrepancy.is_some();
         let mut residual = vec![0.0; posterior.residuals()];
-        posterior.look(coefficients, &mut residual, false);
+        posterior.residual_and_slopes(coefficients, &mut residual, false);
         residual.truncate(posterior.residuals);
         residual
             .iter()

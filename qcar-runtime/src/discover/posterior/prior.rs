@@ -6,8 +6,8 @@ use crate::model::Model;
 /// Standard deviation of the logarithm of a side's factor: parts of one drawing, and springs of one batch.
 pub const SIDE: f64 = 0.015;
 
-/// How far a parameter strays from where a search begins for next to nothing: a factor of ten, or the whole of a range
-/// that reaches zero. What a part of the evidence hardly sees stays where all of it looks next.
+/// Standard deviation of a weak prior around where a search begins: a factor of ten, or the whole of a range that reaches
+/// zero. What a part of the data hardly determines stays where the fit to all of them begins.
 const STRAY: f64 = std::f64::consts::LN_10;
 
 impl Free {
@@ -24,7 +24,7 @@ impl Free {
         }
     }
 
-    /// How far it is from its start, in units of [`STRAY`], and the derivative of that.
+    /// How far it is from its start in standard deviations of a weak prior, and the derivative of that.
     pub(super) fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
         if self.lower > 0.0 {
             ((value / start.max(self.lower)).ln() / STRAY, 1.0 / (value * STRAY))

@@ -1,4 +1,4 @@
-//! The least-squares problem of a fit: residuals of the data, whitened by the discrepancy, and behind them those of the
+//! The least-squares problem of a fit: residuals of the data, whitened by the discrepancy, followed by those of the
 //! priors.
 
 use nalgebra::Complex;
@@ -45,8 +45,8 @@ pub struct Posterior<'a> {
     has_answered: bool,
     /// What the sweeps add to their balance, series by series.
     pub unsteady: Vec<Vec<Complex<f64>>>,
-    /// Where the residual was looked at last, and what sweeps show there: a step that is taken asks for it again.
-    pub looked: Option<(Vec<f64>, Vec<Prediction>)>,
+    /// Where the residual was evaluated last, and the predicted sweeps there: an accepted step asks for them again.
+    pub last: Option<(Vec<f64>, Vec<Prediction>)>,
 }
 
 impl<'a> Posterior<'a> {
@@ -75,7 +75,7 @@ impl<'a> Posterior<'a> {
             refused: None,
             has_answered: false,
             unsteady: vec![Vec::new(); evidence.series.len()],
-            looked: None,
+            last: None,
             values,
         }
     }
@@ -133,7 +133,7 @@ impl<'a> Posterior<'a> {
             let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
             predict_sides(self.model, both, &misread, free, self.evidence, &wanted)
         };
-        let swept = match self.looked.take().filter(|(at, _)| at == x) {
+        let swept = match self.last.take().filter(|(at, _)| at == x) {
             Some((_, swept)) => swept,
             None => {
                 let mut swept = predict(&self.free, true)?;
@@ -144,8 +144,8 @@ impl<'a> Posterior<'a> {
         Ok([swept, predict(free, false)?])
     }
 
-    /// Writes the residual, and gives the columns of the Jacobian, of the data alone, where they are wanted.
-    pub fn look(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
+    /// Writes the residual; gives the columns of the Jacobian, of the data alone, where these are wanted.
+    pub fn residual_and_slopes(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
         let free = if sloped { self.free.clone() } else { Vec::new() };
         let [swept, others] = match self.predictions(x, &free) {
             Ok(predictions) => predictions,
@@ -164,7 +164,7 @@ impl<'a> Posterior<'a> {
         for prediction in predictions {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
-        self.looked = Some((x.to_vec(), swept));
+        self.last = Some((x.to_vec(), swept));
         if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
             discrepancy.whiten(&mut rows);
             columns.iter_mut().for_each(|column| discrepancy.whiten(column));
@@ -233,7 +233,7 @@ impl Problem for Posterior<'_> {
     }
 
     fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        let columns = self.look(x, residual, true);
+        let columns = self.residual_and_slopes(x, residual, true);
         for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
             into.fill(0.0);
             into[..column.len()].copy_from_slice(column);
@@ -246,7 +246,7 @@ impl Problem for Posterior<'_> {
 
     /// Differentiated by differences, rides and histories cost many times more than alone.
     fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
-        self.look(x, residual, false);
+        self.residual_and_slopes(x, residual, false);
         true
     }
 }

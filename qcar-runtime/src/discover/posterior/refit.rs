@@ -1,4 +1,4 @@
-//! What a fit gives.
+//! What a fit gives: the maximum a posteriori with its errors.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -28,7 +28,7 @@ pub struct Refit {
     pub nuisance: Nuisance,
     /// Their errors.
     pub coefficients: Vec<f64>,
-    /// Standard errors of these; NaN for one that nothing tells of.
+    /// Standard errors of these; NaN for one that nothing determines.
     pub coefficient_stderr: Vec<f64>,
     /// Sum of squares of all residuals, priors included.
     pub chi2: f64,
@@ -45,7 +45,7 @@ pub struct Refit {
     /// Relative standard deviation of what the mean of the measured sides has by chance: of the parts that were made for one
     /// drawing, two are measured.
     pub made: f64,
-    /// What the model was taken to show of each series beyond what a search predicts: nothing before it has settled.
+    /// What the model shows of each series beyond what a search predicts: nothing before it has settled.
     pub unsteady: Vec<Vec<Complex<f64>>>,
     /// Evaluations of residual and Jacobian.
     pub evaluations: usize,

@@ -8,8 +8,8 @@ use crate::discover::noise::STRAINED;
 use crate::discover::observe::PredictError;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 
-/// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not buy its
-/// way out by sides that no car has.
+/// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not
+/// explain it by sides that no car has.
 const MOST: f64 = 3.0;
 
 /// The most that the error of a sensor differs from its prior by, in standard deviations, where a discrepancy is fitted: no
@@ -37,7 +37,7 @@ impl Posterior<'_> {
             upper: upper.collect(),
         };
         self.start = start.to_vec();
-        self.looked = None;
+        self.last = None;
         let outcome = minimize(self, start, &bounds, &options);
         self.refused.take().map_or(Ok(outcome), Err)
     }
@@ -68,7 +68,7 @@ impl Posterior<'_> {
             return;
         };
         let mut residual = vec![0.0; self.residuals()];
-        self.look(place, &mut residual, false);
+        self.residual_and_slopes(place, &mut residual, false);
         residual.truncate(self.residuals);
         if residual.iter().all(|r| r.is_finite()) {
             discrepancy.learn(&residual);

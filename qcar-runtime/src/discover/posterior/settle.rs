@@ -11,7 +11,7 @@ const ROUNDS: usize = 2;
 /// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
 const TO_SETTLE: usize = 20;
 
-/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone does not look at: see
+/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone leaves out: see
 /// [`unsteady`].
 ///
 /// # Errors

@@ -134,7 +134,7 @@ impl Bench {
         Some(forces)
     }
 
-    /// Whether anything that differs between two parameter sets acts on what the rig looks at.
+    /// Whether anything that differs between two parameter sets acts on what the rig measures.
     fn feels(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
         let held = [self.wheel_speed, self.held_speed];
         let is_seen = |row: usize| held.contains(&row) || self.between.iter().any(|b| b.row() == row);

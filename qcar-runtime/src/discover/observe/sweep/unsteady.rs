@@ -147,7 +147,7 @@ struct Driven<'a> {
 }
 
 impl Driven<'_> {
-    /// What sensors then show of a model whose laws bend.
+    /// What sensors then show of a nonlinear model.
     fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
         let recorded = Recorded {
             excitation: self.excitation,

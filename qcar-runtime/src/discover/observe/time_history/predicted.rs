@@ -146,9 +146,9 @@ fn between(signal: &[f64], place: f64) -> (f64, f64) {
     let (first, t) = (place.floor() as i64, place - place.floor());
     let last = signal.len() as i64 - 1;
     let [a, b, c, d] = [-1, 0, 1, 2].map(|k| signal[(first + k).clamp(0, last) as usize]);
-    let (slope, bend, twist) = (c - a, 2.0 * a - 5.0 * b + 4.0 * c - d, d - a + 3.0 * (b - c));
-    let value = b + t / 2.0 * (slope + t * (bend + t * twist));
-    (value, (slope + t * (2.0 * bend + 3.0 * t * twist)) / 2.0)
+    let (slope, curvature, twist) = (c - a, 2.0 * a - 5.0 * b + 4.0 * c - d, d - a + 3.0 * (b - c));
+    let value = b + t / 2.0 * (slope + t * (curvature + t * twist));
+    (value, (slope + t * (2.0 * curvature + 3.0 * t * twist)) / 2.0)
 }
 
 /// The replay of a run, read by some sensors.
