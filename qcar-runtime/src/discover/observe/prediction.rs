@@ -3,6 +3,8 @@
 use nalgebra::Complex;
 use thiserror::Error;
 
+use super::run::Run;
+use crate::model::About;
 use crate::response::parameters::ParameterError;
 use crate::response::signal::SignalError;
 use crate::simulate::SimulateError;
@@ -113,4 +115,15 @@ pub enum PredictError {
         /// Why.
         reason: SimulateError,
     },
+}
+
+impl PredictError {
+    /// Of a run that something drives which is no input of the model.
+    pub(super) fn no_input(about: &About, run: &Run, location: &str) -> Self {
+        PredictError::NoInput {
+            model: about.name.to_string(),
+            location: location.to_owned(),
+            run: run.name.clone(),
+        }
+    }
 }

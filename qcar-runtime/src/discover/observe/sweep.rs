@@ -21,9 +21,6 @@ use crate::transmissibility::Point;
 
 /// The excitation of the model that a sensor measured in a run.
 fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Point) -> Result<usize, PredictError> {
-    excitation_of(model.about(), reference).ok_or_else(|| PredictError::NoInput {
-        model: model.about().name.to_string(),
-        location: reference.location.clone(),
-        run: evidence.runs[run].name.clone(),
-    })
+    excitation_of(model.about(), reference)
+        .ok_or_else(|| PredictError::no_input(model.about(), &evidence.runs[run], &reference.location))
 }

@@ -39,11 +39,7 @@ pub fn travel(
         Stimulus::Sine { on, axis, frequency } => (on, *axis, Course::sine(of_run.level, *frequency)),
         _ => return Ok(Vec::new()),
     };
-    let unmoved = || PredictError::NoInput {
-        model: model.about().name.to_string(),
-        location: on.wheel.clone(),
-        run: of_run.name.clone(),
-    };
+    let unmoved = || PredictError::no_input(model.about(), of_run, &on.wheel);
     let bench = Bench::new(model.about(), on, axis).ok_or_else(unmoved)?;
     let (moved, steps): (Vec<_>, Vec<_>) = free.iter().map(|free| moved(values, free)).unzip();
     let forces = bench.forces(model, values.as_slice(), &moved, &course.path);

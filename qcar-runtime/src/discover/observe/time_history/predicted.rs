@@ -168,11 +168,12 @@ fn prepare<'a>(
         ..
     } = &evidence.runs[run].stimulus
     else {
-        return Err(no_input(about, evidence, run, "record"));
+        return Err(PredictError::no_input(about, &evidence.runs[run], "record"));
     };
     let mut recorded = Vec::new();
     for (point, samples) in &inputs.signals {
-        let excitation = excitation_of(about, point).ok_or_else(|| no_input(about, evidence, run, &point.location))?;
+        let excitation = excitation_of(about, point)
+            .ok_or_else(|| PredictError::no_input(about, &evidence.runs[run], &point.location))?;
         recorded.push(Recorded {
             excitation,
             power: order_of(point),
@@ -218,12 +219,4 @@ fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
     seen.iter()
         .filter_map(|(point, value)| Some((place(point)?, *value)))
         .collect()
-}
-
-fn no_input(about: &About, evidence: &Evidence, run: usize, location: &str) -> PredictError {
-    PredictError::NoInput {
-        model: about.name.to_string(),
-        location: location.to_owned(),
-        run: evidence.runs[run].name.clone(),
-    }
 }
