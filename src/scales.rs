@@ -12,7 +12,7 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::patch::{Scale, watched};
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::evidence::{Kind, Run, Stimulus, signal_of};
+use qcar_runtime::discover::observe::{Kind, Run, Stimulus, signal_of};
 use qcar_runtime::model::{About, Excitation, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;

@@ -6,23 +6,40 @@ use clap::{Args, ValueEnum};
 
 use crate::parameters::Setting;
 
-pub mod check;
-pub mod compare;
+// The verbs themselves.
 pub mod completions;
-pub mod diff;
-pub mod discover;
-pub mod effects;
-pub mod fit;
-pub mod frf;
-pub mod inspect;
-pub mod kc;
-pub mod matrices;
+// A model file: begun,
 pub mod new;
-pub mod patch;
-pub mod score;
+// checked,
+pub mod check;
+// looked at,
 pub mod show;
+// beside another,
+pub mod diff;
+// with effects of the catalogue
+pub mod effects;
+// in it.
+pub mod patch;
+// What a model says: its matrices
+pub mod matrices;
+// and its frequency response.
+pub mod frf;
+// What was measured: the channels of a file
+pub mod inspect;
+// and K&C curves,
+pub mod kc;
+// a model fitted to it,
+pub mod fit;
+// to one whose answer is known,
+pub mod score;
+// driven over its roads,
 pub mod simulate;
+// and what it lacks.
+pub mod discover;
+// All of that at once,
 pub mod study;
+// or of two sides.
+pub mod compare;
 
 /// A model and the values of its parameters.
 #[derive(Args)]

@@ -10,7 +10,7 @@ use qcar_dsl::patch::{self, NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::Axis;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
-use qcar_runtime::discover::nuisance::Form;
+use qcar_runtime::discover::noise::Form;
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
 

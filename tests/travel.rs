@@ -11,8 +11,7 @@ use qcar::effects;
 use qcar::workshop::Bench;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::candidate::Workshop;
-use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::predict::predict;
+use qcar_runtime::discover::observe::{Kind, predict};
 use qcar_runtime::discover::{Evidence, Free};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -112,7 +111,7 @@ fn middle((low, high): (f64, f64)) -> f64 {
 /// The largest difference between the forces that were measured and those of a model, N.
 fn worst(model: &dyn Model, values: &Values, evidence: &Evidence) -> f64 {
     let predictions = predict(model, values, &[], evidence, Role::Fit).unwrap();
-    let of = |p: &qcar_runtime::discover::predict::Prediction| {
+    let of = |p: &qcar_runtime::discover::observe::Prediction| {
         let measured = &evidence.series[p.series].value;
         let pairs = measured.iter().zip(&p.value);
         pairs
@@ -211,7 +210,7 @@ fn loops_of_several_speeds_tell_friction_from_a_damper() {
         let given: Vec<_> = effect.iter().copied().chain([("c_wheel_z", DAMPING)]).collect();
         let values = values(model, &given);
         let predictions = predict(model, &values, &[], &evidence, Role::Fit).unwrap();
-        let of = |p: &qcar_runtime::discover::predict::Prediction| {
+        let of = |p: &qcar_runtime::discover::observe::Prediction| {
             let series = &evidence.series[p.series];
             let unit = if series.kind.complex() { AMPLITUDE } else { 1.0 };
             let pairs = series.value.iter().zip(&p.value);

@@ -4,15 +4,24 @@
 //! and its operation count; every statement is one operation, every result says what it is. It is written as text and
 //! not as tokens, since tokens carry no comments. It needs `qcar_runtime` and nothing else.
 
+// What the runtime is told about a model.
 mod about;
-mod function;
-mod labels;
+// Identifiers.
 mod names;
+// What each result is, in words.
+mod labels;
+// The parameters as a type.
 mod parameters;
+// A long program in pieces.
 mod pieces;
-mod seam;
-mod straight;
+// A piece as a function.
+mod function;
+// Sizes and functions over typed vectors.
 mod typed;
+// The functions over arrays.
+mod straight;
+// The trait.
+mod seam;
 
 use crate::schedule::Compiled;
 

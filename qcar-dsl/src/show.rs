@@ -1,8 +1,11 @@
 //! What the compiler has understood, for people: each stage of a model as text.
 
+// Masses and links as a graph.
 mod dot;
-mod latex;
+// Nonzeros row by row.
 mod matrices;
+// Both for a paper.
+mod latex;
 
 use crate::equations::{Equation, Sheet};
 use crate::notation::Notation;

@@ -1,39 +1,27 @@
-//! Where simulation and measurement disagree, and by how much more than they may.
+//! Which effect a model lacks: sets of effects compared by their evidence, given what was measured.
 //!
-//! The modules stand in the order of the data: what a campaign holds becomes evidence, a model predicts it, sensors may
-//! be wrong to the extent of their calibration, a refit takes out what parameters can explain, and what is left is the
-//! gap. Nothing here knows an effect, or an axle, by name.
+//! The modules stand in the order of the data. What a campaign holds becomes a data set beside its predictions; sensors are
+//! wrong to the extent of their calibration, and any model misses something; a fit finds what parameters and these can
+//! explain together; the residuals say where something is missing; and sets of effects compete by their evidence.
+//! Nothing here knows an effect, or an axle, by name.
 
 // The numbers of the search that no data give.
 pub mod numbers;
-// What a campaign holds: series of measured values with their uncertainty.
-pub mod evidence;
-// What a model says of the evidence.
-pub mod predict;
-// What any model of this kind misses.
-pub mod discrepancy;
-// What sensors may be wrong by, in all runs alike.
-pub mod nuisance;
-// Parameters and sensor errors that explain the evidence best.
-pub mod refit;
-// Where records begin that only judge.
-pub mod beginning;
-// What is left, in units of uncertainty: how much, and where.
-pub mod gap;
+// What was measured, beside what a model says of it.
+pub mod observe;
+// What differs between a measurement and a right model: errors of sensors, and the discrepancy.
+pub mod noise;
+// Parameters given the data, the evidence of a model, and what is left.
+pub mod posterior;
 // What would have to be added, and at which place.
-pub mod kappa;
-
+pub mod locate;
 // What might be missing.
 pub mod candidate;
-// How well a model explains the evidence.
-pub mod explain;
 // What a search answers.
 pub mod answer;
 // Which effect is missing.
 pub mod select;
 
-pub use evidence::Evidence;
-pub use gap::Gap;
-pub use kappa::{Kappa, Place, Sweeps, kappa_map};
-pub use predict::Free;
-pub use refit::{Refit, refit};
+pub use locate::{Kappa, Place, Sweeps, kappa_map};
+pub use observe::{Evidence, Free};
+pub use posterior::{Gap, Refit, refit};

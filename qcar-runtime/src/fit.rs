@@ -28,3 +28,21 @@ pub use observation::{Level, Observation};
 pub use plan::{Plan, Weighting};
 pub use report::Fit;
 pub use setup::Setup;
+
+use crate::model::Model;
+use crate::progress::{Told, UNTOLD};
+use search::Search;
+
+impl<M: Model + ?Sized> Setup<'_, M> {
+    /// Searches from all starts and reports the best minimum with its error bars.
+    pub fn fit(&self) -> Fit {
+        self.fit_telling(UNTOLD)
+    }
+
+    /// The same; `told` hears search by search how far it is.
+    pub fn fit_telling(&self, told: Told<'_>) -> Fit {
+        let search = Search::run(self, told);
+        let uncertainty = uncertainty::estimate(self, &search.best);
+        report::report(self, &search, &uncertainty)
+    }
+}

@@ -1,6 +1,6 @@
 //! The workbench: from a measurement campaign to a finding.
 //!
-//! The modules stand in the order of the data; a file uses only what is declared above it.
+//! The modules stand in the order of the data, here and in every list below; a file uses only what is declared above it.
 
 pub use nalgebra;
 

@@ -16,10 +16,12 @@ mod fastest;
 // The two methods.
 mod dormand_prince;
 mod rk4;
-// For what is linear but for its forces.
-mod exponential;
+// For what is linear but for its forces: exponentials of matrices,
 mod matrix;
+// polynomials through past forces,
 mod polynomial;
+// and steps.
+mod exponential;
 
 pub use dormand_prince::{DormandPrince, Settings};
 pub use exponential::{Driven, ExponentialAdams};

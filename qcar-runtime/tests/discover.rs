@@ -5,10 +5,10 @@ mod strut;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
-use qcar_runtime::discover::evidence::{Evidence, Kind, Run, Series, Stimulus};
-use qcar_runtime::discover::kappa::{Kappa, KappaRun, Shape, shape};
-use qcar_runtime::discover::nuisance::{Form, Nuisance};
-use qcar_runtime::discover::refit::refit_with;
+use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
+use qcar_runtime::discover::noise::{Form, Nuisance};
+use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
+use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -51,7 +51,7 @@ impl Random {
 fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Evidence {
     let frequency = logarithmic(0.6, 28.0, 60);
     let values = resolve(model, p);
-    let signal = |point: &Point| qcar_runtime::discover::evidence::signal_of(model.about(), point);
+    let signal = |point: &Point| qcar_runtime::discover::observe::signal_of(model.about(), point);
     let mut random = Random(7);
     let (mut runs, mut series) = (Vec::new(), Vec::new());
     for (run, (level, role)) in [(0.025, Role::Fit), (0.1, Role::HeldOut)].into_iter().enumerate() {

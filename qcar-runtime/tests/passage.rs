@@ -9,11 +9,9 @@ use std::fs;
 use std::path::Path;
 
 use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::evidence::means::Means;
-use qcar_runtime::discover::nuisance::{Form, Nuisance};
-use qcar_runtime::discover::predict::predict;
-use qcar_runtime::discover::refit::refit_with;
+use qcar_runtime::discover::noise::{Form, Nuisance};
+use qcar_runtime::discover::observe::{Kind, Means, predict};
+use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;

@@ -12,9 +12,8 @@ use std::path::Path;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
-use qcar_runtime::discover::evidence::{Kind, Stimulus};
-use qcar_runtime::discover::predict::{Misread, predict, unsteady};
-use qcar_runtime::discover::refit::{refit, settle};
+use qcar_runtime::discover::observe::{Kind, Misread, Stimulus, predict, unsteady};
+use qcar_runtime::discover::posterior::{refit, settle};
 use qcar_runtime::discover::{Evidence, Free, Gap};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;

@@ -10,8 +10,8 @@ use qcar_dsl::check::Checked;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
-use qcar_runtime::discover::explain::{Given, Setting};
 use qcar_runtime::discover::numbers::Numbers;
+use qcar_runtime::discover::posterior::{Given, Setting};
 use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
@@ -31,6 +31,8 @@ pub(crate) mod places;
 mod left;
 // The law that was learned where no effect explains the gap.
 pub(crate) mod law;
+// One of the findings in words.
+mod finding;
 // What was learned, as text and JSON.
 mod learned;
 // The answer as text and JSON.

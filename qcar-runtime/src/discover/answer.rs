@@ -1,6 +1,6 @@
 //! What a search answers, and what it tells of itself meanwhile.
 
-use super::explain::Explanation;
+use super::posterior::Explanation;
 
 /// The answer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]

@@ -1,7 +1,7 @@
 //! What might be missing: a changed model, or a sensor that is wrong. Where candidates come from, the engine does not
 //! know: a [`Workshop`] makes them from files.
 
-use super::nuisance::Form;
+use super::noise::Form;
 use crate::campaign::Axis;
 use crate::model::Model;
 

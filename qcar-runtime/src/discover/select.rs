@@ -8,10 +8,10 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
-// what law is missing where the catalogue has none,
-mod learn;
 // how probable each set is,
 mod verdict;
+// what law is missing where the catalogue has none,
+mod learn;
 // and which effects would have been seen.
 mod visible;
 
@@ -28,11 +28,9 @@ use visible::visible;
 
 use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
 use super::candidate::{Candidate, Workshop};
-use super::evidence::{Evidence, Stimulus};
-use super::explain::{Explanation, Setting};
 use super::numbers::{MOST_EFFECTS, Numbers};
-use super::predict::PredictError;
-use super::refit::Refit;
+use super::observe::{Evidence, PredictError, Stimulus};
+use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
 /// Searches for what is missing. `progress` is told how it goes.
@@ -199,7 +197,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
 
 /// The given values, every other one moved this way towards the end of its range, and the others the other way.
 fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMap<String, f64> {
-    let moved = |(k, given): (usize, &super::explain::Given)| {
+    let moved = |(k, given): (usize, &super::posterior::Given)| {
         let (low, high) = given.range?;
         let shift = if k.is_multiple_of(2) { spread } else { -spread };
         let end = if shift < 0.0 { low } else { high };

@@ -5,12 +5,12 @@
 //! depend on the seed alone, and each search on its start alone, so the result does not depend on the threads.
 
 use super::setup::Setup;
-use crate::least_squares::{Bounds, Options, Outcome};
+use crate::least_squares::{Bounds, Options, Outcome, minimize};
 use crate::model::Model;
 use crate::progress::{self, Told};
 
 /// What ends a local search: tight enough that searches to one minimum agree on it.
-pub(super) const OPTIONS: Options = Options {
+const OPTIONS: Options = Options {
     gradient: 1e-8,
     cost: 1e-9,
     step: 1e-7,
@@ -37,6 +37,13 @@ pub(super) struct Minimum {
     pub cost: f64,
     pub x: Vec<f64>,
     pub starts: Vec<usize>,
+}
+
+impl<M: Model + ?Sized> Setup<'_, M> {
+    /// One local search from given values of the free parameters; this is what a fit spends its time on.
+    pub fn local(&self, start: &[f64]) -> Outcome {
+        minimize(&mut self.cost(), start, &self.bounds, &OPTIONS)
+    }
 }
 
 impl Search {

@@ -3,14 +3,10 @@
 use super::cost::{Cost, GridPlan, Target};
 use super::observation::{Level, Observation};
 use super::plan::Plan;
-use super::report::Fit;
-use super::search::{self, Search};
-use super::{report, uncertainty};
 use crate::campaign::{self, Role};
 use crate::error::{InputError, Place, Problem};
-use crate::least_squares::{self, Bounds, Outcome};
+use crate::least_squares::Bounds;
 use crate::model::Model;
-use crate::progress::{Told, UNTOLD};
 use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::signal::{SignalError, Term, locate};
@@ -69,12 +65,6 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
         })
     }
 
-    /// One local search from given values of the free parameters; this is what a fit spends its time on.
-    pub fn local(&self, start: &[f64]) -> Outcome {
-        let mut cost = self.cost();
-        least_squares::minimize(&mut cost, start, &self.bounds, &search::OPTIONS)
-    }
-
     /// The start values of the free parameters, in the order that [`Setup::local`] takes them.
     pub fn start(&self) -> Vec<f64> {
         start(&self.values, &self.free)
@@ -88,18 +78,6 @@ impl<'a, M: Model + ?Sized> Setup<'a, M> {
     /// Places of the free parameters in the model.
     pub fn free(&self) -> &[usize] {
         &self.free
-    }
-
-    /// Searches from all starts and reports the best minimum with its error bars.
-    pub fn fit(&self) -> Fit {
-        self.fit_telling(UNTOLD)
-    }
-
-    /// The same; `told` hears search by search how far it is.
-    pub fn fit_telling(&self, told: Told<'_>) -> Fit {
-        let search = Search::run(self, told);
-        let uncertainty = uncertainty::estimate(self, &search.best);
-        report::report(self, &search, &uncertainty)
     }
 
     pub(super) fn cost(&self) -> Cost<'a, '_, M> {

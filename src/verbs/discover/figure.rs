@@ -1,6 +1,6 @@
 //! The gap over frequency before and after, a panel for each sensor.
 
-use qcar_runtime::discover::gap::Gap;
+use qcar_runtime::discover::posterior::Gap;
 use qcar_runtime::transmissibility::Point;
 
 use crate::figure::{Across, Curve, Figure, Panel, Style};

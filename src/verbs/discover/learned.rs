@@ -7,8 +7,9 @@ use qcar_runtime::discover::answer::Finding;
 use serde::Serialize;
 
 use super::Answer;
+use super::finding::described;
 use super::law::Law;
-use super::render::{BeforeAfter, described};
+use super::left::BeforeAfter;
 use crate::json::Ordered;
 
 /// Laws that close the gap where no effect of the catalogue does.

@@ -2,12 +2,10 @@
 
 use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::explain::Explanation;
+use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::Explanation;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
-
-use super::render::channel;
 
 /// What is left of one sensor in one kind of run, on the runs that judge.
 #[derive(Serialize)]
@@ -20,6 +18,23 @@ pub(crate) struct Left {
     pub before_percent: f64,
     /// The same after.
     pub after_percent: f64,
+}
+
+/// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
+#[derive(Serialize)]
+pub(super) struct BeforeAfter {
+    before: Option<f64>,
+    after: Option<f64>,
+}
+
+impl BeforeAfter {
+    pub(super) fn new(before: f64, after: f64) -> Self {
+        let finite = |value: f64| value.is_finite().then_some(value);
+        BeforeAfter {
+            before: finite(before),
+            after: finite(after),
+        }
+    }
 }
 
 /// Of every sensor in every kind of run: of held-out runs where there are any, else of the fitted ones. Higher harmonics
@@ -75,4 +90,10 @@ fn word(kind: Kind) -> &'static str {
         Kind::Width => "kc_hysteresis",
         Kind::Cycle(_) => "kc_sine",
     }
+}
+
+/// The name of a sensor.
+pub(super) fn channel(sensor: &Point) -> String {
+    let axis = format!("{:?}", sensor.axis).to_lowercase();
+    format!("{}_{axis}", sensor.location)
 }

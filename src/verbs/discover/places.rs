@@ -2,7 +2,7 @@
 
 use qcar_dsl::expr::{Expr, Symbol};
 use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
-use qcar_runtime::discover::kappa::{Shape, shape};
+use qcar_runtime::discover::locate::{Shape, shape};
 use qcar_runtime::discover::{Kappa, Place};
 use serde::Serialize;
 

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
-use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::explain::Explanation;
-use qcar_runtime::discover::gap::Tile;
+use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::{Explanation, Tile};
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 
 use super::Answer;
+use super::finding::described;
 use super::learned;
-use super::left::{Left, left};
+use super::left::{BeforeAfter, Left, channel, left};
 use super::places::{self, Missing};
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
@@ -102,23 +102,6 @@ struct Where {
 struct Gaps {
     fit: BeforeAfter,
     held_out: BeforeAfter,
-}
-
-/// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
-#[derive(Serialize)]
-pub(super) struct BeforeAfter {
-    before: Option<f64>,
-    after: Option<f64>,
-}
-
-impl BeforeAfter {
-    pub(super) fn new(before: f64, after: f64) -> Self {
-        let finite = |value: f64| value.is_finite().then_some(value);
-        BeforeAfter {
-            before: finite(before),
-            after: finite(after),
-        }
-    }
 }
 
 /// Tiles that are listed.
@@ -223,11 +206,6 @@ fn place(tile: &Tile) -> Where {
     }
 }
 
-pub(super) fn channel(sensor: &Point) -> String {
-    let axis = format!("{:?}", sensor.axis).to_lowercase();
-    format!("{}_{axis}", sensor.location)
-}
-
 /// The gap of each sensor over all runs.
 fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
     let mut sensors: Vec<&Point> = of.evidence.series.iter().map(|series| &series.sensor).collect();
@@ -240,7 +218,7 @@ fn by_channel(of: &Answer) -> Ordered<BeforeAfter> {
             .iter()
             .zip(residuals)
             .filter(|(series, _)| series.sensor == *sensor);
-        qcar_runtime::discover::gap::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
+        qcar_runtime::discover::posterior::rms(of_sensor.flat_map(|(_, residuals)| residuals.iter().copied()))
     };
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
     let named = sensors.into_iter().map(|sensor| {
@@ -415,41 +393,6 @@ fn listed(findings: &[Finding]) -> String {
     names.collect::<Vec<_>>().join(" and ")
 }
 
-pub(super) fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
-    let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
-    for (name, value, error) in &finding.parameters {
-        let error = or_dash(Some(*error).filter(|error| error.is_finite()), 2);
-        let unit = units.get(name).cloned().unwrap_or_default();
-        table.row(vec![name.clone(), unit, number(*value, 4), error]);
-    }
-    let share = 100.0 * finding.closed;
-    let form = finding
-        .form
-        .as_deref()
-        .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
-    let mut out = format!(
-        "{} at {}{form} closes {share:.1} % of the gap\n{}",
-        finding.effect,
-        finding.at,
-        table.text()
-    );
-    let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
-    let undetermined: Vec<&str> = undetermined.map(|(name, ..)| name.as_str()).collect();
-    if !undetermined.is_empty() {
-        let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
-    }
-    for rival in finding.rivals.iter().take(4) {
-        let _ = writeln!(
-            out,
-            "less likely: {} at {}, lower by {} in log evidence",
-            rival.effect,
-            rival.at,
-            number(rival.behind, 3)
-        );
-    }
-    out
-}
-
 /// The place that explains most.
 fn acts(best: &Missing) -> String {
     let share = 100.0 * best.explains;
@@ -506,25 +449,4 @@ fn tiles(of: &Answer) -> String {
         ]);
     }
     table.text()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// A value that comes from a start rather than from the data must not pass for one that was found.
-    #[test]
-    fn what_the_runs_do_not_determine_is_said() {
-        let finding = Finding {
-            effect: "suspended_mass".into(),
-            at: "body".into(),
-            form: None,
-            parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
-            evidence: 1e4,
-            closed: 1.0,
-            rivals: Vec::new(),
-        };
-        let said = described(&finding, &BTreeMap::new());
-        assert!(said.ends_with("the fitted runs do not determine k_pwt_x\n"), "{said}");
-    }
 }

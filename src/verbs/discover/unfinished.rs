@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use qcar_runtime::discover::answer::Finding;
-use qcar_runtime::discover::explain::Explanation;
+use qcar_runtime::discover::posterior::Explanation;
 
 use super::{figure, patched, render};
 use crate::workshop::Bench;

@@ -2,10 +2,9 @@
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::beginning::beginnings;
-use qcar_runtime::discover::evidence::Stimulus;
-use qcar_runtime::discover::nuisance::Nuisance;
-use qcar_runtime::discover::predict::{Misread, PredictError, replayed};
+use qcar_runtime::discover::noise::Nuisance;
+use qcar_runtime::discover::observe::{Misread, PredictError, Stimulus, replayed};
+use qcar_runtime::discover::posterior::beginnings;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;

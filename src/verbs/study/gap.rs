@@ -3,8 +3,8 @@
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;
 use qcar_runtime::discover::Kappa;
-use qcar_runtime::discover::evidence::Kind;
-use qcar_runtime::discover::gap::Tile;
+use qcar_runtime::discover::observe::Kind;
+use qcar_runtime::discover::posterior::Tile;
 use serde::Serialize;
 
 use super::gather::Study;
@@ -127,7 +127,7 @@ pub fn explanations(of: &Study) -> Vec<Explanation> {
     sites(&of.answer).into_iter().take(SHOWN).map(explanation).collect()
 }
 
-fn stiffness(of: &qcar_runtime::discover::kappa::KappaRun) -> Stiffness {
+fn stiffness(of: &qcar_runtime::discover::locate::KappaRun) -> Stiffness {
     Stiffness {
         level: of.level,
         frequency: curve(of.frequency.iter().copied()),

@@ -2,8 +2,8 @@
 
 use qcar_runtime::campaign::{Quantity, Role};
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::evidence::{Kind, Series, Stimulus};
-use qcar_runtime::discover::explain::Explanation;
+use qcar_runtime::discover::observe::{Kind, Series, Stimulus};
+use qcar_runtime::discover::posterior::Explanation;
 use qcar_runtime::transmissibility::Point;
 use serde::Serialize;
 

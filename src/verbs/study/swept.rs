@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::Complex;
-use qcar_runtime::discover::evidence::{Evidence, Kind, Stimulus};
-use qcar_runtime::discover::predict::predict;
+use qcar_runtime::discover::observe::{Evidence, Kind, Stimulus, predict};
 use qcar_runtime::model::{Channel, Model};
 use qcar_runtime::progress::{self, Told};
 use qcar_runtime::response::parameters::Values;

@@ -6,13 +6,9 @@ use std::sync::Arc;
 use super::taken::Taken;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
-use crate::discover::discrepancy::Discrepancy;
-use crate::discover::evidence::Evidence;
-use crate::discover::explain::{Explanation, Given, Setting};
-use crate::discover::gap::Gap;
-use crate::discover::nuisance::{Beginning, Form, Nuisance};
-use crate::discover::predict::{Free, PredictError};
-use crate::discover::refit::{Refit, Start, fit, settle};
+use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
+use crate::discover::observe::{Evidence, Free, PredictError};
+use crate::discover::posterior::{Explanation, Gap, Given, Refit, Setting, Start, fit, settle};
 use crate::model::Model;
 use crate::response::parameters::Values;
 

@@ -9,7 +9,7 @@ use super::screen::Prospect;
 use super::verdict::{Set, closed, predicts};
 use super::{News, Progress, explained, looks};
 use crate::discover::answer::{Finding, Learned};
-use crate::discover::evidence::Evidence;
+use crate::discover::observe::Evidence;
 
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;

@@ -11,8 +11,8 @@ use super::assembly::{Assembly, Hypothesis, Place};
 use super::screen::Prospect;
 use super::{News, Progress};
 use crate::discover::candidate::Candidate;
-use crate::discover::evidence::Evidence;
-use crate::discover::refit::Refit;
+use crate::discover::observe::Evidence;
+use crate::discover::posterior::Refit;
 
 /// What the rounds look at.
 pub struct Fidelity {

@@ -13,11 +13,9 @@ use rayon::prelude::*;
 use super::assembly::{Assembly, Hypothesis, Place};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
-use crate::discover::discrepancy::Discrepancy;
-use crate::discover::evidence::Evidence;
-use crate::discover::nuisance::Form;
-use crate::discover::predict::PredictError;
-use crate::discover::refit::Refit;
+use crate::discover::noise::{Discrepancy, Form};
+use crate::discover::observe::{Evidence, PredictError};
+use crate::discover::posterior::Refit;
 
 /// A candidate with the places from which it should be fitted.
 pub struct Prospect {

@@ -1,8 +1,8 @@
 //! What of an effect in a model is to be found, and what an explanation says of it.
 
 use crate::discover::candidate::{Added, Candidate, Change};
-use crate::discover::explain::Explanation;
-use crate::discover::nuisance::{Form, Nuisance};
+use crate::discover::noise::{Form, Nuisance};
+use crate::discover::posterior::Explanation;
 
 /// An effect in the model.
 #[derive(Clone)]

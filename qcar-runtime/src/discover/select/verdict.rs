@@ -4,9 +4,9 @@ use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::candidate::Candidate;
-use crate::discover::evidence::Evidence;
-use crate::discover::explain::Explanation;
 use crate::discover::numbers::Numbers;
+use crate::discover::observe::Evidence;
+use crate::discover::posterior::Explanation;
 
 /// A set of effects with its fit.
 #[derive(Clone)]

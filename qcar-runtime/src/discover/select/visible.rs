@@ -10,9 +10,9 @@ use super::log_prior;
 use super::screen::{Point, Tangent};
 use crate::discover::answer::Visible;
 use crate::discover::candidate::Candidate;
-use crate::discover::evidence::Evidence;
 use crate::discover::numbers::Numbers;
-use crate::discover::refit::Refit;
+use crate::discover::observe::Evidence;
+use crate::discover::posterior::Refit;
 
 /// Each effect of the model at each place, in its usual form, the best seen first.
 pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {

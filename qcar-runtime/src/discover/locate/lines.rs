@@ -1,0 +1,261 @@
+//! The responses of all sensors line by line, and the change at one place that explains them best.
+//!
+//! A change q of a parameter (complex here) changes all responses along their derivative by that parameter, times
+//! `q / (1 + q h)` with a compliance h of the place. The scalar is found first, line by line; q follows, and is smooth
+//! where the scalar is not, next to a mode.
+
+use nalgebra::Complex;
+
+use super::kappa::{Kappa, KappaRun, Place};
+use super::straight::Straight;
+use crate::discover::observe::{Evidence, Kind, Prediction, Series};
+use crate::discover::posterior::Refit;
+use crate::transmissibility::Point;
+
+/// Lines on each side over which a change is taken as straight: a smooth law hardly curves over them, chance does not
+/// care.
+const SMOOTH: usize = 2;
+
+/// Along what the responses of all sensors are changed.
+pub enum Direction {
+    /// The derivative by the parameter of this column.
+    Slope(usize),
+    /// The signal of one sensor.
+    Sensor(Point),
+}
+
+/// The first harmonics of all runs, in each all sensors on one grid of frequencies.
+pub struct Lines {
+    runs: Vec<RunLines>,
+}
+
+struct RunLines {
+    run: usize,
+    level: f64,
+    frequency: Vec<f64>,
+    sensors: Vec<SensorLines>,
+}
+
+struct SensorLines {
+    sensor: Point,
+    sigma: Vec<f64>,
+    residual: Vec<Complex<f64>>,
+    shown: Vec<Complex<f64>>,
+    slopes: Vec<Vec<Complex<f64>>>,
+}
+
+/// A value with its standard deviation.
+type Estimate = (Complex<f64>, f64);
+
+impl Lines {
+    /// What is left of the first harmonics after a refit, of which `predictions` are.
+    pub fn new(refit: &Refit, evidence: &Evidence, predictions: &[Prediction]) -> Self {
+        let mut runs: Vec<RunLines> = Vec::new();
+        for prediction in predictions {
+            let series = &evidence.series[prediction.series];
+            if series.kind != Kind::Harmonic(1) {
+                continue;
+            }
+            let sensor = SensorLines::new(refit, evidence, series, prediction);
+            match runs.iter_mut().find(|run| run.run == series.run) {
+                Some(run) => run.sensors.push(sensor),
+                None => runs.push(RunLines {
+                    run: series.run,
+                    level: evidence.runs[series.run].level,
+                    frequency: series.at.clone(),
+                    sensors: vec![sensor],
+                }),
+            }
+        }
+        Self { runs }
+    }
+
+    /// Sum of the squared gap.
+    pub fn left(&self) -> f64 {
+        let of_sensor = |sensor: &SensorLines| {
+            let lines = sensor.residual.iter().zip(&sensor.sigma);
+            lines
+                .map(|(residual, sigma)| residual.norm_sqr() / (sigma * sigma))
+                .sum::<f64>()
+        };
+        self.runs.iter().flat_map(|run| &run.sensors).map(of_sensor).sum()
+    }
+
+    /// Every sensor once.
+    pub fn sensors(&self) -> Vec<Point> {
+        let all = self.runs.iter().flat_map(|run| &run.sensors);
+        let mut sensors: Vec<Point> = all.map(|sensor| sensor.sensor.clone()).collect();
+        sensors.sort();
+        sensors.dedup();
+        sensors
+    }
+
+    /// The compliance h of a place for each run and line, from what a finite change of its parameter does.
+    pub fn compliance(&self, column: usize, changed: &Lines, change: f64) -> Vec<Vec<Complex<f64>>> {
+        let pairs = self.runs.iter().zip(&changed.runs);
+        pairs
+            .map(|(run, changed)| run.compliance(column, changed, change))
+            .collect()
+    }
+
+    /// The compliance of what nothing can yield to.
+    pub fn rigid(&self) -> Vec<Vec<Complex<f64>>> {
+        self.runs
+            .iter()
+            .map(|run| vec![Complex::ZERO; run.frequency.len()])
+            .collect()
+    }
+
+    /// What a place explains; `unit` makes a change of the parameter a dynamic stiffness.
+    pub fn kappa(
+        &self,
+        place: Place,
+        direction: &Direction,
+        compliance: &[Vec<Complex<f64>>],
+        unit: impl Fn(f64) -> Complex<f64>,
+    ) -> Kappa {
+        let runs = self.runs.iter().zip(compliance);
+        let each: Vec<Vec<Estimate>> = runs.map(|(run, h)| run.changes(direction, h)).collect();
+        let common = mean(&each);
+        let all = vec![common; each.len()];
+        Kappa {
+            place,
+            ceiling: self.explained(direction, compliance, &each),
+            common: self.explained(direction, compliance, &all),
+            runs: self
+                .runs
+                .iter()
+                .zip(&each)
+                .map(|(run, changes)| run.kappa(changes, &unit))
+                .collect(),
+        }
+    }
+
+    /// Share of the squared gap that changes explain.
+    fn explained(&self, direction: &Direction, compliance: &[Vec<Complex<f64>>], changes: &[Vec<Estimate>]) -> f64 {
+        let (mut left, mut all) = (0.0, 0.0);
+        for ((run, h), changes) in self.runs.iter().zip(compliance).zip(changes) {
+            for sensor in &run.sensors {
+                let along = direction.of(sensor);
+                for line in 0..run.frequency.len() {
+                    let q = changes[line].0;
+                    let explained = along.map_or(Complex::ZERO, |along| along[line] * q / (1.0 + q * h[line]));
+                    let weight = sensor.sigma[line].powi(-2);
+                    left += (sensor.residual[line] - explained).norm_sqr() * weight;
+                    all += sensor.residual[line].norm_sqr() * weight;
+                }
+            }
+        }
+        1.0 - left / all
+    }
+}
+
+/// The weighted mean of what each run says of a line; runs are on one grid as far as they go.
+fn mean(each: &[Vec<Estimate>]) -> Vec<Estimate> {
+    let longest = each.iter().map(Vec::len).max().unwrap_or(0);
+    let of_line = |line: usize| {
+        let mut sums = Straight::default();
+        let said = each.iter().filter_map(|run| run.get(line));
+        said.for_each(|&(value, sigma)| sums.add(0.0, Complex::ONE, value, sigma));
+        sums.solve()
+    };
+    (0..longest).map(of_line).collect()
+}
+
+impl Direction {
+    fn of<'a>(&self, lines: &'a SensorLines) -> Option<&'a [Complex<f64>]> {
+        match self {
+            Direction::Slope(column) => Some(&lines.slopes[*column]),
+            Direction::Sensor(sensor) => (lines.sensor == *sensor).then_some(&lines.shown),
+        }
+    }
+}
+
+impl SensorLines {
+    fn new(refit: &Refit, evidence: &Evidence, series: &Series, prediction: &Prediction) -> Self {
+        let shown = refit
+            .nuisance
+            .show(evidence, series, &prediction.value, &refit.coefficients);
+        let through = |slope: &Vec<Complex<f64>>| slope.iter().zip(&shown.factor).map(|(s, f)| s * f).collect();
+        let residual = series
+            .value
+            .iter()
+            .zip(&shown.value)
+            .map(|(measured, shown)| measured - shown);
+        Self {
+            sensor: series.sensor.clone(),
+            sigma: series.sigma.clone(),
+            residual: residual.collect(),
+            slopes: prediction.slopes.iter().map(through).collect(),
+            shown: shown.value,
+        }
+    }
+}
+
+impl RunLines {
+    /// For each line the change that explains all sensors best, straight over its neighbours.
+    fn changes(&self, direction: &Direction, compliance: &[Complex<f64>]) -> Vec<Estimate> {
+        let single: Vec<Estimate> = (0..self.frequency.len())
+            .map(|line| {
+                let (scalar, sigma) = self.scalar(line, direction);
+                let less = 1.0 - scalar * compliance[line];
+                (scalar / less, sigma / less.norm_sqr())
+            })
+            .collect();
+        let smooth = |centre: usize| {
+            let around = centre.saturating_sub(SMOOTH)..(centre + SMOOTH + 1).min(single.len());
+            let mut sums = Straight::default();
+            for (f, (value, sigma)) in self.frequency[around.clone()].iter().zip(&single[around]) {
+                sums.add((f / self.frequency[centre]).ln(), Complex::ONE, *value, *sigma);
+            }
+            sums.solve()
+        };
+        (0..single.len()).map(smooth).collect()
+    }
+
+    fn scalar(&self, line: usize, direction: &Direction) -> Estimate {
+        let mut sums = Straight::default();
+        for sensor in &self.sensors {
+            let Some(along) = direction.of(sensor) else { continue };
+            sums.add(0.0, along[line], sensor.residual[line], sensor.sigma[line]);
+        }
+        sums.solve()
+    }
+
+    /// A finite change q makes the scalar `1 / (1/q + h)`.
+    fn compliance(&self, column: usize, changed: &RunLines, change: f64) -> Vec<Complex<f64>> {
+        let of_line = |line: usize| {
+            let mut sums = Straight::default();
+            for (sensor, changed) in self.sensors.iter().zip(&changed.sensors) {
+                let difference = changed.shown[line] - sensor.shown[line];
+                sums.add(0.0, sensor.slopes[column][line], difference, sensor.sigma[line]);
+            }
+            let scalar = sums.solve().0;
+            if scalar == Complex::ZERO {
+                Complex::ZERO
+            } else {
+                scalar.inv() - 1.0 / change
+            }
+        };
+        (0..self.frequency.len()).map(of_line).collect()
+    }
+
+    fn kappa(&self, changes: &[Estimate], unit: impl Fn(f64) -> Complex<f64>) -> KappaRun {
+        let units: Vec<Complex<f64>> = self.frequency.iter().map(|&f| unit(f)).collect();
+        KappaRun {
+            run: self.run,
+            level: self.level,
+            frequency: self.frequency.clone(),
+            value: changes
+                .iter()
+                .zip(&units)
+                .map(|((value, _), unit)| value * unit)
+                .collect(),
+            sigma: changes
+                .iter()
+                .zip(&units)
+                .map(|((_, sigma), unit)| sigma * unit.norm())
+                .collect(),
+        }
+    }
+}

@@ -1,0 +1,86 @@
+use std::mem::discriminant;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::*;
+
+fn sensor() -> Point {
+    Point {
+        location: "body".into(),
+        axis: crate::campaign::Axis::Z,
+        quantity: crate::campaign::Quantity::Acceleration,
+    }
+}
+
+/// Values at these places of one run, all of unit noise and signal.
+fn group(places: &[f64], scale: f64) -> Group {
+    let value = |(k, place): (usize, &f64)| Value {
+        run: 0,
+        place: *place,
+        rows: [k, k],
+        parts: 1,
+        scale,
+    };
+    let key = Key {
+        sensor: sensor(),
+        kind: Kind::Time,
+        run: discriminant(&Stimulus::Sweep {
+            reference: sensor(),
+            signal: Vec::new(),
+            rate: 1.0,
+            frequency: Vec::new(),
+            amplitude: Vec::new(),
+            band: (1.0, 2.0),
+        }),
+    };
+    Group::new(
+        key,
+        0.0,
+        places.iter().enumerate().map(value).collect(),
+        &Numbers::default(),
+    )
+}
+
+/// The covariance written out, by a dense factorisation.
+#[test]
+fn whitening_is_the_inverse_root_of_the_covariance() {
+    let places: Vec<f64> = (0..30)
+        .map(|k| 0.13 * f64::from(k) + 0.02 * f64::from(k * k % 7))
+        .collect();
+    let mut group = group(&places, 3.0);
+    group.set(0.4);
+    let covariance = DMatrix::from_fn(30, 30, |i, j| {
+        let r: f64 = (places[i] - places[j]).abs();
+        let k = if r < 1.0 { (1.0 - r).powi(2) } else { 0.0 };
+        0.16 * 9.0 * k + if i == j { 1.0 } else { 0.0 }
+    });
+    let residual = DVector::from_fn(30, |k, _| (1.7 * k as f64).sin());
+    let mut white = residual.as_slice().to_vec();
+    group.whiten(&mut white);
+    let square: f64 = white.iter().map(|value| value * value).sum();
+    let expected = residual.dot(&covariance.clone().cholesky().unwrap().solve(&residual));
+    assert!((square - expected).abs() < 1e-10 * expected, "{square}, not {expected}");
+    let determinant = covariance.determinant().ln() / 2.0;
+    assert!((group.log_determinant() - determinant).abs() < 1e-9, "{determinant}");
+}
+
+/// Draws from the model itself give back the discrepancy that they were drawn with, and none where there is none.
+#[test]
+fn discrepancy_is_learnt_from_its_own_draws() {
+    let places: Vec<f64> = (0..400).map(|k| 0.1 * f64::from(k)).collect();
+    let mut group = group(&places, 20.0);
+    // A fixed sequence of normal numbers, by Box and Muller's method from a golden-ratio sequence.
+    let uniform = |k: usize, base: f64| (0.5 + base * (k + 1) as f64).fract();
+    let normal = |k: usize| {
+        let (a, b) = (uniform(k, 0.618_033_988_75), uniform(k, 0.754_877_666_25));
+        (-2.0 * a.max(1e-12).ln()).sqrt() * (std::f64::consts::TAU * b).cos()
+    };
+    let white: Vec<f64> = (0..400).map(normal).collect();
+    group.learn(&white);
+    assert!(group.tau < 0.01, "{} of noise alone", group.tau);
+    let truth: f64 = 0.1;
+    let factor = group.factor(truth);
+    let drawn = factor.times(&white);
+    group.learn(&drawn);
+    assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
+}

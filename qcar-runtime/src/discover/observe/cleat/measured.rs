@@ -1,0 +1,184 @@
+//! A cleat run as evidence: the accelerations while a tyre rolls over an obstacle, as means around evenly spaced instants.
+
+use nalgebra::Complex;
+
+use crate::campaign::Campaign;
+use crate::discover::observe::run::PATIENT;
+use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
+use crate::error::InputError;
+use crate::model::About;
+use crate::response::signal::output_of;
+use crate::road::Road;
+use crate::roles::Roles;
+use crate::simulate::{Cleat, tyre};
+use crate::transmissibility::{Point, points, signal};
+
+/// Half width and spacing of the means, s: half of what is at 100 Hz is left, and nothing at 200 Hz. That keeps the modes
+/// of an axle, and leaves out what depends on how a recorder filters and on how a tyre meets an edge.
+const HALF: f64 = 5e-3;
+/// From where the tyre's circle comes to the obstacle, s: impact and after-shake.
+const DURATION: f64 = 1.0;
+/// The most that the clock of a record may be off, s: a trigger, and the error of the speed over the run-in.
+pub const TIMING: f64 = 5e-3;
+/// The most that a sensor may be ahead of the others, s.
+const AHEAD: f64 = 0.01;
+/// What no model of a tyre on an edge gets right, and no second sensor of a pair: this share of the envelope.
+const SHARE: f64 = 0.025;
+/// The same of the whole record, so that a record without noise has an uncertainty too.
+const FLOOR: f64 = 0.002;
+/// The envelope of a signal is its RMS value over so many values to each side: a period of a wheel's hop.
+const AROUND: usize = 10;
+/// A quiet start with fewer samples tells no noise.
+const QUIET: usize = 20;
+
+impl Evidence {
+    pub(in crate::discover::observe) fn add_cleat(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+    ) -> Result<(), InputError> {
+        let Some(cleat) = Cleat::read(campaign, run)? else {
+            return Ok(());
+        };
+        if let Err(error) = Roles::of(about, &campaign.roles) {
+            self.notices.push(format!("{}: {error}; the run is left out", run.file));
+            return Ok(());
+        }
+        let (tyre, load) = tyre(campaign)?;
+        let window = match Window::of(&cleat, tyre.radius()) {
+            Ok(window) => window,
+            Err(reason) => {
+                self.notices
+                    .push(format!("{}: {reason}; the run is left out", run.file));
+                return Ok(());
+            }
+        };
+        let (place, before) = (self.runs.len(), self.series.len());
+        for sensor in self.known(about, &run.file, points(&cleat.measured)) {
+            let series = window.series(place, sensor.clone(), &signal(&cleat.measured, &sensor)?);
+            match series.filter(|_| is_output(about, &sensor)) {
+                Some(series) => self.series.push(series),
+                None => self
+                    .notices
+                    .push(format!("{}: {sensor} says nothing; it is left out", run.file)),
+            }
+        }
+        if self.series.len() > before {
+            self.runs.push(Run {
+                name: run.file.clone(),
+                role: run.role,
+                level: rise(&cleat.road),
+                stimulus: Stimulus::Cleat(Passage {
+                    speed: cleat.speed,
+                    tyre,
+                    load,
+                    duration: window.end(),
+                    means: window.means.sparse(),
+                    most_steps: PATIENT,
+                    road: cleat.road,
+                }),
+            });
+        }
+        Ok(())
+    }
+}
+
+/// True for what a ride gives as it was measured.
+fn is_output(about: &About, sensor: &Point) -> bool {
+    output_of(about, &signal_of(about, sensor)).is_ok_and(|(_, power)| power == 0)
+}
+
+/// Height of the road from its lowest to its highest point, m.
+fn rise(road: &Road) -> f64 {
+    let heights = || road.vertices().iter().map(|vertex| vertex[1]);
+    heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
+}
+
+/// The part of a record that is evidence, in s after the wheel's centre was above x = 0.
+struct Window {
+    means: Means,
+    /// Of the first sample.
+    first: f64,
+    /// Before it nothing happens.
+    start: f64,
+    /// Number of means.
+    count: usize,
+}
+
+impl Window {
+    fn of(cleat: &Cleat, radius: f64) -> Result<Self, String> {
+        let (rate, first) = (cleat.measured.sample_rate, cleat.measured.start);
+        let means = Means::new(rate, HALF);
+        let start = (obstacle(&cleat.road) - radius) / cleat.speed;
+        if (start - first) * rate < QUIET as f64 {
+            return Err(format!(
+                "the obstacle comes at {start:.3} s, too soon to tell the noise before it"
+            ));
+        }
+        let last = first + (cleat.measured.len() - 1) as f64 / rate;
+        let end = (start + DURATION).min(last - means.half() - TIMING);
+        let count = ((end - start) / means.half()).floor().max(0.0) as usize;
+        if count < 2 * AROUND {
+            return Err(format!("the record ends at {last:.3} s, before the obstacle is passed"));
+        }
+        Ok(Self {
+            means,
+            first,
+            start,
+            count,
+        })
+    }
+
+    /// How long a ride has to be to be seen like the record, s.
+    fn end(&self) -> f64 {
+        self.start + (self.count + 1) as f64 * self.means.half() + TIMING + AHEAD
+    }
+
+    /// What one sensor says; nothing where it never moves.
+    fn series(&self, run: usize, sensor: Point, samples: &[f64]) -> Option<Series> {
+        let at: Vec<f64> = (0..self.count)
+            .map(|k| self.start + k as f64 * self.means.half())
+            .collect();
+        let (offset, noise) = self.quiet(samples);
+        let value: Vec<f64> = at
+            .iter()
+            .map(|&t| self.means.at(samples, t - self.first).0 - offset)
+            .collect();
+        let floor = noise.hypot(FLOOR * rms(&value));
+        let sigma = (0..value.len()).map(|k| floor.hypot(SHARE * envelope(&value, k)));
+        (floor > 0.0).then(|| Series {
+            run,
+            sensor,
+            kind: Kind::Passage,
+            sigma: sigma.collect(),
+            noise: vec![floor; value.len()],
+            least_discrepancy: SHARE,
+            value: value.iter().copied().map(Complex::from).collect(),
+            at,
+        })
+    }
+
+    /// Mean of the record before the obstacle, and the standard deviation of its means.
+    fn quiet(&self, samples: &[f64]) -> (f64, f64) {
+        let rest = &samples[..((self.start - self.first) * self.means.rate()) as usize];
+        let offset = rest.iter().sum::<f64>() / rest.len() as f64;
+        let means: Vec<f64> = self.means.inside(rest).map(|mean| mean - offset).collect();
+        (offset, rms(&means))
+    }
+}
+
+/// Where a road first leaves its initial height, m.
+fn obstacle(road: &Road) -> f64 {
+    let vertices = road.vertices();
+    let flat = vertices.iter().take_while(|vertex| vertex[1] == vertices[0][1]).count();
+    vertices[flat - 1][0]
+}
+
+fn envelope(values: &[f64], k: usize) -> f64 {
+    rms(&values[k.saturating_sub(AROUND)..(k + AROUND + 1).min(values.len())])
+}
+
+fn rms(values: &[f64]) -> f64 {
+    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
+}

@@ -1,0 +1,220 @@
+//! Rides over an obstacle, simulated and shifted in time to where the measurement has them.
+//!
+//! The clock of a record may be off by a few milliseconds, which is no fault of the model: each run is shifted as a whole
+//! to where it agrees best, and what a parameter would only shift is taken out of its derivative (variable projection:
+//! Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973).
+
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+use super::measured::TIMING;
+use crate::discover::observe::{Delay, Evidence, Free, Means, Passage, PredictError, Prediction, Series, signal_of};
+use crate::model::Model;
+use crate::response::parameters::Values;
+use crate::response::signal::output_of;
+use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride};
+
+/// The integration: its error stays far below what a tyre model is good for.
+const METHOD: Method = Method::Adaptive(3e-6);
+/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: large against
+/// the error of the integration, small against the curvature.
+const DIFFERENCE: f64 = 3e-3;
+const PART_OF_RANGE: f64 = 1e-2;
+/// Steps to the best shift; the first is nearly all.
+const STEPS: usize = 4;
+
+pub fn passage(
+    model: &dyn Model,
+    values: &Values,
+    late: &[f64],
+    free: &[Free],
+    evidence: &Evidence,
+    (run, passage): (usize, &Passage),
+) -> Result<Vec<Prediction>, PredictError> {
+    let series: Vec<(usize, &Series)> = evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, s)| s.run == run)
+        .collect();
+    let mut outputs = Vec::new();
+    for (_, series) in &series {
+        outputs.push(output_of(model.about(), &signal_of(model.about(), &series.sensor))?.0);
+    }
+    let changes: Vec<f64> = free.iter().map(|free| change(values, free)).collect();
+    let moved = free.iter().zip(&changes).map(|(free, change)| {
+        let mut moved = values.clone();
+        moved.set(free.parameter, values.as_slice()[free.parameter] + change);
+        moved
+    });
+    let all: Vec<Values> = std::iter::once(values.clone()).chain(moved).collect();
+    let rides = all.par_iter().map(|values| {
+        let failed = |reason| PredictError::Ride {
+            run: evidence.runs[run].name.clone(),
+            reason,
+        };
+        accelerations(model, values, passage, &outputs).map_err(failed)
+    });
+    let rides: Vec<Vec<Vec<f64>>> = rides.collect::<Result<_, _>>()?;
+    let seen = Seen {
+        means: passage.means,
+        late: series
+            .iter()
+            .map(|(place, _)| late.get(*place).copied().unwrap_or(0.0))
+            .collect(),
+        places: series.iter().map(|(place, _)| *place).collect(),
+        series: series.into_iter().map(|(_, series)| series).collect(),
+    };
+    Ok(seen.predictions(&rides[0], &rides[1..], &changes))
+}
+
+/// By how much a parameter is changed for its difference; towards its lower bound where it stands at the upper one.
+fn change(values: &Values, free: &Free) -> f64 {
+    let value = values.as_slice()[free.parameter];
+    let change = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
+    if value + change > free.upper { -change } else { change }
+}
+
+/// The outputs of a ride, sampled like the record.
+fn accelerations(
+    model: &dyn Model,
+    values: &Values,
+    passage: &Passage,
+    outputs: &[usize],
+) -> Result<Vec<Vec<f64>>, SimulateError> {
+    let car = Car {
+        model,
+        parameters: values.as_slice(),
+        tyre: passage.tyre,
+        load: passage.load,
+        variant: Variant::Complete,
+    };
+    let rate = passage.means.rate();
+    let drive = Drive {
+        road: &passage.road,
+        speed: passage.speed,
+        sample_rate: rate,
+        samples: (passage.duration * rate).ceil() as usize + 1,
+    };
+    let settings = Settings {
+        method: METHOD,
+        most_steps: (passage.most_steps * passage.duration).ceil() as usize,
+    };
+    let ride = ride(&car, &drive, &settings)?;
+    Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
+}
+
+/// What the sensors of a run see of a ride.
+struct Seen<'a> {
+    means: Means,
+    series: Vec<&'a Series>,
+    /// Of each its place in the evidence,
+    places: Vec<usize>,
+    /// and how late its sensor is, s.
+    late: Vec<f64>,
+}
+
+/// For each series its values, and their derivatives by the shift.
+type Shifted = Vec<(Vec<f64>, Vec<f64>)>;
+
+impl Seen<'_> {
+    fn predictions(&self, base: &[Vec<f64>], moved: &[Vec<Vec<f64>>], changes: &[f64]) -> Vec<Prediction> {
+        let shift = self.best_shift(base);
+        let here = self.shifted(base, shift);
+        let slopes = moved.iter().zip(changes).map(|(moved, change)| {
+            let there = self.shifted(moved, shift);
+            let pairs = there.iter().zip(&here);
+            let slopes = pairs.map(|(there, here)| {
+                there
+                    .0
+                    .iter()
+                    .zip(&here.0)
+                    .map(|(there, here)| (there - here) / change)
+                    .collect()
+            });
+            self.without_shift(slopes.collect(), &here, shift)
+        });
+        let slopes: Vec<Vec<Vec<f64>>> = slopes.collect();
+        let complex = |values: &[f64]| values.iter().copied().map(Complex::from).collect::<Vec<_>>();
+        let shares = self.shares(&here, shift);
+        let predict = |(column, &place): (usize, &usize)| Prediction {
+            series: place,
+            value: complex(&here[column].0),
+            slopes: slopes
+                .iter()
+                .map(|of_parameter| complex(&of_parameter[column]))
+                .collect(),
+            delay: Some(Delay {
+                slope: complex(&here[column].1),
+                shares: shares.clone(),
+            }),
+            louder: None,
+            begun: Vec::new(),
+        };
+        self.places.iter().enumerate().map(predict).collect()
+    }
+
+    /// The records as they are read when they begin `shift` later, each by a sensor as late as it is.
+    fn shifted(&self, records: &[Vec<f64>], shift: f64) -> Shifted {
+        let read = |((series, late), record): ((&&Series, &f64), &Vec<f64>)| {
+            let means = series.at.iter().map(|t| self.means.at(record, t - shift - late));
+            means.map(|(mean, slope)| (mean, -slope)).unzip()
+        };
+        self.series.iter().zip(&self.late).zip(records).map(read).collect()
+    }
+
+    /// Of a delay of each sensor, what the shift of all takes up; none at the limit of the shift.
+    fn shares(&self, here: &Shifted, shift: f64) -> Vec<(usize, f64)> {
+        let square = |(series, (_, by_shift)): (&&Series, &(Vec<f64>, Vec<f64>))| -> f64 {
+            let scaled = by_shift.iter().zip(&series.sigma).map(|(slope, sigma)| slope / sigma);
+            scaled.map(|slope| slope * slope).sum()
+        };
+        let squares: Vec<f64> = self.series.iter().zip(here).map(square).collect();
+        let all: f64 = squares.iter().sum();
+        if shift.abs() >= TIMING || all == 0.0 {
+            return Vec::new();
+        }
+        let shares = squares.iter().map(|square| square / all);
+        self.places.iter().copied().zip(shares).collect()
+    }
+
+    /// The shift at which the records agree best with the measurement (Gauss-Newton).
+    fn best_shift(&self, records: &[Vec<f64>]) -> f64 {
+        (0..STEPS).fold(0.0, |shift: f64, _| {
+            let here = self.shifted(records, shift);
+            let residuals: Vec<Vec<f64>> = self
+                .series
+                .iter()
+                .zip(&here)
+                .map(|(series, (values, _))| series.value.iter().zip(values).map(|(y, m)| y.re - m).collect())
+                .collect();
+            (shift + self.share_of_shift(&residuals, &here)).clamp(-TIMING, TIMING)
+        })
+    }
+
+    /// How much of a shift there is in a change of all series, by weighted least squares.
+    fn share_of_shift(&self, changes: &[Vec<f64>], here: &Shifted) -> f64 {
+        let (mut product, mut square) = (0.0, 0.0);
+        for ((series, change), (_, by_shift)) in self.series.iter().zip(changes).zip(here) {
+            for ((change, by_shift), sigma) in change.iter().zip(by_shift).zip(&series.sigma) {
+                product += change * by_shift / (sigma * sigma);
+                square += by_shift * by_shift / (sigma * sigma);
+            }
+        }
+        if square > 0.0 { product / square } else { 0.0 }
+    }
+
+    /// A derivative less what the shift takes up of it; a shift that is at its limit takes up nothing.
+    fn without_shift(&self, mut slopes: Vec<Vec<f64>>, here: &Shifted, shift: f64) -> Vec<Vec<f64>> {
+        if shift.abs() < TIMING {
+            let share = self.share_of_shift(&slopes, here);
+            for (slope, (_, by_shift)) in slopes.iter_mut().zip(here) {
+                slope
+                    .iter_mut()
+                    .zip(by_shift)
+                    .for_each(|(slope, by_shift)| *slope -= share * by_shift);
+            }
+        }
+        slopes
+    }
+}

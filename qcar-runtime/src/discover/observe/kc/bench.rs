@@ -1,0 +1,356 @@
+//! A model on a K&C rig: its body is held, its wheel follows a path, and all between them goes along.
+//!
+//! The rig is slow, so that the masses between weigh nothing: each is where no force is left on it. What remembers
+//! (dry friction, relaxing branches, dampers in series with springs) follows by implicit steps (backward Euler), which
+//! no stiffness upsets.
+
+use nalgebra::{DMatrix, DVector, Dyn, LU, SVD};
+
+use crate::campaign::Axis;
+use crate::kc::of_unit_force;
+use crate::model::{About, InputKind, Matrix, Model, Quantity, StateKind};
+use crate::roles::{OnRig, state};
+
+/// Newton's steps of an instant, and when one is small enough: relative to a state, or to `SMALL` of its unit.
+const STEPS: usize = 30;
+const RESTS: f64 = 1e-9;
+const SMALL: f64 = 1e-3;
+
+/// Where the rig holds the wheel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Instant {
+    /// m, against the body.
+    pub travel: f64,
+    /// m/s.
+    pub speed: f64,
+    /// s since the instant before.
+    pub step: f64,
+    /// Whether the force is wanted.
+    pub is_read: bool,
+}
+
+/// Places in a model on the rig.
+pub struct Bench {
+    /// What is moved and held, along which axis.
+    on: OnRig,
+    axis: Axis,
+    /// Position and velocity of the wheel.
+    wheel: usize,
+    wheel_speed: usize,
+    /// Velocity of the body.
+    held_speed: usize,
+    /// The ground under the wheel, which goes with it: the force of the tyre is none of the rig's.
+    ground: Vec<(usize, Quantity)>,
+    between: Vec<Between>,
+    slopes: Vec<Slope>,
+    /// Those in the row of the wheel.
+    of_wheel: Vec<Slope>,
+}
+
+/// A state that the rig does not prescribe.
+struct Between {
+    place: usize,
+    /// Where its velocity is, of a mass.
+    speed: Option<usize>,
+}
+
+/// An entry of `∂f/∂x` that couples what is between.
+struct Slope {
+    /// Its place among the model's nonzeros.
+    entry: usize,
+    /// Its row and column among what is between.
+    row: usize,
+    column: usize,
+    /// Whether it belongs to the velocity of its column.
+    of_speed: bool,
+}
+
+impl Bench {
+    /// `None` of a model that lacks the parts that the rig moves along this axis.
+    pub fn new(about: &About, on: &OnRig, axis: Axis) -> Option<Self> {
+        let along = |kind| {
+            let states = about.states.iter().enumerate();
+            states.filter(move |(_, state)| state.kind == kind && state.axis == axis.name())
+        };
+        let called = |kind, name: &str| state(about, kind, name, axis.name());
+        let held = called(StateKind::Position, &on.body)?;
+        let wheel = called(StateKind::Position, &on.wheel)?;
+        let wheel_speed = called(StateKind::Velocity, &on.wheel)?;
+        let positions = along(StateKind::Position).filter(|(place, _)| ![wheel, held].contains(place));
+        let of_mass = |(place, state): (usize, &crate::model::State)| Between {
+            place,
+            speed: called(StateKind::Velocity, &state.location),
+        };
+        let inner = along(StateKind::Inner).map(|(place, _)| Between { place, speed: None });
+        let between: Vec<Between> = positions.map(of_mass).chain(inner).collect();
+        let of_axis = |excitation: u16| about.excitations[usize::from(excitation)].axis == axis.name();
+        let ground = about
+            .inputs
+            .iter()
+            .enumerate()
+            .filter_map(|(place, input)| match input.kind {
+                InputKind::Motion(excitation, quantity) if of_axis(excitation) => Some((place, quantity)),
+                _ => None,
+            });
+        Some(Self {
+            wheel,
+            wheel_speed,
+            held_speed: called(StateKind::Velocity, &on.body)?,
+            on: on.clone(),
+            axis,
+            ground: ground.collect(),
+            slopes: slopes(about, &between, |row| between.iter().position(|b| b.row() == row)),
+            of_wheel: slopes(about, &between, |row| (row == wheel_speed).then_some(0)),
+            between,
+        })
+    }
+
+    /// The force on the wheel (N) at each instant that is read of a path that begins at rest: with these parameters, and
+    /// with each of some sets that are so near that one Newton step leads from the one to the other. `None` where no force
+    /// can be put on the wheel.
+    pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Option<Vec<Vec<f64>>> {
+        let mut first = Drive::new(self, model, p)?;
+        // What the rig does not feel leaves the forces as they are.
+        let felt = (1..).zip(near).filter(|(_, other)| self.feels(model.about(), p, other));
+        let near_drives = felt.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
+        let mut near_drives = near_drives.collect::<Option<Vec<(usize, Drive)>>>()?;
+        let mut forces = vec![Vec::with_capacity(path.len()); 1 + near.len()];
+        for instant in path {
+            first.hold(instant);
+            let factor = first.follow(instant.step);
+            let read = forces[0].len();
+            if instant.is_read {
+                let force = first.force();
+                forces.iter_mut().for_each(|forces| forces.push(force));
+            }
+            for (set, drive) in &mut near_drives {
+                drive.hold(instant);
+                drive.follow_near(&first.x, factor.as_ref(), instant.step);
+                if instant.is_read {
+                    forces[*set][read] = drive.force();
+                }
+            }
+        }
+        Some(forces)
+    }
+
+    /// Whether anything that differs between two parameter sets acts on what the rig measures.
+    fn feels(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
+        let held = [self.wheel_speed, self.held_speed];
+        let is_seen = |row: usize| held.contains(&row) || self.between.iter().any(|b| b.row() == row);
+        let mut jacobian = about.parameter_jacobian.iter();
+        jacobian.any(|&(is_output, row, parameter)| {
+            let parameter = usize::from(parameter);
+            !is_output && is_seen(usize::from(row)) && p[parameter] != other[parameter]
+        })
+    }
+}
+
+/// How the states between move what is in some rows of the model.
+fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usize>) -> Vec<Slope> {
+    let column = |state: usize| {
+        let of_speed = between.iter().position(|b| b.speed == Some(state));
+        let of_place = between.iter().position(|b| b.place == state);
+        of_speed.map(|column| (column, true)).or(of_place.map(|c| (c, false)))
+    };
+    let slope = |(entry, of): (usize, &crate::model::Entry)| {
+        let (column, of_speed) = column(usize::from(of.column)).filter(|_| of.matrix == Matrix::A)?;
+        Some(Slope {
+            entry,
+            row: row(usize::from(of.row))?,
+            column,
+            of_speed,
+        })
+    };
+    about.matrices.iter().enumerate().filter_map(slope).collect()
+}
+
+impl Between {
+    /// The row of the equations of motion that says where it goes.
+    fn row(&self) -> usize {
+        self.speed.unwrap_or(self.place)
+    }
+}
+
+/// A model with a parameter set, on its way.
+struct Drive<'a> {
+    bench: &'a Bench,
+    model: &'a dyn Model,
+    p: &'a [f64],
+    constants: Vec<f64>,
+    /// What a force of one on the wheel accelerates, through inerters more than the wheel.
+    of_unit: Vec<f64>,
+    x: Vec<f64>,
+    u: Vec<f64>,
+    dx: Vec<f64>,
+    nonzeros: Vec<f64>,
+}
+
+impl<'a> Drive<'a> {
+    fn new(bench: &'a Bench, model: &'a dyn Model, p: &'a [f64]) -> Option<Self> {
+        let about = model.about();
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
+        Some(Self {
+            bench,
+            model,
+            p,
+            constants,
+            of_unit: of_unit_force(model, p, &bench.on.wheel, bench.axis.name())?,
+            x: vec![0.0; about.states.len()],
+            u: vec![0.0; about.inputs.len()],
+            dx: vec![0.0; about.states.len()],
+            nonzeros: vec![0.0; about.matrices.len()],
+        })
+    }
+
+    /// Puts the wheel where the rig has it.
+    fn hold(&mut self, at: &Instant) {
+        let bench = self.bench;
+        (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
+        for &(place, quantity) in &bench.ground {
+            self.u[place] = match quantity {
+                Quantity::Position => at.travel,
+                Quantity::Velocity => at.speed,
+                Quantity::Acceleration => 0.0,
+            };
+        }
+    }
+
+    /// What the rig pushes with.
+    fn force(&mut self) -> f64 {
+        self.move_on();
+        self.push()
+    }
+
+    /// The force that holds the wheel, by what it would do if it were let go.
+    fn push(&self) -> f64 {
+        -self.dx[self.bench.wheel_speed] / self.wheel_of_unit()
+    }
+
+    /// The acceleration of the wheel for a force of one. The body is let go too: what inerters pass on from it to the wheel
+    /// is what they pass on from the wheel to it.
+    fn wheel_of_unit(&self) -> f64 {
+        self.of_unit[self.bench.wheel_speed] - self.of_unit[self.bench.held_speed]
+    }
+
+    fn move_on(&mut self) {
+        self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
+    }
+
+    /// Takes what is between to where it is after `h` s (Newton's method); returns the last slope.
+    fn follow(&mut self, h: f64) -> Option<Factor> {
+        let last = self.between();
+        let mut factor = None;
+        for _ in 0..STEPS {
+            let missing = self.missing(&last, h);
+            factor = Factor::of(self.slope(h));
+            let step = factor.as_ref().and_then(|factor| factor.solve(missing));
+            let Some(step) = step else { return factor };
+            if self.step(&step, &last, h) {
+                break;
+            }
+        }
+        factor
+    }
+
+    /// The same in one step from where a drive next to this one has arrived.
+    fn follow_near(&mut self, arrived: &[f64], factor: Option<&Factor>, h: f64) {
+        let last = self.between();
+        for b in &self.bench.between {
+            self.x[b.place] = arrived[b.place];
+        }
+        let missing = self.missing(&last, h);
+        if let Some(step) = factor.and_then(|factor| factor.solve(missing)) {
+            self.step(&step, &last, h);
+        }
+    }
+
+    /// Where what is between is.
+    fn between(&self) -> Vec<f64> {
+        self.bench.between.iter().map(|b| self.x[b.place]).collect()
+    }
+
+    /// Moves what is between, and says whether it rests.
+    fn step(&mut self, step: &DVector<f64>, last: &[f64], h: f64) -> bool {
+        let mut rests = true;
+        for (b, step) in self.bench.between.iter().zip(step) {
+            self.x[b.place] += step;
+            rests &= step.abs() <= RESTS * (self.x[b.place].abs() + SMALL);
+        }
+        self.set_speeds(last, h);
+        rests
+    }
+
+    fn set_speeds(&mut self, last: &[f64], h: f64) {
+        for (b, last) in self.bench.between.iter().zip(last) {
+            if let Some(speed) = b.speed {
+                self.x[speed] = (self.x[b.place] - last) / h;
+            }
+        }
+    }
+
+    /// What is missing until each of what is between has gone its step: no force on a mass is left then.
+    fn missing(&mut self, last: &[f64], h: f64) -> DVector<f64> {
+        self.set_speeds(last, h);
+        let push = self.force();
+        let missing = |(b, last): (&Between, &f64)| match b.speed {
+            Some(speed) => -self.dx[speed] - push * self.of_unit[speed],
+            None => h * self.dx[b.place] + last - self.x[b.place],
+        };
+        DVector::from_iterator(last.len(), self.bench.between.iter().zip(last).map(missing))
+    }
+
+    /// How what is missing changes with where the states are, with the opposite sign.
+    fn slope(&mut self, h: f64) -> DMatrix<f64> {
+        self.model.matrices(self.p, &self.x, &self.u, &mut self.nonzeros);
+        let between = &self.bench.between;
+        let mut slope = DMatrix::zeros(between.len(), between.len());
+        let along = |of: &Slope| self.nonzeros[of.entry] * if of.of_speed { 1.0 / h } else { 1.0 };
+        for of in &self.bench.slopes {
+            slope[(of.row, of.column)] += along(of);
+        }
+        for (row, b) in between.iter().enumerate() {
+            let share = b.speed.map_or(0.0, |speed| self.of_unit[speed] / self.wheel_of_unit());
+            for of in &self.bench.of_wheel {
+                slope[(row, of.column)] -= share * along(of);
+            }
+        }
+        for (row, _) in between.iter().enumerate().filter(|(_, b)| b.speed.is_none()) {
+            slope.row_mut(row).scale_mut(-h);
+            slope[(row, row)] += 1.0;
+        }
+        slope
+    }
+}
+
+/// A slope that is ready to be solved for.
+enum Factor {
+    Regular(LU<f64, Dyn, Dyn>),
+    /// What nothing holds stays where it is: the smallest step of all.
+    Singular(SVD<f64, Dyn, Dyn>),
+}
+
+impl Factor {
+    /// `None` where nothing is between, or without a number.
+    fn of(slope: DMatrix<f64>) -> Option<Self> {
+        if slope.is_empty() || !slope.iter().all(|entry| entry.is_finite()) {
+            return None;
+        }
+        let factor = slope.clone().lu();
+        Some(if factor.is_invertible() {
+            Factor::Regular(factor)
+        } else {
+            Factor::Singular(slope.svd(true, true))
+        })
+    }
+
+    /// `None` without a number.
+    fn solve(&self, mut missing: DVector<f64>) -> Option<DVector<f64>> {
+        let step = match self {
+            Factor::Regular(factor) => factor.solve_mut(&mut missing).then_some(missing),
+            Factor::Singular(factor) => factor.solve(&missing, f64::EPSILON).ok(),
+        };
+        step.filter(|step| step.iter().all(|step| step.is_finite()))
+    }
+}

@@ -1,0 +1,117 @@
+//! A K&C sine as evidence: the harmonics of the force over the amplitude of the travel.
+//!
+//! The first is the dynamic stiffness and damping at that speed; the third is what dry friction and stops make of a sine,
+//! the second what differs between both directions. Held against the slow cycle and sines of other speeds it tells a
+//! damper, whose force grows with speed, from friction, whose force does not.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{Complex, DMatrix, DVector};
+
+use super::travel::{FLOOR, sensor};
+use crate::campaign::{Axis, Campaign, DynamicCurve};
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
+use crate::error::InputError;
+use crate::model::About;
+
+/// Harmonics that are evidence, and those that are taken out before noise is read.
+const ORDERS: usize = 3;
+const FITTED: usize = 7;
+/// The share of the displacement's variance that may be anything but the sine that the campaign promises.
+const OTHER: f64 = 0.01;
+
+impl Evidence {
+    /// Reads a sine of `amplitude` m that crosses its middle at `peak_velocity` m/s.
+    pub(in crate::discover::observe) fn add_sine(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+        (amplitude, peak_velocity): (f64, f64),
+    ) -> Result<(), InputError> {
+        let curve = campaign.dynamic_curve(run)?;
+        let Some(on) = self.on_rig(campaign, about, run, Axis::Z) else {
+            return Ok(());
+        };
+        let frequency = peak_velocity / amplitude / TAU;
+        let Some((reach, series)) = harmonics(self.runs.len(), &curve, frequency) else {
+            let what = format!("no whole cycle of a sine of {frequency:.3} Hz; the run is left out");
+            self.notices.push(format!("{}: {what}", run.file));
+            return Ok(());
+        };
+        self.series.extend(series);
+        self.runs.push(Run {
+            name: run.file.clone(),
+            role: run.role,
+            level: reach,
+            stimulus: Stimulus::Sine {
+                on,
+                axis: Axis::Z,
+                frequency,
+            },
+        });
+        Ok(())
+    }
+}
+
+/// The amplitude of the travel, and a series for each harmonic of the last whole cycles.
+fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, Vec<Series>)> {
+    let end = *curve.time.last()?;
+    let cycles = ((end - curve.time[0]) * frequency).floor();
+    let first = curve
+        .time
+        .iter()
+        .position(|t| cycles >= 1.0 && *t >= end - cycles / frequency)?;
+    let time = &curve.time[first..];
+    let travel = fitted(time, &curve.displacement[first..], frequency, 1)?;
+    let force = fitted(time, &curve.force[first..], frequency, FITTED)?;
+    let reach = travel.harmonic[0].norm();
+    if travel.left.powi(2) > OTHER * reach * reach / 2.0 {
+        return None;
+    }
+    let most = curve.force[first..].iter().fold(0.0, |most: f64, f| most.max(f.abs()));
+    let noise = 2.0 * force.left / (time.len() as f64).sqrt();
+    let turn = travel.harmonic[0].conj() / reach;
+    let series = |order: usize| Series {
+        run,
+        sensor: sensor(Axis::Z),
+        kind: Kind::Cycle(order),
+        at: vec![frequency],
+        value: vec![force.harmonic[order - 1] * turn.powi(order as i32) / reach],
+        sigma: vec![noise.hypot(FLOOR * most) / reach],
+        noise: vec![noise.hypot(LEAST_NOISE * most) / reach],
+        least_discrepancy: FLOOR,
+    };
+    Some((reach, (1..=ORDERS).map(series).collect()))
+}
+
+/// A periodic signal.
+struct Periodic {
+    /// Complex amplitudes of the harmonics from the first.
+    harmonic: Vec<Complex<f64>>,
+    /// RMS of what else there is.
+    left: f64,
+}
+
+/// Least squares of a mean and so many harmonics.
+fn fitted(time: &[f64], signal: &[f64], frequency: f64, orders: usize) -> Option<Periodic> {
+    let entry = |sample: usize, column: usize| {
+        let angle = TAU * frequency * time[sample] * column.div_ceil(2) as f64;
+        if column.is_multiple_of(2) {
+            angle.cos()
+        } else {
+            -angle.sin()
+        }
+    };
+    let columns = DMatrix::from_fn(time.len(), 1 + 2 * orders, entry);
+    let signal = DVector::from_column_slice(signal);
+    let parts = (columns.transpose() * &columns)
+        .cholesky()?
+        .solve(&(columns.transpose() * &signal));
+    let harmonic = (1..=orders).map(|order| Complex::new(parts[2 * order], parts[2 * order - 1]));
+    Some(Periodic {
+        harmonic: harmonic.collect(),
+        left: (signal - columns * &parts).norm() / (time.len() as f64).sqrt(),
+    })
+}

@@ -1,0 +1,104 @@
+//! What a model says of the data set, with its parameter Jacobian.
+
+use rayon::prelude::*;
+
+use super::dataset::Evidence;
+use super::prediction::{Free, Misread, PredictError, Prediction};
+use super::run::{Run, Stimulus};
+use super::{cleat, kc, sweep, time_history};
+use crate::campaign::Role;
+use crate::model::Model;
+use crate::response::parameters::Values;
+use crate::transmissibility::Point;
+
+/// Predicts all series of the runs of one role; differentiated along `free` and, where there is any, along the states with
+/// which records begin.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn predict(
+    model: &dyn Model,
+    values: &Values,
+    free: &[Free],
+    evidence: &Evidence,
+    role: Role,
+) -> Result<Vec<Prediction>, PredictError> {
+    let misread = Misread::default();
+    predict_sides(model, [values, values], &misread, free, evidence, &|run| {
+        run.role == role
+    })
+}
+
+/// The same of the runs that are `wanted`, of a car whose recorded side has parameters of its own (the second set): cleat
+/// runs see these. Sensors are `misread`.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_sides(
+    model: &dyn Model,
+    [values, side]: [&Values; 2],
+    misread: &Misread,
+    free: &[Free],
+    evidence: &Evidence,
+    wanted: &dyn Fn(&Run) -> bool,
+) -> Result<Vec<Prediction>, PredictError> {
+    let runs: Vec<usize> = (0..evidence.runs.len())
+        .filter(|&run| wanted(&evidence.runs[run]))
+        .collect();
+    let of_runs = runs
+        .into_par_iter()
+        .map(|run| of_run(model, [values, side], misread, free, evidence, run));
+    Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
+}
+
+/// What the sensors of a run show, differentiated along the states of the model when its record begins alone.
+///
+/// # Errors
+/// As [`predict`].
+pub fn predict_begun(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    time_history::history(model, values, misread, (&[], true), evidence, run)
+}
+
+/// What the sensors of a sweep or a time history would have recorded, sample by sample; nothing of any other run.
+///
+/// # Errors
+/// As [`predict`].
+pub fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    match &evidence.runs[run].stimulus {
+        Stimulus::Sweep { .. } => sweep::replayed(model, values, evidence, run),
+        Stimulus::History { .. } => time_history::replayed(model, values, misread, evidence, run),
+        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => Ok(Vec::new()),
+    }
+}
+
+fn of_run(
+    model: &dyn Model,
+    [values, side]: [&Values; 2],
+    misread: &Misread,
+    free: &[Free],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let late = &misread.late;
+    match &evidence.runs[run].stimulus {
+        Stimulus::Sweep { .. } if model.about().linear => sweep::linear(model, values, free, evidence, run),
+        Stimulus::Sweep { .. } => sweep::nonlinear(model, values, misread.louder(run), free, evidence, run),
+        Stimulus::Cleat(passage) => cleat::passage(model, side, late, free, evidence, (run, passage)),
+        Stimulus::History { .. } => {
+            time_history::history(model, values, misread, (free, !free.is_empty()), evidence, run)
+        }
+        Stimulus::Travel { .. } | Stimulus::Sine { .. } => kc::travel(model, values, free, evidence, run),
+    }
+}

@@ -1,0 +1,53 @@
+//! A campaign as a data set.
+
+use super::dataset::Evidence;
+use crate::campaign::{Axis, Campaign, Run, Side, Test};
+use crate::discover::numbers::Numbers;
+use crate::error::{InputError, Place, Problem};
+use crate::model::About;
+
+impl Evidence {
+    /// Reads what the runs of a campaign say of a model.
+    ///
+    /// Sensors at places that the model does not have are left out with a notice, so that all variants of this model
+    /// are held against the same evidence.
+    ///
+    /// # Errors
+    /// Where a file cannot be read, a sweep has no pad, or no run says anything.
+    pub fn from_campaign(campaign: &Campaign, about: &About) -> Result<Self, InputError> {
+        let mut evidence = Evidence {
+            runs: Vec::new(),
+            series: Vec::new(),
+            two_sided: campaign.channels.iter().any(|channel| channel.side == Side::Right),
+            notices: Vec::new(),
+            numbers: Numbers::default(),
+        };
+        for run in &campaign.runs {
+            evidence.add(campaign, about, run)?;
+        }
+        if evidence.series.is_empty() {
+            let mut remedy = "add a run with sensors at places of the model".to_owned();
+            evidence
+                .notices
+                .iter()
+                .for_each(|notice| remedy = format!("{remedy}; {notice}"));
+            let found = "no run that says anything of the model";
+            return Err(Problem::new(campaign.manifest(), Place::File, found, "measured responses", remedy).into());
+        }
+        Ok(evidence)
+    }
+
+    fn add(&mut self, campaign: &Campaign, about: &About, run: &Run) -> Result<(), InputError> {
+        match &run.test {
+            Test::Sweep(sweep) => self.add_sweep(campaign, about, run, sweep),
+            Test::TimeHistory(recording) => self.add_history(campaign, about, run, recording),
+            Test::Cleat { .. } => self.add_cleat(campaign, about, run),
+            Test::Bounce => self.add_travel(campaign, about, run, Axis::Z),
+            Test::Longitudinal => self.add_travel(campaign, about, run, Axis::X),
+            Test::DynamicBounce {
+                peak_velocity,
+                amplitude,
+            } => self.add_sine(campaign, about, run, (*amplitude, *peak_velocity)),
+        }
+    }
+}

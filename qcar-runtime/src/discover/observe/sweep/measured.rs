@@ -1,0 +1,209 @@
+//! A sweep as evidence: the first, second and third harmonic of every sensor over the amplitude of the pad.
+
+use std::path::PathBuf;
+
+use nalgebra::Complex;
+
+use crate::campaign::{Campaign, Sweep};
+use crate::discover::observe::sensor::is_motion;
+use crate::discover::observe::series::LEAST_NOISE;
+use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
+use crate::error::{InputError, Place, Problem};
+use crate::model::About;
+use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Swept};
+use crate::transmissibility::{Point, points, signal};
+
+/// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
+/// proportion.
+pub const ORDERS: usize = 3;
+
+/// Wide enough for eight unknowns a line, and narrow enough to follow a mode.
+pub const AROUND: Neighbourhood = Neighbourhood {
+    lines: 10,
+    width: 0.035,
+};
+
+/// Lines closer than this share of a frequency say the same twice.
+const GROWTH: f64 = 0.05;
+
+/// Lines closer than this part of the neighbourhood say the same twice, lines of the spectrum.
+const APART: f64 = 6.0;
+
+/// Of the first harmonic: what the estimator itself may be off (see [`Estimator::LOCAL`](crate::transmissibility::Estimator)),
+/// and what differs between the sides of a car.
+const FLOOR: f64 = 0.002;
+
+/// Of the first harmonic, what the mean over two sides differs by from one side of mean parameters: where stiffnesses are
+/// 1.5 % apart, resonances are 0.75 % apart, and with a damping ratio of 5 % the mean of two peaks is lower than one by
+/// half the square of 0.75 / 2 / 5, at its flanks by as much as that again.
+const OF_SIDES: f64 = 0.005;
+
+impl Evidence {
+    pub(in crate::discover::observe) fn add_sweep(
+        &mut self,
+        campaign: &Campaign,
+        about: &About,
+        run: &crate::campaign::Run,
+        sweep: &Sweep,
+    ) -> Result<(), InputError> {
+        let history = campaign.history(run)?;
+        let (pads, others): (Vec<_>, Vec<_>) = points(&history).into_iter().partition(|point| is_motion(about, point));
+        let is_one = |pads: &[Point]| {
+            pads.iter()
+                .all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis))
+        };
+        let reference = match &pads[..] {
+            [reference, ..] if is_one(&pads) => reference.clone(),
+            _ => return Err(not_one(about, &pads, history.file).into()),
+        };
+        let sensors = self.known(about, &run.file, others);
+        if sensors.is_empty() {
+            self.notices
+                .push(format!("{}: no sensor but the pad's; the run is left out", run.file));
+            return Ok(());
+        }
+        let excitation = signal(&history, &reference)?;
+        let band = (sweep.start_frequency, sweep.end_frequency);
+        let rate = history.sample_rate;
+        let swept = Swept::new(&excitation, rate, band, ORDERS);
+        let grid = grid(band, rate / excitation.len() as f64);
+        let passed: Vec<(f64, f64)> = grid
+            .into_iter()
+            .filter_map(|f| Some((f, swept.amplitude(f)?)))
+            .collect();
+        let (frequency, amplitude): (Vec<f64>, Vec<f64>) = passed.into_iter().unzip();
+        let (place, before) = (self.runs.len(), self.series.len());
+        for sensor in sensors {
+            let samples = signal(&history, &sensor)?;
+            let respond = |order: usize| {
+                let at: Vec<f64> = answered(&frequency, order, rate);
+                let response: Vec<f64> = at.iter().map(|f| f * order as f64).collect();
+                (at, swept.responses(&samples, &response, AROUND))
+            };
+            let first = series(place, &sensor, 1, respond(1));
+            if !stands_clear(&first) {
+                let said = format!("`{}` shows nothing but noise", sensor.location);
+                self.notices
+                    .push(format!("{}: {said}; that sensor is left out", run.file));
+                continue;
+            }
+            let others = (2..=ORDERS).map(|order| series(place, &sensor, order, respond(order)));
+            self.series.extend(std::iter::once(first).chain(others));
+        }
+        if self.series.len() == before {
+            return Ok(());
+        }
+        self.runs.push(Run {
+            name: run.file.clone(),
+            role: run.role,
+            level: sweep.peak_velocity,
+            stimulus: Stimulus::Sweep {
+                reference,
+                signal: excitation,
+                rate,
+                frequency,
+                amplitude,
+                band,
+            },
+        });
+        Ok(())
+    }
+}
+
+/// What is wrong with a sweep whose sensors are at none or at several of the motions that drive the model.
+fn not_one(about: &About, pads: &[Point], file: PathBuf) -> Problem {
+    let (place, name) = (Place::Line(1), |point: &Point| point.to_string());
+    if pads.is_empty() {
+        let motions = about.excitations.iter().filter(|e| !e.force);
+        let motions: Vec<String> = motions.map(|e| format!("`{}` along {}", e.name, e.axis)).collect();
+        let expected = match &motions[..] {
+            [] => "a model that is driven by a motion".to_string(),
+            some => format!("a channel at {}", some.join(" or ")),
+        };
+        let remedy = "add the pad's channel to the run: it is what the responses are related to";
+        return Problem::new(file, place, "no sensor at what moves the model", expected, remedy);
+    }
+    let found = format!(
+        "sensors at several pads: {}",
+        pads.iter().map(name).collect::<Vec<_>>().join(", ")
+    );
+    let remedy = "remove the channels of all pads but the one that was driven, and take a model with one tyre";
+    Problem::new(file, place, found, "one that drives the model", remedy)
+}
+
+/// Whether a sensor answers at all: chance lifts one value in eight thousand above three standard deviations.
+fn stands_clear(series: &Series) -> bool {
+    const CLEAR: f64 = 3.0;
+    const SHARE: f64 = 0.05;
+    let pairs = series.value.iter().zip(&series.sigma);
+    let clear = pairs.filter(|(value, sigma)| value.norm() > CLEAR * **sigma).count();
+    clear as f64 > SHARE * series.value.len() as f64
+}
+
+/// Frequencies whose neighbourhoods overlap little: evenly spaced below, by equal ratios above.
+fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
+    /// The ends of a sweep are faded in and out, and beyond them there are no lines to tell noise from response.
+    const INSIDE: f64 = 1.2;
+    let next = |f: &f64| Some(f + (GROWTH * f).max(APART * spacing));
+    std::iter::successors(Some(first * INSIDE), next)
+        .take_while(|f| *f * INSIDE.sqrt() < last)
+        .collect()
+}
+
+/// Of `frequency`, those whose multiple a record at `rate` still holds well; every other one for a multiple, whose
+/// response is asked for at wider steps.
+fn answered(frequency: &[f64], order: usize, rate: f64) -> Vec<f64> {
+    let highest = 0.2 * rate;
+    let step = if order == 1 { 1 } else { 2 };
+    frequency
+        .iter()
+        .copied()
+        .step_by(step)
+        .filter(|f| f * (order as f64) < highest)
+        .collect()
+}
+
+fn series(run: usize, sensor: &Point, order: usize, (at, lines): (Vec<f64>, Vec<HarmonicLine>)) -> Series {
+    let noise = smooth(&lines.iter().map(|line| line.variance[order - 1]).collect::<Vec<_>>());
+    let value: Vec<Complex<f64>> = lines
+        .iter()
+        .map(|line| line.value[order - 1].unwrap_or_default())
+        .collect();
+    let floor = |value: &Complex<f64>| {
+        if order == 1 {
+            (FLOOR * value.norm()).powi(2)
+        } else {
+            0.0
+        }
+    };
+    Series {
+        run,
+        sensor: sensor.clone(),
+        kind: Kind::Harmonic(order),
+        noise: noise
+            .iter()
+            .zip(&value)
+            .map(|(noise, value)| noise.sqrt().hypot(LEAST_NOISE * value.norm()).max(f64::MIN_POSITIVE))
+            .collect(),
+        least_discrepancy: if order == 1 { OF_SIDES } else { FLOOR },
+        sigma: noise
+            .iter()
+            .zip(&value)
+            .map(|(noise, value)| (noise + floor(value)).sqrt())
+            .collect(),
+        at,
+        value,
+    }
+}
+
+/// The median over five neighbours: a variance from few lines is itself uncertain.
+fn smooth(variance: &[f64]) -> Vec<f64> {
+    const HALF: usize = 2;
+    (0..variance.len())
+        .map(|k| {
+            let mut around = variance[k.saturating_sub(HALF)..(k + HALF + 1).min(variance.len())].to_vec();
+            let middle = around.len() / 2;
+            *around.select_nth_unstable_by(middle, f64::total_cmp).1
+        })
+        .collect()
+}

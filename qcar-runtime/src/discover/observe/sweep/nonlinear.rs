@@ -1,0 +1,114 @@
+//! Sweeps of a nonlinear model: at every frequency the harmonics of its periodic response at the measured amplitude.
+
+use nalgebra::Complex;
+
+use super::excitation;
+use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, Series, Stimulus, order_of, signal_of};
+use crate::model::{About, Model};
+use crate::response::parameters::Values;
+use crate::response::periodic::{Cycle, Drive, Periodic};
+use crate::response::signal::output_of;
+
+/// Harmonics of the balance: those that are measured and enough above for their laws to settle.
+const HARMONICS: usize = 5;
+
+/// Of a run that was driven harder by the factor `louder` than its reference shows.
+pub fn sweep(
+    model: &dyn Model,
+    values: &Values,
+    louder: f64,
+    free: &[Free],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let about = model.about();
+    let Stimulus::Sweep {
+        reference,
+        frequency,
+        amplitude,
+        ..
+    } = &evidence.runs[run].stimulus
+    else {
+        return Ok(Vec::new());
+    };
+    let excitation = excitation(model, evidence, run, reference)?;
+    let power = order_of(reference);
+    let drives = frequency.iter().zip(amplitude).map(|(&frequency, &amplitude)| Drive {
+        frequency,
+        amplitude: louder * amplitude,
+        power,
+    });
+    let drives: Vec<Drive> = drives.collect();
+    let mut readings = Vec::new();
+    for (place, series) in evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| series.run == run)
+    {
+        let (output, power) = output_of(about, &signal_of(about, &series.sensor))?;
+        readings.push(Reading {
+            place,
+            series,
+            output,
+            power,
+        });
+    }
+    let outputs: Vec<usize> = readings.iter().map(|reading| reading.output).collect();
+    let groups = groups(about, values, free);
+    let cycles = Periodic::new(model, excitation, HARMONICS).walk(values.as_slice(), &drives, &outputs, &groups);
+    let predict = |reading: &Reading| reading.prediction(&drives, &cycles, free.len());
+    Ok(readings.iter().map(predict).collect())
+}
+
+/// For each free parameter those that move with it.
+fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
+    let with = |free: &Free| {
+        (0..about.parameters.len())
+            .filter(|&k| values.leader(k) == free.parameter)
+            .collect()
+    };
+    free.iter().map(with).collect()
+}
+
+/// How a series is read from the cycles.
+struct Reading<'a> {
+    place: usize,
+    series: &'a Series,
+    /// Place in `y`.
+    output: usize,
+    /// Of jω, from the output to the sensor.
+    power: i32,
+}
+
+impl Reading<'_> {
+    fn prediction(&self, drives: &[Drive], cycles: &[Cycle], free: usize) -> Prediction {
+        let Kind::Harmonic(harmonic) = self.series.kind else {
+            unreachable!("a sweep has no other series")
+        };
+        let at = |f: &f64| drives.iter().position(|drive| drive.frequency == *f).unwrap_or(0);
+        let places: Vec<usize> = self.series.at.iter().map(at).collect();
+        let scale = |place: usize| {
+            let drive = drives[place];
+            let omega = std::f64::consts::TAU * drive.frequency * harmonic as f64;
+            Complex::new(0.0, omega).powi(self.power) / drive.amplitude
+        };
+        let value = |&place: &usize| cycles[place].output(self.output)[harmonic] * scale(place);
+        let slope = |k: usize| {
+            let along = |&place: &usize| cycles[place].slope(k, self.output)[harmonic] * scale(place);
+            places.iter().map(along).collect()
+        };
+        let louder = |&place: &usize| {
+            let moved = cycles[place].louder(self.output)[harmonic] - cycles[place].output(self.output)[harmonic];
+            moved * scale(place)
+        };
+        Prediction {
+            series: self.place,
+            value: places.iter().map(value).collect(),
+            louder: (free > 0).then(|| places.iter().map(louder).collect()),
+            begun: Vec::new(),
+            slopes: (0..free).map(slope).collect(),
+            delay: None,
+        }
+    }
+}

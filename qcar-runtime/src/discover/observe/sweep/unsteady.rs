@@ -1,0 +1,222 @@
+//! What a swept sine shows beyond the steady harmonics at each of its frequencies.
+//!
+//! A sweep never settles: friction remembers where it was, and lightly damped modes ring on. A balance of few harmonics
+//! cuts off what sharp laws do. And near the ends of a sweep the estimator takes a little of one harmonic for another. All
+//! are small against the response and change little with the parameters. So the measured motion of the pad is replayed
+//! through the model, the responses are read from it by the estimator that read the measurement, and how much they differ
+//! from the steady harmonics is added to these wherever a search goes.
+
+use std::collections::BTreeMap;
+
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+use super::measured::{AROUND, ORDERS};
+use super::{excitation, linear, nonlinear};
+use crate::campaign::Role;
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
+use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Series, Stimulus, order_of, signal_of};
+use crate::model::{Model, Signal};
+use crate::response::parameters::Values;
+use crate::response::ratio::ratio;
+use crate::response::signal::SignalError;
+use crate::spectrum::{synthesize, transform};
+use crate::transmissibility::Point;
+use crate::transmissibility::harmonics::Swept;
+
+/// A sweep is faded in and out beyond its band by this factor, and friction remembers its slow parts; what lies farther
+/// out is noise of the pad's sensor.
+const BEYOND: f64 = 4.0;
+
+/// For each series what the sweeps of the runs of one role add to the steady harmonics; nothing for series of other runs,
+/// and of sweeps whose record is not at hand.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn unsteady(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    role: Role,
+) -> Result<Vec<Vec<Complex<f64>>>, PredictError> {
+    let mut added = vec![Vec::new(); evidence.series.len()];
+    let runs: Vec<usize> = (0..evidence.runs.len())
+        .filter(|&run| evidence.runs[run].role == role)
+        .collect();
+    let of_runs = runs
+        .into_par_iter()
+        .map(|run| of_run(model, values, misread.louder(run), evidence, run));
+    for (series, differences) in of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten() {
+        added[series] = differences;
+    }
+    Ok(added)
+}
+
+/// Places of series with their differences.
+type Differences = Vec<(usize, Vec<Complex<f64>>)>;
+
+fn of_run(
+    model: &dyn Model,
+    values: &Values,
+    louder: f64,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Differences, PredictError> {
+    let Stimulus::Sweep {
+        reference,
+        signal,
+        rate,
+        band,
+        ..
+    } = &evidence.runs[run].stimulus
+    else {
+        return Ok(Vec::new());
+    };
+    if signal.is_empty() {
+        return Ok(Vec::new());
+    }
+    let about = model.about();
+    let steady = if about.linear {
+        linear(model, values, &[], evidence, run)?
+    } else {
+        nonlinear(model, values, louder, &[], evidence, run)?
+    };
+    let sensors = steady
+        .iter()
+        .map(|p| signal_of(about, &evidence.series[p.series].sensor));
+    let driven = Driven {
+        excitation: excitation(model, evidence, run, reference)?,
+        reference,
+        samples: &signal.iter().map(|sample| louder * sample).collect::<Vec<_>>(),
+        rate: *rate,
+        band: (band.0 / BEYOND, band.1 * BEYOND),
+    };
+    let shown = if about.linear {
+        driven.answered(model, values, &sensors.collect::<Vec<_>>())?
+    } else {
+        driven.replayed(model, values, &sensors.collect::<Vec<_>>())?
+    };
+    let swept = Swept::new(driven.samples, *rate, *band, ORDERS);
+    let differences = steady.into_par_iter().zip(shown).map(|(steady, shown)| {
+        let seen = seen(&swept, &shown, &evidence.series[steady.series]);
+        let differences = seen.iter().zip(&steady.value).map(|(seen, steady)| seen - steady);
+        (steady.series, differences.collect())
+    });
+    Ok(differences.collect())
+}
+
+/// What the sensors of a sweep would have recorded, sample by sample, from rest on.
+pub fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    let Stimulus::Sweep {
+        reference,
+        signal,
+        rate,
+        band,
+        ..
+    } = &evidence.runs[run].stimulus
+    else {
+        return Ok(Vec::new());
+    };
+    let driven = Driven {
+        excitation: excitation(model, evidence, run, reference)?,
+        reference,
+        samples: signal,
+        rate: *rate,
+        band: (band.0 / BEYOND, band.1 * BEYOND),
+    };
+    let sensors = evidence.sensors(run);
+    let signals: Vec<Signal> = sensors.iter().map(|sensor| signal_of(model.about(), sensor)).collect();
+    let shown = driven.replayed(model, values, &signals)?;
+    Ok(sensors.into_iter().cloned().zip(shown).collect())
+}
+
+/// What the pad did in a sweep, from rest.
+struct Driven<'a> {
+    excitation: usize,
+    reference: &'a Point,
+    samples: &'a [f64],
+    rate: f64,
+    /// Hz: what lies outside is not motion but noise.
+    band: (f64, f64),
+}
+
+impl Driven<'_> {
+    /// What sensors then show of a nonlinear model.
+    fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+        let recorded = Recorded {
+            excitation: self.excitation,
+            power: order_of(self.reference),
+            samples: self.samples,
+        };
+        let how = Between {
+            rate: self.rate,
+            band_limited: true,
+            band: self.band,
+            periodic: false,
+            samples: self.samples.len(),
+            nodes: 0,
+        };
+        let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
+        let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
+        Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings)
+            .run(values.as_slice(), &[])
+            .signals)
+    }
+
+    /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would
+    /// stand at its beginning, were the record not continued by silence; what a sensor reads at rest is silence too.
+    fn answered(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
+        let length = 2 * self.samples.len();
+        let at_rest = self.samples.iter().sum::<f64>() / self.samples.len() as f64;
+        let mut continued: Vec<f64> = self.samples.iter().map(|sample| sample - at_rest).collect();
+        continued.resize(length, 0.0);
+        let (lines, spacing) = (transform(&continued), self.rate / length as f64);
+        let first = (self.band.0 / spacing).ceil() as usize;
+        let inside = first..((self.band.1 / spacing) as usize).clamp(first, lines.len());
+        let at: Vec<f64> = inside.clone().map(|line| line as f64 * spacing).collect();
+        let below = signal_of(model.about(), self.reference);
+        let answer = |sensor: &Signal| {
+            let response = ratio(model, values, self.excitation, sensor, &below, &at)?;
+            let mut answer = vec![Complex::ZERO; lines.len()];
+            for ((answer, line), response) in answer[inside.clone()]
+                .iter_mut()
+                .zip(&lines[inside.clone()])
+                .zip(response.value)
+            {
+                *answer = line * response;
+            }
+            let mut shown = synthesize(&answer, length);
+            shown.truncate(self.samples.len());
+            Ok(shown)
+        };
+        // A sensor has a series for each harmonic, of one and the same signal.
+        let first = |sensor: &Signal| sensors.iter().position(|other| other == sensor);
+        let is_first = |place: &usize| first(&sensors[*place]) == Some(*place);
+        let different: Vec<usize> = (0..sensors.len()).filter(is_first).collect();
+        let shown = different.par_iter().map(|&place| Ok((place, answer(&sensors[place])?)));
+        let shown: BTreeMap<usize, Vec<f64>> = shown.collect::<Result<_, SignalError>>()?;
+        Ok(sensors
+            .iter()
+            .filter_map(|sensor| shown.get(&first(sensor)?).cloned())
+            .collect())
+    }
+}
+
+/// The values of a series in a replayed signal.
+fn seen(swept: &Swept, signal: &[f64], series: &Series) -> Vec<Complex<f64>> {
+    let Kind::Harmonic(order) = series.kind else {
+        unreachable!("a sweep has no other series")
+    };
+    let responses: Vec<f64> = series.at.iter().map(|f| f * order as f64).collect();
+    let lines = swept.responses(signal, &responses, AROUND);
+    lines
+        .iter()
+        .map(|line| line.value[order - 1].unwrap_or_default())
+        .collect()
+}

@@ -1,0 +1,218 @@
+//! Time histories: the model is driven by what was recorded, and its sensors are read at the same instants.
+
+use nalgebra::Complex;
+use rayon::prelude::*;
+
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, Replayed, reading};
+use crate::discover::observe::{
+    Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
+    order_of, signal_of,
+};
+use crate::model::{About, Model};
+use crate::response::parameters::Values;
+use crate::response::signal::SignalError;
+use crate::transmissibility::Point;
+
+/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: the root of
+/// what rounding leaves of a replay.
+const DIFFERENCE: f64 = 1e-5;
+const PART_OF_RANGE: f64 = 1e-3;
+/// The same of a state at the beginning of a record, relative to how far it may be from where it was seen.
+const OF_SPREAD: f64 = 1e-4;
+
+/// What the sensors of a run show, differentiated along `free` and, where `begun`, along the states at its beginning.
+pub fn history(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    (free, begun): (&[Free], bool),
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    let stimulus = &evidence.runs[run].stimulus;
+    let Stimulus::History {
+        inputs, rate, spread, ..
+    } = stimulus
+    else {
+        return Ok(Vec::new());
+    };
+    let series: Vec<_> = evidence
+        .series
+        .iter()
+        .enumerate()
+        .filter(|(_, series)| series.run == run)
+        .collect();
+    let replay = prepare(
+        model,
+        evidence,
+        run,
+        &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
+    )?;
+    let start = inputs.start;
+    let begin = begin(model.about(), misread.begun(run));
+    let base = &replay.run(values.as_slice(), &begin);
+    let moved: Vec<(f64, Replayed)> = free
+        .par_iter()
+        .map(|free| {
+            let mut values = values.clone();
+            let value = values.as_slice()[free.parameter];
+            let step = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower));
+            values.set(free.parameter, value + step);
+            (step, replay.like(base, values.as_slice(), &begin))
+        })
+        .collect();
+    let elsewhere: Vec<(usize, f64)> = if begun {
+        unknown(model.about(), spread)
+    } else {
+        Vec::new()
+    };
+    let elsewhere: Vec<(usize, f64, Replayed)> = elsewhere
+        .into_par_iter()
+        .map(|(state, sigma)| {
+            let step = OF_SPREAD * sigma;
+            let begin: Vec<_> = begin.iter().copied().chain([(state, step)]).collect();
+            (state, step, replay.beside(base, values.as_slice(), &begin))
+        })
+        .collect();
+    let shown = |replayed: &Replayed, column: usize| stimulus.of_band(&replayed.signals[column]);
+    let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
+        let late = misread.late.get(*place).copied().unwrap_or(0.0);
+        let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
+            series
+                .at
+                .iter()
+                .map(|t| between(signal, (t - start - late) * rate))
+                .unzip()
+        };
+        let (value, by_sample) = read(&shown(base, column));
+        let slope = |step: f64, replayed: &Replayed| -> Vec<Complex<f64>> {
+            let (moved, _) = read(&shown(replayed, column));
+            moved
+                .iter()
+                .zip(&value)
+                .map(|(moved, value)| Complex::from((moved - value) / step))
+                .collect()
+        };
+        let name = |state: usize| model.about().states[state].name.to_string();
+        Prediction {
+            series: *place,
+            slopes: moved.iter().map(|(step, own)| slope(*step, own)).collect(),
+            begun: elsewhere
+                .iter()
+                .map(|(state, step, own)| (name(*state), slope(*step, own)))
+                .collect(),
+            value: value.iter().map(|&value| Complex::from(value)).collect(),
+            delay: Some(Delay {
+                slope: by_sample.iter().map(|slope| Complex::from(-slope * rate)).collect(),
+                shares: Vec::new(),
+            }),
+            louder: None,
+        }
+    };
+    Ok(series.iter().enumerate().map(predict).collect())
+}
+
+/// What the sensors of a run would have recorded, sample by sample, of the band that is compared.
+pub fn replayed(
+    model: &dyn Model,
+    values: &Values,
+    misread: &Misread,
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
+    let sensors = evidence.sensors(run);
+    let replay = prepare(model, evidence, run, &sensors)?;
+    let begin = begin(model.about(), misread.begun(run));
+    let signals = replay.run(values.as_slice(), &begin).signals;
+    let stimulus = &evidence.runs[run].stimulus;
+    let shown = signals.iter().map(|signal| stimulus.of_band(signal));
+    Ok(sensors.into_iter().cloned().zip(shown).collect())
+}
+
+/// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
+/// side (Catmull and Rom); beyond its ends it stays as it is there.
+fn between(signal: &[f64], place: f64) -> (f64, f64) {
+    // Times are no exact multiples of the sample's length, and most places are samples.
+    const ROUNDING: f64 = 1e-6;
+    let place = if (place - place.round()).abs() < ROUNDING {
+        place.round()
+    } else {
+        place
+    };
+    let (first, t) = (place.floor() as i64, place - place.floor());
+    let last = signal.len() as i64 - 1;
+    let [a, b, c, d] = [-1, 0, 1, 2].map(|k| signal[(first + k).clamp(0, last) as usize]);
+    let (slope, curvature, twist) = (c - a, 2.0 * a - 5.0 * b + 4.0 * c - d, d - a + 3.0 * (b - c));
+    let value = b + t / 2.0 * (slope + t * (curvature + t * twist));
+    (value, (slope + t * (2.0 * curvature + 3.0 * t * twist)) / 2.0)
+}
+
+/// The replay of a run, read by some sensors.
+fn prepare<'a>(
+    model: &'a dyn Model,
+    evidence: &'a Evidence,
+    run: usize,
+    sensors: &[&Point],
+) -> Result<Replay<'a>, PredictError> {
+    let about = model.about();
+    let Stimulus::History {
+        inputs,
+        rate,
+        band_limited,
+        restarts,
+        periodic,
+        ..
+    } = &evidence.runs[run].stimulus
+    else {
+        return Err(PredictError::no_input(about, &evidence.runs[run], "record"));
+    };
+    let mut recorded = Vec::new();
+    for (point, samples) in &inputs.signals {
+        let excitation = excitation_of(about, point)
+            .ok_or_else(|| PredictError::no_input(about, &evidence.runs[run], &point.location))?;
+        recorded.push(Recorded {
+            excitation,
+            power: order_of(point),
+            samples,
+        });
+    }
+    let readings: Vec<Reading> = sensors
+        .iter()
+        .map(|sensor| reading(about, &signal_of(about, sensor)))
+        .collect::<Result<_, SignalError>>()?;
+    let how = Between {
+        rate: *rate,
+        band_limited: *band_limited,
+        band: (0.0, *rate),
+        periodic: *periodic,
+        samples: inputs.samples,
+        nodes: 0,
+    };
+    let restarts = restarts
+        .iter()
+        .map(|restart| (restart.sample, states(about, &restart.seen)));
+    Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
+}
+
+/// Where the states of the model begin elsewhere than they were seen, and by how much.
+fn begin(about: &About, begun: &[(String, f64)]) -> Vec<(usize, f64)> {
+    let place = |name: &str| about.states.iter().position(|state| state.name == name);
+    let begun = begun.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
+    begun.collect()
+}
+
+/// The states whose beginning is not known exactly, and how far it may be from where they were seen.
+fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
+    let states = about.states.iter().enumerate();
+    states
+        .filter_map(|(place, state)| Some((place, spread.sigma(state)?)))
+        .collect()
+}
+
+/// The states that were seen, with their values.
+fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
+    let place = |point: &Point| about.states.iter().position(|state| is_seen(state, point));
+    seen.iter()
+        .filter_map(|(point, value)| Some((place(point)?, *value)))
+        .collect()
+}

@@ -1,0 +1,125 @@
+//! With which states the records of a run begin that no fit has seen: found from these records themselves.
+//!
+//! A run that judges tells as little of the states of the masses at its first sample as any other. Given everything that
+//! was fitted, they are estimated with their prior, by Gauss-Newton steps: of a linear model the first is the answer.
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::campaign::Role;
+use crate::discover::noise::Nuisance;
+use crate::discover::observe::{Evidence, Misread, PredictError, Prediction, Stimulus, predict_begun};
+use crate::model::Model;
+use crate::response::parameters::Values;
+
+/// The most steps,
+const STEPS: usize = 10;
+/// and by what factor one is taken again that was too long.
+const SHORTER: f64 = 0.25;
+/// The share of the sum of squares that the last step gained.
+const LITTLE: f64 = 1e-4;
+
+/// Completes what is `misread` by where the records of the runs of one role begin; sensors are as these coefficients say.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn beginnings(
+    model: &dyn Model,
+    values: &Values,
+    (nuisance, coefficients): (&Nuisance, &[f64]),
+    evidence: &Evidence,
+    role: Role,
+    misread: &mut Misread,
+) -> Result<(), PredictError> {
+    misread.begun.resize(evidence.runs.len(), Vec::new());
+    for (place, run) in evidence.runs.iter().enumerate().filter(|(_, run)| run.role == role) {
+        let Stimulus::History { spread, .. } = &run.stimulus else {
+            continue;
+        };
+        let states = model.about().states.iter();
+        let unknown: Vec<(String, f64)> = states
+            .filter_map(|state| Some((state.name.to_string(), spread.sigma(state)?)))
+            .collect();
+        misread.begun[place] = unknown.iter().map(|(name, _)| (name.clone(), 0.0)).collect();
+        let mut best = (f64::INFINITY, misread.begun[place].clone());
+        let mut step = DVector::zeros(unknown.len());
+        for _ in 0..STEPS {
+            let predictions = predict_begun(model, values, misread, evidence, place)?;
+            let rows = Rows::of(&predictions, (nuisance, coefficients), evidence, &unknown);
+            let (cost, next) = rows.solve(&misread.begun[place], &unknown);
+            let gained = best.0 - cost;
+            match next.filter(|_| gained > 0.0) {
+                Some(next) => {
+                    best = (cost, misread.begun[place].clone());
+                    step = next;
+                }
+                // Too far for a law that is not linear.
+                None => step *= SHORTER,
+            }
+            if gained > 0.0 && gained < LITTLE * cost {
+                break;
+            }
+            let begun = misread.begun[place].iter_mut().zip(&best.1);
+            begun
+                .zip(step.iter())
+                .for_each(|((own, best), step)| own.1 = best.1 + step);
+        }
+        misread.begun[place] = best.1;
+    }
+    Ok(())
+}
+
+/// The residuals of a run over their noise, and their derivatives along its beginning.
+struct Rows {
+    residual: Vec<f64>,
+    columns: Vec<Vec<f64>>,
+}
+
+impl Rows {
+    fn of(
+        predictions: &[Prediction],
+        (nuisance, coefficients): (&Nuisance, &[f64]),
+        evidence: &Evidence,
+        unknown: &[(String, f64)],
+    ) -> Self {
+        let mut rows = Rows {
+            residual: Vec::new(),
+            columns: vec![Vec::new(); unknown.len()],
+        };
+        for prediction in predictions {
+            let series = &evidence.series[prediction.series];
+            let shown = nuisance.show(evidence, series, &prediction.value, coefficients);
+            let values = series.value.iter().zip(&shown.value).zip(&series.sigma);
+            rows.residual
+                .extend(values.map(|((measured, shown), sigma)| (measured - shown).re / sigma));
+            for (column, (name, _)) in rows.columns.iter_mut().zip(unknown) {
+                let slope = prediction.begun.iter().find(|(state, _)| state == name);
+                let slope = slope.iter().flat_map(|(_, slope)| slope);
+                let values = slope.zip(&shown.factor).zip(&series.sigma);
+                column.extend(values.map(|((slope, factor), sigma)| (slope * factor).re / sigma));
+            }
+        }
+        rows
+    }
+
+    /// The sum of squares with the prior, and the step to its minimum; `None` where there is no number.
+    fn solve(&self, begun: &[(String, f64)], unknown: &[(String, f64)]) -> (f64, Option<DVector<f64>>) {
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let count = unknown.len();
+        // In units of the prior, which keeps positions and velocities of one size.
+        let sigma = |k: usize| unknown[k].1;
+        let mut normal = DMatrix::from_fn(count, count, |i, j| {
+            sigma(i) * sigma(j) * dot(&self.columns[i], &self.columns[j])
+        });
+        let mut slope = DVector::from_fn(count, |k, _| sigma(k) * dot(&self.columns[k], &self.residual));
+        let mut cost = dot(&self.residual, &self.residual);
+        for (k, (_, value)) in begun.iter().enumerate() {
+            normal[(k, k)] += 1.0;
+            slope[k] -= value / sigma(k);
+            cost += (value / sigma(k)).powi(2);
+        }
+        let step = normal.cholesky().map(|normal| normal.solve(&slope));
+        let step = step.filter(|step| cost.is_finite() && step.iter().all(|step| step.is_finite()));
+        let scaled = step.map(|step| DVector::from_fn(count, |k, _| sigma(k) * step[k]));
+        (cost, scaled)
+    }
+}

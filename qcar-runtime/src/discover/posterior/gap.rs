@@ -1,0 +1,158 @@
+//! The residuals of a fit over all runs, in units of their uncertainty: how large they are, and where.
+
+use std::collections::BTreeMap;
+
+use super::beginning::beginnings;
+use super::refit::Refit;
+use super::residual::scaled;
+use crate::campaign::Role;
+use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
+use crate::model::Model;
+use crate::transmissibility::Point;
+
+/// The gap of a model after its fit: its residuals over their uncertainty. An RMS of 1 is the noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gap {
+    /// RMS of (measured - modelled) over its uncertainty, on the runs that were fitted; NaN without any.
+    pub fit: f64,
+    /// The same on those that no fit has seen; NaN without any.
+    pub held_out: f64,
+    /// The same by series, in the order of the evidence.
+    pub series: Vec<f64>,
+    /// The residuals of every series, as [`Series::residuals`] counts them.
+    pub residuals: Vec<Vec<f64>>,
+    /// Where it is, the strongest first.
+    pub tiles: Vec<Tile>,
+}
+
+/// A part of the gap.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tile {
+    /// The sensor.
+    pub sensor: Point,
+    /// What its values are.
+    pub kind: Kind,
+    /// The place of its run in the evidence.
+    pub run: usize,
+    /// The level of the run.
+    pub level: f64,
+    /// Its role.
+    pub role: Role,
+    /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history or passage.
+    pub span: (f64, f64),
+    /// RMS of the residuals.
+    pub strength: f64,
+    /// Number of the residuals.
+    pub count: usize,
+}
+
+impl Gap {
+    /// Holds a refitted model against all runs, with the sensor errors that the fitted runs gave.
+    ///
+    /// # Errors
+    /// Where the model lacks what was measured.
+    pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
+        let mut residuals = vec![Vec::new(); evidence.series.len()];
+        let sensors = (&refit.nuisance, refit.coefficients.as_slice());
+        let mut misread = refit.nuisance.misread(evidence, &refit.coefficients);
+        beginnings(model, &refit.values, sensors, evidence, Role::HeldOut, &mut misread)?;
+        for role in [Role::Fit, Role::HeldOut] {
+            let unsteady = unsteady(model, &refit.values, &misread, evidence, role)?;
+            let sides = [&refit.values, &refit.side];
+            for mut prediction in predict_sides(model, sides, &misread, &[], evidence, &|run| run.role == role)? {
+                let series = &evidence.series[prediction.series];
+                prediction.add(&unsteady[prediction.series]);
+                let shown = refit.measured(evidence, &prediction);
+                let differences = series.value.iter().zip(shown).map(|(measured, shown)| measured - shown);
+                scaled(series, &series.sigma, differences, &mut residuals[prediction.series]);
+            }
+        }
+        let of_role = |role| {
+            rms(evidence
+                .of_role(role)
+                .flat_map(|(place, _)| residuals[place].iter().copied()))
+        };
+        Ok(Self {
+            fit: of_role(Role::Fit),
+            held_out: of_role(Role::HeldOut),
+            series: residuals.iter().map(|series| rms(series.iter().copied())).collect(),
+            tiles: tiles(evidence, &residuals),
+            residuals,
+        })
+    }
+}
+
+/// Root of the mean square; NaN of nothing.
+pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
+    (sum / count as f64).sqrt()
+}
+
+/// Tiles of an octave.
+const PER_OCTAVE: f64 = 6.0;
+/// Tiles of a record.
+const PER_RECORD: f64 = 20.0;
+
+fn tiles(evidence: &Evidence, residuals: &[Vec<f64>]) -> Vec<Tile> {
+    let mut tiles = Vec::new();
+    for (series, residuals) in evidence.series.iter().zip(residuals) {
+        let mut sums: BTreeMap<i64, (f64, usize)> = BTreeMap::new();
+        let parts = if series.kind.complex() { 2 } else { 1 };
+        for (at, of_value) in series.at.iter().zip(residuals.chunks(parts)) {
+            let sum = sums.entry(scale(series).place(*at).floor() as i64).or_default();
+            sum.0 += of_value.iter().map(|residual| residual * residual).sum::<f64>();
+            sum.1 += of_value.len();
+        }
+        tiles.extend(sums.into_iter().map(|(place, sum)| tile(evidence, series, place, sum)));
+    }
+    tiles.sort_by(|a, b| b.strength.total_cmp(&a.strength));
+    tiles
+}
+
+fn tile(evidence: &Evidence, series: &Series, place: i64, (sum, count): (f64, usize)) -> Tile {
+    let run = &evidence.runs[series.run];
+    let scale = scale(series);
+    Tile {
+        sensor: series.sensor.clone(),
+        kind: series.kind,
+        run: series.run,
+        level: run.level,
+        role: run.role,
+        span: (scale.value(place), scale.value(place + 1)),
+        strength: (sum / count as f64).sqrt(),
+        count,
+    }
+}
+
+/// Which tile a value belongs to.
+enum Scale {
+    Octaves,
+    /// First value and width of a tile.
+    Even(f64, f64),
+}
+
+fn scale(series: &Series) -> Scale {
+    match series.kind {
+        Kind::Harmonic(_) | Kind::Cycle(_) => Scale::Octaves,
+        Kind::Time | Kind::Passage | Kind::Travel | Kind::Width => {
+            let (first, last) = (series.at[0], series.at[series.at.len() - 1]);
+            Scale::Even(first, ((last - first) / PER_RECORD).max(f64::MIN_POSITIVE))
+        }
+    }
+}
+
+impl Scale {
+    fn place(&self, at: f64) -> f64 {
+        match self {
+            Scale::Octaves => PER_OCTAVE * at.log2(),
+            Scale::Even(first, width) => (at - first) / width,
+        }
+    }
+
+    fn value(&self, place: i64) -> f64 {
+        match self {
+            Scale::Octaves => (place as f64 / PER_OCTAVE).exp2(),
+            Scale::Even(first, width) => first + width * place as f64,
+        }
+    }
+}

@@ -1,0 +1,86 @@
+//! What a search found, by Laplace's approximation of the posterior at its maximum: covariance and evidence.
+
+use std::ops::Range;
+
+use nalgebra::DMatrix;
+
+use super::prior::SIDE;
+use super::problem::Posterior;
+use super::refit::Refit;
+use crate::least_squares::information::Information;
+use crate::least_squares::{Outcome, Problem};
+
+impl Posterior<'_> {
+    /// What was found.
+    pub fn refit(&mut self, outcome: Outcome) -> Refit {
+        let count = self.free.len();
+        let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
+        // The priors of free parameters are no information: errors are those of the data.
+        let informative = outcome
+            .jacobian
+            .rows(0, self.residuals + self.sigmas.len())
+            .into_owned();
+        let information = Information::new(&informative, &inside);
+        self.move_to(&outcome.x);
+        Refit {
+            values: self.values.clone(),
+            side: self.side.clone(),
+            estimate: outcome.x[..count].to_vec(),
+            covariance: spread(&information, 0..count),
+            coefficient_stderr: self.coefficient_stderr(&information),
+            at_bound: outcome.at_bound[..count].to_vec(),
+            free: self.free.clone(),
+            coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
+            chi2: 2.0 * outcome.cost,
+            gained: outcome.start_cost - outcome.cost,
+            log_evidence: self.log_evidence(&outcome),
+            discrepancy: self.discrepancy.clone(),
+            centre: self.centre.clone(),
+            residuals: self.residuals,
+            made: if self.evidence.two_sided {
+                SIDE / f64::sqrt(2.0)
+            } else {
+                0.0
+            },
+            unsteady: self.unsteady.clone(),
+            nuisance: self.nuisance.clone(),
+            evaluations: outcome.evaluations,
+            stop: outcome.stop,
+        }
+    }
+
+    fn coefficient_stderr(&self, information: &Information) -> Vec<f64> {
+        let coefficients = self.free.len()..self.variables();
+        let errors = spread(information, coefficients).diagonal().map(f64::sqrt);
+        errors.as_slice().to_vec()
+    }
+
+    /// Laplace's approximation of the evidence, in units in which every prior has the standard deviation one: it cancels
+    /// the normalisations of priors and posterior but for the determinant (MacKay 2003, chapter 28).
+    fn log_evidence(&self, outcome: &Outcome) -> f64 {
+        let Some(discrepancy) = &self.discrepancy else {
+            return f64::NAN;
+        };
+        let mut scaled = outcome.jacobian.clone();
+        for (k, mut column) in scaled.column_iter_mut().enumerate() {
+            column *= match k.checked_sub(self.free.len()) {
+                Some(k) => self.sigmas[k],
+                None => 1.0 / self.prior_of(k, outcome.x[k]).1,
+            };
+        }
+        let hessian = scaled.tr_mul(&scaled);
+        let determinant = hessian
+            .cholesky()
+            .map_or(f64::NAN, |own| own.l_dirty().diagonal().map(f64::ln).sum());
+        -outcome.cost - discrepancy.cost() - determinant
+    }
+}
+
+/// The rows and columns of some variables of a covariance.
+fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
+    let place = |k: usize| information.seen().iter().position(|&seen| seen == variables.start + k);
+    DMatrix::from_fn(variables.len(), variables.len(), |i, j| match (place(i), place(j)) {
+        (Some(i), Some(j)) => information.inverse()[(i, j)],
+        _ => f64::NAN,
+    })
+}

@@ -1,0 +1,62 @@
+//! The residuals at a fit: of the model that was fitted, with their derivatives, and of another in its place.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::problem::Posterior;
+use super::refit::Refit;
+use crate::discover::noise::Nuisance;
+use crate::discover::observe::{Evidence, Free};
+use crate::least_squares::Problem;
+use crate::model::Model;
+use crate::response::parameters::Values;
+
+impl Refit {
+    /// The residuals of the `model` that was fitted, in units of their noise, those of the data before those of what is held
+    /// by a prior, and their Jacobian along all unknowns.
+    pub fn linearised(&self, model: &dyn Model, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
+        Posterior::of(self, model, evidence).linearised(self)
+    }
+
+    /// The residuals of the data where another model with these `values` stands in the place of the `fitted` one, and
+    /// sensors with these errors; `None` where that gives no number.
+    pub fn residuals_of(
+        &self,
+        other: &dyn Model,
+        values: &Values,
+        (nuisance, coefficients): (Nuisance, &[f64]),
+        fitted: &dyn Model,
+        evidence: &Evidence,
+    ) -> Option<DVector<f64>> {
+        let name = |free: &Free| &fitted.about().parameters[free.parameter].name;
+        let place = |free: &Free| other.about().parameters.iter().position(|p| p.name == *name(free));
+        let mut side = values.clone();
+        for free in &self.free {
+            if let Some(parameter) = place(free) {
+                side.set(parameter, self.side.as_slice()[free.parameter]);
+            }
+        }
+        let mut posterior = Posterior::new(other, values.clone(), &[], evidence, nuisance);
+        posterior.side = side;
+        posterior.by_evidence = self.discrepancy.is_some();
+        let mut residual = vec![0.0; posterior.residuals()];
+        posterior.residual_and_slopes(coefficients, &mut residual, false);
+        residual.truncate(posterior.residuals);
+        residual
+            .iter()
+            .all(|r| r.is_finite())
+            .then(|| DVector::from_vec(residual))
+    }
+}
+
+impl Posterior<'_> {
+    /// Residual and Jacobian at a refit, not whitened.
+    pub fn linearised(&mut self, refit: &Refit) -> (DVector<f64>, DMatrix<f64>) {
+        let place = self.place(refit);
+        self.start.clone_from(&place);
+        self.whitens = false;
+        let mut residual = DVector::zeros(self.residuals());
+        let mut jacobian = DMatrix::zeros(self.residuals(), self.variables());
+        self.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
+        (residual, jacobian)
+    }
+}

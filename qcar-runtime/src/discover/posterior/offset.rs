@@ -1,0 +1,81 @@
+//! Offsets that would be counted twice: of sensors whose reading a parameter of the model moves as a whole already.
+
+use nalgebra::DVector;
+
+use crate::campaign::Role;
+use crate::discover::noise::Nuisance;
+use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, Stimulus, predict_sides};
+use crate::model::Model;
+use crate::response::parameters::Values;
+
+/// The share of a derivative's power that is not a constant, of one that is.
+const CONSTANT: f64 = 1e-5;
+/// The share of a power that is left by rounding.
+const ROUNDING: f64 = 1e-9;
+
+/// The same sensors, without the offset of those that a free parameter moves by a constant and nothing else, whatever the
+/// states with which their records begin.
+///
+/// # Errors
+/// Where the model lacks what was measured.
+pub fn once(
+    mut nuisance: Nuisance,
+    model: &dyn Model,
+    values: &Values,
+    free: &[Free],
+    evidence: &Evidence,
+) -> Result<Nuisance, PredictError> {
+    let is_record = |run: &Run| run.role == Role::Fit && matches!(run.stimulus, Stimulus::History { .. });
+    let misread = nuisance.misread(evidence, &vec![0.0; nuisance.len()]);
+    let predictions = predict_sides(model, [values, values], &misread, free, evidence, &is_record)?;
+    nuisance.without_offset.clear();
+    for prediction in &predictions {
+        let sensor = &evidence.series[prediction.series].sensor;
+        let is_known = nuisance.without_offset.iter().any(|(known, _)| known == sensor);
+        if let Some(owner) = owner(model, free, prediction).filter(|_| !is_known) {
+            nuisance.without_offset.push((sensor.clone(), owner));
+        }
+    }
+    Ok(nuisance)
+}
+
+/// What of the model moves a prediction as a whole: a parameter, or the state with which a record begins where nothing
+/// pulls it back.
+fn owner(model: &dyn Model, free: &[Free], prediction: &Prediction) -> Option<String> {
+    let real = |slope: &[nalgebra::Complex<f64>]| DVector::from_iterator(slope.len(), slope.iter().map(|s| s.re));
+    let constant = DVector::from_element(prediction.value.len(), 1.0);
+    let mut begun: Vec<DVector<f64>> = Vec::new();
+    for (state, slope) in &prediction.begun {
+        let column = real(slope);
+        if is_multiple(&column, &constant) {
+            return Some(state.clone());
+        }
+        let own = without(&column, &begun);
+        if own.norm_squared() > ROUNDING * column.norm_squared() {
+            begun.push(own.normalize());
+        }
+    }
+    let constant = without(&constant, &begun);
+    let moves = |(free, slope): (&Free, &Vec<nalgebra::Complex<f64>>)| {
+        let column = real(slope);
+        let own = without(&column, &begun);
+        let is_seen = own.norm_squared() > ROUNDING * column.norm_squared();
+        let name = &model.about().parameters[free.parameter].name;
+        (is_seen && is_multiple(&own, &constant)).then(|| name.to_string())
+    };
+    free.iter().zip(&prediction.slopes).find_map(moves)
+}
+
+/// What is left of a column beside others, which are of length 1 and at right angles.
+fn without(column: &DVector<f64>, others: &[DVector<f64>]) -> DVector<f64> {
+    others.iter().fold(column.clone(), |left, other| {
+        let share = left.dot(other);
+        left - other * share
+    })
+}
+
+/// True where the one is the other, up to a factor that is not zero.
+fn is_multiple(one: &DVector<f64>, other: &DVector<f64>) -> bool {
+    let powers = one.norm_squared() * other.norm_squared();
+    powers > 0.0 && one.dot(other).powi(2) > (1.0 - CONSTANT) * powers
+}

@@ -1,0 +1,252 @@
+//! The least-squares problem of a fit: residuals of the data, whitened by the discrepancy, followed by those of the
+//! priors.
+
+use nalgebra::Complex;
+
+use super::prior::{SIDE, is_of_a_side, of_one_side};
+use super::refit::Refit;
+use super::residual::{scaled, through};
+use crate::campaign::Role;
+use crate::discover::noise::{Discrepancy, Nuisance};
+use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, Stimulus, predict_sides};
+use crate::least_squares::Problem;
+use crate::model::Model;
+use crate::response::parameters::Values;
+
+/// True for a run whose derivatives cost little beside its prediction: a sweep's come from the same factorisation.
+fn is_swept(run: &Run) -> bool {
+    matches!(run.stimulus, Stimulus::Sweep { .. })
+}
+
+/// The least-squares problem.
+pub struct Posterior<'a> {
+    model: &'a dyn Model,
+    pub values: Values,
+    pub side: Values,
+    pub free: Vec<Free>,
+    pub evidence: &'a Evidence,
+    pub nuisance: Nuisance,
+    /// Of the sensors' errors, then of the factors of the recorded side, where there is one.
+    pub sigmas: Vec<f64>,
+    /// Where the search began.
+    pub start: Vec<f64>,
+    /// Where the priors of the parameters are centred, where there is a discrepancy,
+    pub centre: Values,
+    /// and what that is.
+    pub discrepancy: Option<Discrepancy>,
+    /// Whether residuals are independent by it,
+    pub whitens: bool,
+    /// and whether there is one at all, whatever it is at the moment.
+    pub by_evidence: bool,
+    pub residuals: usize,
+    /// Why the model cannot say anything of the evidence at all,
+    pub refused: Option<PredictError>,
+    /// or that it has said something: where it gives no number from then on, a step went too far.
+    has_answered: bool,
+    /// What the sweeps add to their balance, series by series.
+    pub unsteady: Vec<Vec<Complex<f64>>>,
+    /// Where the residual was evaluated last, and the predicted sweeps there: an accepted step asks for them again.
+    pub last: Option<(Vec<f64>, Vec<Prediction>)>,
+}
+
+impl<'a> Posterior<'a> {
+    pub fn new(
+        model: &'a dyn Model,
+        values: Values,
+        free: &[Free],
+        evidence: &'a Evidence,
+        nuisance: Nuisance,
+    ) -> Self {
+        let one_sided = evidence.runs.iter().any(of_one_side);
+        let sides = std::iter::repeat_n(SIDE, if one_sided { free.len() } else { 0 });
+        Self {
+            model,
+            side: values.clone(),
+            free: free.to_vec(),
+            evidence,
+            sigmas: nuisance.sigmas().into_iter().chain(sides).collect(),
+            start: Vec::new(),
+            centre: values.clone(),
+            discrepancy: None,
+            whitens: true,
+            by_evidence: false,
+            residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
+            nuisance,
+            refused: None,
+            has_answered: false,
+            unsteady: vec![Vec::new(); evidence.series.len()],
+            last: None,
+            values,
+        }
+    }
+
+    /// At a refit that was made of this evidence, or of another part of it.
+    pub fn of(refit: &Refit, model: &'a dyn Model, evidence: &'a Evidence) -> Self {
+        let mut posterior = Self::new(
+            model,
+            refit.values.clone(),
+            &refit.free,
+            evidence,
+            refit.nuisance.clone(),
+        );
+        posterior.discrepancy = refit.discrepancy_of(evidence);
+        posterior.by_evidence = posterior.discrepancy.is_some();
+        posterior.centre = refit.centre.clone();
+        posterior
+    }
+
+    /// How far a free parameter is from where its prior has it, and the derivative of that.
+    pub fn prior_of(&self, k: usize, value: f64) -> (f64, f64) {
+        match self.discrepancy {
+            Some(_) => self.free[k].prior(value, self.centre.as_slice()[self.free[k].parameter]),
+            None => self.free[k].strayed(value, self.start[k]),
+        }
+    }
+
+    /// The place of a refit.
+    pub fn place(&self, refit: &Refit) -> Vec<f64> {
+        let factors = self.free.iter().map(|free| refit.factor(free.parameter));
+        let place = refit.estimate.iter().chain(&refit.coefficients).copied();
+        place.chain(factors).take(self.variables()).collect()
+    }
+
+    pub fn move_to(&mut self, x: &[f64]) {
+        let factors = self.factors(x).to_vec();
+        for (k, (free, &value)) in self.free.iter().zip(x).enumerate() {
+            self.values.set(free.parameter, value);
+            let factor = factors.get(k).copied().filter(|_| is_of_a_side(self.model, free));
+            self.side.set(free.parameter, value * factor.unwrap_or(0.0).exp());
+        }
+    }
+
+    /// The logarithms of the factors of the recorded side.
+    pub fn factors<'x>(&self, x: &'x [f64]) -> &'x [f64] {
+        &x[self.free.len() + self.nuisance.len()..]
+    }
+
+    /// What the model says of the fitted runs: of the sweeps, and of all others, these differentiated along `free`.
+    fn predictions(&mut self, x: &[f64], free: &[Free]) -> Result<[Vec<Prediction>; 2], PredictError> {
+        self.move_to(x);
+        let both = [&self.values, &self.side];
+        let misread = self.nuisance.misread(self.evidence, &x[self.free.len()..]);
+        let predict = |free: &[Free], swept: bool| {
+            let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
+            predict_sides(self.model, both, &misread, free, self.evidence, &wanted)
+        };
+        let swept = match self.last.take().filter(|(at, _)| at == x) {
+            Some((_, swept)) => swept,
+            None => {
+                let mut swept = predict(&self.free, true)?;
+                swept.iter_mut().for_each(|own| own.add(&self.unsteady[own.series]));
+                swept
+            }
+        };
+        Ok([swept, predict(free, false)?])
+    }
+
+    /// Writes the residual; gives the columns of the Jacobian, of the data alone, where these are wanted.
+    pub fn residual_and_slopes(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
+        let free = if sloped { self.free.clone() } else { Vec::new() };
+        let [swept, others] = match self.predictions(x, &free) {
+            Ok(predictions) => predictions,
+            Err(error) => {
+                self.refused = (!self.has_answered).then_some(error);
+                residual.fill(f64::NAN);
+                return Vec::new();
+            }
+        };
+        self.has_answered = true;
+        let mut predictions: Vec<&Prediction> = swept.iter().chain(&others).collect();
+        predictions.sort_by_key(|own| own.series);
+        let mut rows = Vec::with_capacity(residual.len());
+        let count = if sloped { self.variables() } else { 0 };
+        let mut columns: Vec<Vec<f64>> = (0..count).map(|_| Vec::with_capacity(residual.len())).collect();
+        for prediction in predictions {
+            self.rows(prediction, x, &mut rows, &mut columns);
+        }
+        self.last = Some((x.to_vec(), swept));
+        if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
+            discrepancy.whiten(&mut rows);
+            columns.iter_mut().for_each(|column| discrepancy.whiten(column));
+        }
+        let errors = x[self.free.len()..].iter().zip(&self.sigmas);
+        rows.extend(errors.map(|(error, sigma)| error / sigma));
+        rows.extend((0..self.free.len()).map(|k| self.prior_of(k, x[k]).0));
+        residual.copy_from_slice(&rows);
+        columns
+    }
+
+    /// Adds the rows of one prediction to columns that grow together. A column may be moved in more ways than one: the gain
+    /// of a reference scales what is shown, and says how hard the run was driven. Without columns there is the residual
+    /// alone.
+    fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
+        let series = &self.evidence.series[prediction.series];
+        // Beside a discrepancy, what neighbours have in common is not noise.
+        let sigma = if self.by_evidence { &series.noise } else { &series.sigma };
+        let of_sensors = self.free.len();
+        let shown = self
+            .nuisance
+            .show(self.evidence, series, &prediction.value, &x[of_sensors..]);
+        let first = residual.len();
+        let left = series.value.iter().zip(&shown.value);
+        scaled(series, sigma, left.map(|(measured, shown)| measured - shown), residual);
+        if columns.is_empty() {
+            return;
+        }
+        for column in columns.iter_mut() {
+            column.resize(residual.len(), 0.0);
+        }
+        let mut rows = Vec::with_capacity(residual.len() - first);
+        let mut add = |slope: &mut dyn Iterator<Item = Complex<f64>>, place: usize| {
+            rows.clear();
+            scaled(series, sigma, slope.map(|slope| -slope), &mut rows);
+            let sums = columns[place][first..].iter_mut();
+            sums.zip(&rows).for_each(|(sum, row)| *sum += row);
+        };
+        let one_sided = of_one_side(&self.evidence.runs[series.run]);
+        for (k, slope) in prediction.slopes.iter().enumerate() {
+            if one_sided && is_of_a_side(self.model, &self.free[k]) {
+                let factor = self.factors(x)[k].exp();
+                let of_side = of_sensors + self.nuisance.len() + k;
+                add(&mut through(slope, &shown.factor, factor), k);
+                add(&mut through(slope, &shown.factor, factor * x[k]), of_side);
+            } else {
+                add(&mut through(slope, &shown.factor, 1.0), k);
+            }
+        }
+        for (k, slope) in self.nuisance.misread_slopes(self.evidence, prediction) {
+            add(&mut through(&slope, &shown.factor, 1.0), of_sensors + k);
+        }
+        for (k, slope) in shown.slopes {
+            add(&mut slope.into_iter(), of_sensors + k);
+        }
+    }
+}
+
+impl Problem for Posterior<'_> {
+    fn variables(&self) -> usize {
+        self.free.len() + self.sigmas.len()
+    }
+
+    fn residuals(&self) -> usize {
+        self.residuals + self.sigmas.len() + self.free.len()
+    }
+
+    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
+        let columns = self.residual_and_slopes(x, residual, true);
+        for (k, (column, into)) in columns.iter().zip(jacobian.chunks_mut(residual.len())).enumerate() {
+            into.fill(0.0);
+            into[..column.len()].copy_from_slice(column);
+            match k.checked_sub(self.free.len()) {
+                Some(k) => into[self.residuals + k] = 1.0 / self.sigmas[k],
+                None => into[self.residuals + self.sigmas.len() + k] = self.prior_of(k, x[k]).1,
+            }
+        }
+    }
+
+    /// Differentiated by differences, rides and histories cost many times more than alone.
+    fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
+        self.residual_and_slopes(x, residual, false);
+        true
+    }
+}

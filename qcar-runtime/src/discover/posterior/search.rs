@@ -1,0 +1,78 @@
+//! The maximum of a posterior, and the discrepancy that goes with it.
+
+use nalgebra::{DMatrix, DVector};
+
+use super::problem::Posterior;
+use super::refit::Refit;
+use crate::discover::noise::STRAINED;
+use crate::discover::observe::PredictError;
+use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
+
+/// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not
+/// explain it by sides that no car has.
+const MOST: f64 = 3.0;
+
+/// The most that the error of a sensor differs from its prior by, in standard deviations, where a discrepancy is fitted: no
+/// such error is met in practice, and a search stays where numbers are finite.
+const FARTHEST: f64 = 6.0;
+
+impl Posterior<'_> {
+    /// The best place that is found from `start`.
+    pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
+        let options = Options {
+            gradient: 1e-5,
+            cost: 1e-6,
+            step: 1e-6,
+            evaluations,
+        };
+        let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
+        let sides = sides.iter().map(|sigma| MOST * sigma);
+        // Beside a discrepancy a prior alone holds the errors of sensors.
+        let strained = if self.discrepancy.is_some() { FARTHEST } else { STRAINED };
+        let priors: Vec<f64> = sensors.iter().map(|sigma| strained * sigma).chain(sides).collect();
+        let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
+        let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
+        let bounds = Bounds {
+            lower: lower.collect(),
+            upper: upper.collect(),
+        };
+        self.start = start.to_vec();
+        self.last = None;
+        let outcome = minimize(self, start, &bounds, &options);
+        self.refused.take().map_or(Ok(outcome), Err)
+    }
+
+    /// Searches and learns the discrepancy in turn.
+    pub fn fit(&mut self, mut place: Vec<f64>, rounds: usize, evaluations: usize) -> Result<Refit, PredictError> {
+        let mut outcome = self.search(&place, evaluations)?;
+        for round in 0..rounds {
+            if round > 0 {
+                outcome = self.search(&place, evaluations)?;
+            }
+            place.clone_from(&outcome.x);
+            self.learn(&place);
+        }
+        let mut residual = DVector::zeros(self.residuals());
+        let mut jacobian = DMatrix::zeros(self.residuals(), self.variables());
+        self.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
+        // What the discrepancy takes up is no gain of the search.
+        outcome.start_cost += residual.norm_squared() / 2.0 - outcome.cost;
+        outcome.cost = residual.norm_squared() / 2.0;
+        outcome.jacobian = jacobian;
+        Ok(self.refit(outcome))
+    }
+
+    /// The discrepancy that explains best what is left.
+    pub fn learn(&mut self, place: &[f64]) {
+        let Some(mut discrepancy) = self.discrepancy.take() else {
+            return;
+        };
+        let mut residual = vec![0.0; self.residuals()];
+        self.residual_and_slopes(place, &mut residual, false);
+        residual.truncate(self.residuals);
+        if residual.iter().all(|r| r.is_finite()) {
+            discrepancy.learn(&residual);
+        }
+        self.discrepancy = Some(discrepancy);
+    }
+}

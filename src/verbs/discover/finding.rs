@@ -1,0 +1,64 @@
+//! A finding in words: what it closes, its parameters, and what else it might be.
+
+use std::collections::BTreeMap;
+use std::fmt::Write;
+
+use qcar_runtime::discover::answer::Finding;
+
+use crate::table::{Table, number, or_dash};
+
+pub(super) fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
+    let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
+    for (name, value, error) in &finding.parameters {
+        let error = or_dash(Some(*error).filter(|error| error.is_finite()), 2);
+        let unit = units.get(name).cloned().unwrap_or_default();
+        table.row(vec![name.clone(), unit, number(*value, 4), error]);
+    }
+    let share = 100.0 * finding.closed;
+    let form = finding
+        .form
+        .as_deref()
+        .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
+    let mut out = format!(
+        "{} at {}{form} closes {share:.1} % of the gap\n{}",
+        finding.effect,
+        finding.at,
+        table.text()
+    );
+    let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
+    let undetermined: Vec<&str> = undetermined.map(|(name, ..)| name.as_str()).collect();
+    if !undetermined.is_empty() {
+        let _ = writeln!(out, "the fitted runs do not determine {}", undetermined.join(", "));
+    }
+    for rival in finding.rivals.iter().take(4) {
+        let _ = writeln!(
+            out,
+            "less likely: {} at {}, lower by {} in log evidence",
+            rival.effect,
+            rival.at,
+            number(rival.behind, 3)
+        );
+    }
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A value that comes from a start rather than from the data must not pass for one that was found.
+    #[test]
+    fn what_the_runs_do_not_determine_is_said() {
+        let finding = Finding {
+            effect: "suspended_mass".into(),
+            at: "body".into(),
+            form: None,
+            parameters: vec![("m_pwt".into(), 107.3, 1.1), ("k_pwt_x".into(), 3e5, f64::NAN)],
+            evidence: 1e4,
+            closed: 1.0,
+            rivals: Vec::new(),
+        };
+        let said = described(&finding, &BTreeMap::new());
+        assert!(said.ends_with("the fitted runs do not determine k_pwt_x\n"), "{said}");
+    }
+}
