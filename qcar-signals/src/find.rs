@@ -20,8 +20,7 @@ impl Recording {
         if exact || passed_over {
             return self.signal(pattern);
         }
-        let fits = |signal: &&Signal| fits(pattern, &signal.name) || fits(pattern, &signal.full_name());
-        let fitting: Vec<&Signal> = self.signals.iter().filter(fits).collect();
+        let fitting: Vec<&Signal> = self.signals.iter().filter(|signal| is_meant(pattern, signal)).collect();
         match fitting.as_slice() {
             [signal] => Ok(signal),
             [] => Err(self.missing(pattern)),
@@ -31,6 +30,13 @@ impl Recording {
                 Err(Fault::new(Place::File, found, "one channel that fits", remedy).of(pattern))
             }
         }
+    }
+
+    /// Whether some channel is meant by `pattern`, be it one of several or one that could not be read.
+    pub fn has(&self, pattern: &str) -> bool {
+        let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
+        let mut signals = self.signals.iter();
+        passed_over || signals.any(|signal| signal.is_called(pattern) || is_meant(pattern, signal))
     }
 
     fn missing(&self, pattern: &str) -> Box<Fault> {
@@ -59,6 +65,10 @@ impl Recording {
         near.sort_by(|a, b| b.0.total_cmp(&a.0));
         near.into_iter().map(|(_, signal)| signal).collect()
     }
+}
+
+fn is_meant(pattern: &str, signal: &Signal) -> bool {
+    fits(pattern, &signal.name) || fits(pattern, &signal.full_name())
 }
 
 fn listed(signals: &[&Signal]) -> String {

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
+use super::contents::Tap;
 use super::contents::{
     Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test,
 };
 use super::fields::{Document, Section};
-use super::{table, unit};
+use super::recorded::{self, Files, Recorded};
+use super::{table, tap, unit};
 use crate::error::{InputError, Place, Problem};
 
 /// The columns of a quasi-static curve, m and N.
@@ -17,25 +19,31 @@ pub(super) const DYNAMIC_CURVE: &[&str] = &["time", "displacement", "velocity", 
 pub(super) const ROAD: &[&str] = &["x", "z", "slope"];
 
 impl Campaign {
-    /// Opens a campaign: reads `campaign.toml` of `folder` and the header line of every file that it lists.
+    /// Opens a campaign: reads `campaign.toml` of `folder`, the header line of every plain table that it lists, and the
+    /// runs of all other files.
     ///
     /// # Errors
-    /// All problems of `campaign.toml` together; where it has none, all problems of the files' headers.
+    /// All problems of `campaign.toml` together; where it has none, all problems of the files' headers; where they have
+    /// none, all problems of the other files.
     pub fn open(folder: impl AsRef<Path>) -> Result<Campaign, InputError> {
         let folder = folder.as_ref();
         let document = Document::read(&folder.join("campaign.toml"))?;
+        let files = Files::default();
         let campaign = {
             let tree = document.parse()?;
-            campaign(folder, document.top(&tree))
+            campaign(folder, document.top(&tree), &files)
         };
         let mut campaign = document.finish(campaign)?;
-        let recorded = recorded_columns(&campaign)?;
-        campaign.notices = notices(&campaign, &recorded);
+        let mut names = plain_columns(&campaign)?;
+        campaign.recorded = recorded_runs(&campaign, &files)?;
+        let columns = campaign.recorded.iter().flat_map(|recorded| &recorded.columns);
+        names.extend(columns.map(|(name, _)| name.clone()));
+        campaign.notices = notices(&campaign, &names);
         Ok(campaign)
     }
 }
 
-fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
+fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {
     format(&top);
     let (name, model, description) = (top.text("name"), top.text("model"), top.remark("description"));
     let vehicle = top
@@ -46,20 +54,27 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
     let parameters = top
         .section("parameters")
         .map_or(Some(Vec::new()), |section| parameters(&section));
-    let channels = each(top.sections("channel"), "name", channel, |channel| &channel.name);
+    let sensors = sensors(folder, &top);
     let roads = each(top.sections("road"), "name", road, |road| &road.name);
+    let known = Known {
+        folder,
+        files,
+        roads: roads.as_deref(),
+        sensors: sensors.as_deref(),
+    };
     let runs = each(
         top.sections("run"),
         "file",
-        |section| run(section, roads.as_deref()),
-        |run| &run.file,
+        |section| run(section, &known),
+        |run| &run.name,
     );
     if runs.as_ref().is_some_and(Vec::is_empty) {
         top.wrong("run", "no run", "at least one [[run]]", "list the measured files");
     }
     top.finish();
     let (folder, notices) = (folder.to_path_buf(), Vec::new());
-    let (name, model, parameters, channels, runs, roads) = (name?, model?, parameters?, channels?, runs?, roads?);
+    let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
+    let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
     Some(Campaign {
         folder,
         name,
@@ -69,10 +84,66 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         roles,
         parameters,
         channels,
+        taps,
         runs,
         roads,
         notices,
+        recorded: Vec::new(),
     })
+}
+
+/// A channel, and where its values come from.
+struct Sensor {
+    channel: Channel,
+    tap: Tap,
+    /// Whether the tap says more than a plain table needs.
+    mapped: bool,
+}
+
+/// What a run is read beside.
+struct Known<'a> {
+    folder: &'a Path,
+    files: &'a Files,
+    /// `None` where something is wrong with them.
+    roads: Option<&'a [Road]>,
+    sensors: Option<&'a [Sensor]>,
+}
+
+/// The channels of the file that `mapping` names, then those of the campaign itself.
+fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
+    let shared = match top.optional_text("mapping") {
+        Some(file) => mapping(&folder.join(file)).map_err(|error| top.adopt(error)).ok(),
+        None => Some(Vec::new()),
+    };
+    let own = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
+    let (mut shared, own) = (shared?, own?);
+    let twice = own
+        .iter()
+        .find(|own| shared.iter().any(|shared| shared.channel.name == own.channel.name));
+    if let Some(twice) = twice {
+        let found = format!("the channel \"{}\", which `channel` has too", twice.channel.name);
+        top.wrong(
+            "mapping",
+            found,
+            "each channel once",
+            "remove it from one of the two files",
+        );
+    }
+    shared.extend(own);
+    Some(shared)
+}
+
+/// The channels of a file that campaigns share.
+fn mapping(file: &Path) -> Result<Vec<Sensor>, InputError> {
+    let document = Document::read(file)?;
+    let sensors = {
+        let tree = document.parse()?;
+        let top = document.top(&tree);
+        let sensors = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
+        top.finish();
+        sensors
+    };
+    document.finish(sensors)
 }
 
 fn format(top: &Section<'_>) {
@@ -158,10 +229,10 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
     })
 }
 
-fn channel(section: &Section<'_>) -> Option<Channel> {
+fn sensor(section: &Section<'_>) -> Option<Sensor> {
     let (name, location) = (section.text("name"), section.text("location"));
     let (side, axis) = (section.choice("side", Side::NAMES), section.choice("axis", Axis::NAMES));
-    let (quantity, unit) = (section.choice("quantity", Quantity::NAMES), section.text("unit"));
+    let quantity = section.choice("quantity", Quantity::NAMES);
     if name.as_deref() == Some("time") {
         section.wrong(
             "name",
@@ -170,58 +241,84 @@ fn channel(section: &Section<'_>) -> Option<Channel> {
             "the column `time` holds the time; rename the channel",
         );
     }
-    if let (Some(quantity), Some(unit)) = (quantity, &unit)
-        && unit::dimension(unit) != unit::dimension(quantity.unit())
-    {
-        let expected = format!("\"{}\"", quantity.unit());
-        let remedy = format!(
-            "convert the column `{}` in every file, and write this unit",
-            name.as_deref().unwrap_or("")
-        );
-        section.wrong("unit", format!("\"{unit}\""), expected, remedy);
-    }
+    let tap = tap::tap(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
     section.finish();
-    unit?;
-    Some(Channel {
+    let (tap, mapped) = tap?;
+    let channel = Channel {
         name: name?,
         location: location?,
         side: side?,
         axis: axis?,
         quantity: quantity?,
-    })
+    };
+    Some(Sensor { channel, tap, mapped })
 }
 
 /// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
-fn run(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Run> {
+fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
     let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
-    let read = section.choice("kind", KINDS)?;
-    let test = read(section, roads);
+    let (name, without) = (section.optional_text("name"), section.texts("without"));
+    let window = tap::window(section);
+    let (read, columns) = section.choice("kind", KINDS)?;
+    let (columns, mapped) = tap::columns(section, columns)?;
+    let mapped = mapped
+        || known
+            .sensors
+            .is_some_and(|sensors| columns.is_empty() && sensors.iter().any(|own| own.mapped));
+    let (file, window) = (file?, window?);
+    let plain = is_table(&file) && !mapped && window.is_whole() && without.is_empty();
+    let test = read(section, known, (!plain).then_some(&file));
     section.finish();
     Some(Run {
-        file: file?,
+        name: name.unwrap_or_else(|| file.clone()),
+        file,
+        plain,
+        window,
+        without,
+        columns,
         role: role?,
         test: test?,
     })
 }
 
-type ReadTest = fn(&Section<'_>, Option<&[Road]>) -> Option<Test>;
+/// Whether a file may be a plain table.
+fn is_table(file: &str) -> bool {
+    file.ends_with(".csv") || file.ends_with(".csv.gz")
+}
 
-const KINDS: &[(&str, ReadTest)] = &[
-    ("sweep", |section, _| sweep(section)),
-    ("bounce", |_, _| Some(Test::Bounce)),
-    ("dynamic_bounce", |section, _| dynamic_bounce(section)),
-    ("longitudinal", |_, _| Some(Test::Longitudinal)),
-    ("cleat", cleat),
-    ("time_history", |section, _| time_history(section)),
+/// The rate of a run, Hz. In the file of a rig, `file`, it is the highest among its channels unless it is stated.
+fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
+    let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
+        return section.positive("sample_rate");
+    };
+    let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
+    let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
+    highest.map_err(|problem| section.adopt(problem.into())).ok()
+}
+
+/// Reads a test, whose file is named where it is no plain table.
+type ReadTest = fn(&Section<'_>, &Known<'_>, Option<&String>) -> Option<Test>;
+
+/// The kinds with the columns that a curve of the kind has.
+const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
+    ("sweep", (sweep, &[])),
+    ("bounce", (|_, _, _| Some(Test::Bounce), CURVE)),
+    (
+        "dynamic_bounce",
+        (|section, _, _| dynamic_bounce(section), DYNAMIC_CURVE),
+    ),
+    ("longitudinal", (|_, _, _| Some(Test::Longitudinal), CURVE)),
+    ("cleat", (cleat, &[])),
+    ("time_history", (time_history, &[])),
 ];
 
-fn sweep(section: &Section<'_>) -> Option<Test> {
+fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
     let (peak_velocity, spacing) = (
         section.positive("peak_velocity"),
         section.choice("spacing", Spacing::NAMES),
     );
     let (start, end) = (section.positive("start_frequency"), section.positive("end_frequency"));
-    let sample_rate = section.positive("sample_rate");
+    let sample_rate = sample_rate(section, known, file);
     let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
     if start_frequency >= end_frequency {
         let expected = format!("above the start at {start_frequency} Hz");
@@ -259,10 +356,10 @@ fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
     })
 }
 
-fn cleat(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Test> {
-    let (speed, sample_rate) = (section.positive("speed"), section.positive("sample_rate"));
+fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+    let (speed, sample_rate) = (section.positive("speed"), sample_rate(section, known, file));
     let cleat = section.text("cleat")?;
-    if let Some(roads) = roads
+    if let Some(roads) = known.roads
         && !roads.iter().any(|road| road.name == cleat)
     {
         let names: Vec<_> = roads.iter().map(|road| format!("\"{}\"", road.name)).collect();
@@ -284,8 +381,8 @@ fn cleat(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Test> {
     })
 }
 
-fn time_history(section: &Section<'_>) -> Option<Test> {
-    let (sample_rate, band_limited) = (section.positive("sample_rate"), section.boolean("band_limited"));
+fn time_history(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+    let (sample_rate, band_limited) = (sample_rate(section, known, file), section.boolean("band_limited"));
     let (band, periodic) = (section.range("band"), section.flag("periodic"));
     let (sample_rate, band_limited) = (sample_rate?, band_limited?);
     if let Some((low, high)) = band
@@ -318,8 +415,20 @@ fn road(section: &Section<'_>) -> Option<Road> {
     })
 }
 
-/// The columns of all time histories, once the header of every file has been found right.
-fn recorded_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+/// The runs of files that are no plain tables.
+fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, InputError> {
+    let (mut runs, mut problems) = (Vec::new(), Vec::new());
+    for run in campaign.runs.iter().filter(|run| !run.plain) {
+        match recorded::record(campaign, files, run) {
+            Ok(recorded) => runs.push(recorded),
+            Err(wrong) => problems.extend(wrong),
+        }
+    }
+    InputError::unless_empty(problems, Some(runs))
+}
+
+/// The columns of all plain time histories, once the header of every plain table has been found right.
+fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let channels: Vec<_> = campaign.channels.iter().map(|channel| channel.name.as_str()).collect();
     let (mut recorded, mut problems) = (Vec::new(), Vec::new());
     for (file, required, allowed) in tables(campaign, &channels) {
@@ -359,7 +468,8 @@ fn with_columns(problem: Problem, required: &[&str], allowed: &[&str]) -> Proble
 
 /// Every file with the columns that it must and may have.
 fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a [&'a str], &'a [&'a str])> {
-    let runs = campaign.runs.iter().map(|run| match run.test {
+    let plain = campaign.runs.iter().filter(|run| run.plain);
+    let runs = plain.map(|run| match run.test {
         Test::Bounce | Test::Longitudinal => (run.file.as_str(), CURVE, &[][..]),
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
