@@ -14,6 +14,7 @@ pub mod discover;
 pub mod effects;
 pub mod fit;
 pub mod frf;
+pub mod import;
 pub mod inspect;
 pub mod kc;
 pub mod matrices;

@@ -17,6 +17,8 @@ mod fields;
 mod tap;
 // Runs from files of rigs and other programs.
 mod recorded;
+// What their samples show to be wrong.
+mod findings;
 // From `campaign.toml` to the types.
 mod manifest;
 // Time histories of runs.
@@ -31,6 +33,7 @@ pub use contents::{
     Tap, Test, Trigger, Window,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
+pub use findings::Finding;
 pub use history::History;
 pub use truth::{Effect, Truth};
 pub use unit::{Dimension, dimension};

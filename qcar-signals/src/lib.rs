@@ -12,6 +12,8 @@ pub mod signal;
 pub mod find;
 // Their samples at one rate.
 pub mod resample;
+// What is wrong with them.
+pub mod health;
 // Checked access to the bytes of a file.
 mod bytes;
 // Which texts are units.

@@ -106,6 +106,8 @@ pub struct Tap {
     pub sign: f64,
     /// Seconds at the beginning of the recording whose mean is taken off, if any.
     pub zero: Option<f64>,
+    /// Whether it stands in a file that campaigns share, so that none of a campaign's runs need have it.
+    pub shared: bool,
 }
 
 /// The part of a recording that is a run.

@@ -38,7 +38,11 @@ impl Campaign {
         campaign.recorded = recorded_runs(&campaign, &files)?;
         let columns = campaign.recorded.iter().flat_map(|recorded| &recorded.columns);
         names.extend(columns.map(|(name, _)| name.clone()));
+        InputError::unless_empty(campaign.problems_of_recorded(), Some(()))?;
         campaign.notices = notices(&campaign, &names);
+        campaign.notices.extend(campaign.gaps_of_recorded());
+        let findings = campaign.recorded.iter().flat_map(|recorded| &recorded.findings);
+        campaign.notices.extend(findings.map(ToString::to_string));
         Ok(campaign)
     }
 }
@@ -129,6 +133,7 @@ fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
             "remove it from one of the two files",
         );
     }
+    shared.iter_mut().for_each(|shared| shared.tap.shared = true);
     shared.extend(own);
     Some(shared)
 }
@@ -482,7 +487,7 @@ fn notices(campaign: &Campaign, recorded: &[String]) -> Vec<String> {
     let unused = campaign
         .channels
         .iter()
-        .filter(|channel| !recorded.contains(&channel.name));
+        .filter(|channel| !recorded.contains(&channel.name) && !campaign.is_missed(&channel.name));
     let say = |channel: &Channel| {
         let (file, name) = (campaign.manifest(), &channel.name);
         format!(

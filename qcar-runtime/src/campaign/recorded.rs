@@ -6,6 +6,7 @@ use qcar_signals::resample::{Grid, reach, resample};
 use qcar_signals::signal::{Recording, Signal, TimeBase};
 
 use super::contents::{Campaign, Run, Tap, Test};
+use super::findings::{self, Finding};
 use crate::error::{Place, Problem};
 use even::{Broken, Even};
 use files::problem;
@@ -35,9 +36,16 @@ pub(super) struct Recorded {
     pub columns: Vec<(String, Vec<f64>)>,
     /// Taps that the file has no channel for.
     pub missing: Vec<Missing>,
+    /// What the samples show to be odd, before they were resampled.
+    pub findings: Vec<Finding>,
 }
 
 impl Recorded {
+    /// Whether it has a sensor or column.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|(own, _)| own == name)
+    }
+
     /// A column of a curve, which none lacks.
     pub fn column(&self, name: &str) -> Vec<f64> {
         let column = self.columns.iter().find(|(own, _)| own == name);
@@ -130,13 +138,20 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Re
     if !problems.is_empty() {
         return Err(problems);
     }
-    let (grid, columns) = at_one_rate(&file, &channels, span, run.test.sample_rate())?;
+    let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
+    let rate = run.test.sample_rate().unwrap_or(highest);
+    let even = evened(&file, &channels, span, rate)?;
+    let grid = common(&file, &channels, &even, rate).map_err(|problem| vec![problem])?;
+    let both = || channels.iter().zip(&even);
     Ok(Recorded {
         run: run.name.clone(),
         start: grid.start - span.zero.unwrap_or(0.0),
         rate: grid.rate,
-        columns,
+        columns: both()
+            .map(|(channel, even)| (channel.tap.name.clone(), taken(even, grid)))
+            .collect(),
         missing,
+        findings: both().flat_map(|(channel, even)| channel.findings(run, even)).collect(),
     })
 }
 
@@ -173,36 +188,35 @@ fn channel<'a>(
     })
 }
 
-/// Names and samples, all of one length.
-type Columns = Vec<(String, Vec<f64>)>;
-
-/// The channels at `rate`, or at the highest among them.
-fn at_one_rate(
-    file: &Path,
-    channels: &[Channel<'_>],
-    span: Span,
-    rate: Option<f64>,
-) -> Result<(Grid, Columns), Vec<Problem>> {
-    let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
-    let rate = rate.unwrap_or(highest);
+/// The samples of each channel in the window.
+fn evened<'a>(file: &Path, channels: &'a [Channel<'_>], span: Span, rate: f64) -> Result<Vec<Even<'a>>, Vec<Problem>> {
     let even = channels
         .iter()
         .map(|channel| channel.even(rate, span).map_err(|broken| channel.problem(file, broken)));
     let (even, broken): (Vec<_>, Vec<_>) = even.partition(Result::is_ok);
-    if !broken.is_empty() {
-        return Err(broken.into_iter().filter_map(Result::err).collect());
+    match broken.is_empty() {
+        true => Ok(even.into_iter().flatten().collect()),
+        false => Err(broken.into_iter().filter_map(Result::err).collect()),
     }
-    let even: Vec<Even<'_>> = even.into_iter().flatten().collect();
-    let grid = common(file, channels, &even, rate).map_err(|problem| vec![problem])?;
-    let columns = channels.iter().zip(&even);
-    let columns = columns.map(|(channel, even)| (channel.tap.name.clone(), taken(even, grid)));
-    Ok((grid, columns.collect()))
 }
 
 impl Channel<'_> {
     fn even(&self, rate: f64, span: Span) -> Result<Even<'_>, Broken> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() as usize + 1;
         Even::new(&self.values, &self.base, self.rate, span.ends(), margin)
+    }
+
+    /// What the samples in the window show to be odd. Curves dwell and creep as they should.
+    fn findings(&self, run: &Run, even: &Even<'_>) -> Vec<Finding> {
+        if run.test.sample_rate().is_none() {
+            return Vec::new();
+        }
+        let inside = Grid {
+            start: even.start(),
+            ..even.grid
+        };
+        let samples = &even.samples[even.inside.clone()];
+        findings::of_samples(run, (&self.tap.name, self.tap.si), samples, inside)
     }
 
     fn problem(&self, file: &Path, broken: Broken) -> Problem {

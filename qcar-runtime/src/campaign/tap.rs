@@ -35,6 +35,7 @@ pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -
         offset: offset.unwrap_or(0.0),
         sign: sign?,
         zero: zero?,
+        shared: false,
     };
     Some((tap, mapped))
 }
@@ -139,6 +140,7 @@ impl Tap {
             offset: 0.0,
             sign: 1.0,
             zero: None,
+            shared: false,
         }
     }
 }
