@@ -98,11 +98,11 @@ const STANDS_OUT: f64 = 10.0;
 /// The share of the channel's range that a spike has at least.
 const OF_RANGE: f64 = 0.01;
 
-/// Samples far from the median of the five around them, where no neighbour is.
+/// Samples far from the median of the five around them, where no neighbour is. The first and last two have no five around them.
 fn spikes(samples: &[f64], range: f64) -> Option<Flaw> {
-    let apart: Vec<f64> = (0..samples.len())
-        .map(|at| samples[at] - median_of_five(samples, at))
-        .collect();
+    let ends = [0.0; 2];
+    let inner = samples.windows(5).map(|five| five[2] - median(five));
+    let apart: Vec<f64> = ends.into_iter().chain(inner).chain(ends).collect();
     let stands_out = |at: &usize| {
         let limit = apart[*at].abs() / STANDS_OUT;
         let (first, last) = (at.saturating_sub(NEIGHBOURS), (at + NEIGHBOURS + 1).min(apart.len()));
@@ -111,7 +111,7 @@ fn spikes(samples: &[f64], range: f64) -> Option<Flaw> {
             others.all(|other| apart[other].abs() < limit)
         }
     };
-    let found: Vec<usize> = (0..samples.len()).filter(stands_out).collect();
+    let found: Vec<usize> = (2..samples.len().saturating_sub(2)).filter(stands_out).collect();
     let largest = found
         .iter()
         .copied()
@@ -123,11 +123,10 @@ fn spikes(samples: &[f64], range: f64) -> Option<Flaw> {
     })
 }
 
-fn median_of_five(samples: &[f64], at: usize) -> f64 {
-    let first = at.saturating_sub(2).min(samples.len().saturating_sub(5));
-    let mut five: Vec<f64> = samples[first..(first + 5).min(samples.len())].to_vec();
-    five.sort_by(f64::total_cmp);
-    five[five.len() / 2]
+fn median(five: &[f64]) -> f64 {
+    let mut sorted = five.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted[sorted.len() / 2]
 }
 
 /// Parts of a record whose means show a drift.

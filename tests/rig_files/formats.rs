@@ -39,7 +39,7 @@ fn mapping() -> String {
 }
 
 /// The sweeps of the original in g, each with its number in the names of files.
-fn sweeps() -> Vec<Group> {
+pub fn sweeps() -> Vec<Group> {
     let campaign = Campaign::open(ORIGINAL).unwrap();
     let sweeps = campaign.runs.iter().filter(|run| matches!(run.test, Test::Sweep(_)));
     sweeps

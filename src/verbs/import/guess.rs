@@ -97,8 +97,13 @@ impl Guess {
     pub fn of(signal: &Signal, about: &About) -> Result<Guess, &'static str> {
         let words = words(&signal.full_name());
         let stated = quantity_of(&signal.unit);
-        let quantity = stated.or_else(|| meaning(&words, QUANTITIES));
-        let quantity = quantity.ok_or("neither unit nor name says what it measures")?;
+        if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
+            return Err("its unit is none of an acceleration, velocity, displacement or force");
+        }
+        // Most sensors of a rig are accelerometers.
+        let quantity = stated
+            .or_else(|| meaning(&words, QUANTITIES))
+            .unwrap_or(Quantity::Acceleration);
         let (location, drives) = location(&words, about).ok_or("no word of its name is a part of the model")?;
         let axis = meaning(&words, AXES).ok_or("its name says no axis, x or z")?;
         Ok(Guess {

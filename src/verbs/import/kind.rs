@@ -11,12 +11,14 @@ use crate::table::number;
 /// Significant digits of what is proposed.
 const DIGITS: usize = 6;
 /// A record without a pad whose largest value is so many times its RMS value is one of an impact.
-const IMPACT: f64 = 6.0;
+const IMPACT: f64 = 5.0;
 
 /// A run and what it seems to be.
 pub(super) struct Proposed {
     file: String,
     kind: Kind,
+    /// Hz, the highest among its sensors.
+    rate: Option<f64>,
 }
 
 enum Kind {
@@ -62,9 +64,23 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
         None if of(false).any(|(_, signal)| is_impact(&signal.samples)) => Kind::Cleat,
         None => Kind::TimeHistory,
     };
+    let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
     Proposed {
         file: file.seen.clone(),
         kind,
+        rate: signals
+            .filter_map(|signal| signal.time.rate())
+            .reduce(f64::max)
+            .map(whole),
+    }
+}
+
+/// Printed times leave a rate a little off the whole number that it is.
+fn whole(rate: f64) -> f64 {
+    if (rate / rate.round() - 1.0).abs() < 1e-6 {
+        rate.round()
+    } else {
+        rate
     }
 }
 
@@ -101,8 +117,11 @@ pub(super) fn sections(runs: &[Proposed]) -> String {
             false => "\"fit\" # parameters are fitted to it",
         };
         text += &format!("\n[[run]]\nfile = {:?}\nrole = {role}\n{}", run.file, keys(&run.kind));
+        text += &match run.rate {
+            Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
+            None => "# sample_rate = # Hz; the file says none, give yours\n".into(),
+        };
     }
-    text += "# sample_rate = # Hz, where the run is to have another than the highest of its channels\n";
     if runs.iter().any(|run| matches!(run.kind, Kind::Cleat)) {
         text += "\n# The profile of the cleat, with the header line x,z,slope.\n# [[road]]\n# name = \"cleat_20\"\n# file = \"road/cleat_20.csv\"\n";
     }

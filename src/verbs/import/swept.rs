@@ -23,6 +23,11 @@ const STRAIGHT: f64 = 0.1;
 /// A value is written with the fewest digits that change it by less than this share.
 const ROUNDING: f64 = 0.03;
 
+/// Part of the RMS value of the velocity that a swing has.
+const SWING: f64 = 0.5;
+/// What fades out of an integral, 1/s: a tenth of a hertz.
+const SLOW: f64 = 0.6;
+
 /// A half period: its middle (s), its frequency (Hz) and the peak of the velocity in it (m/s).
 struct Half {
     time: f64,
@@ -40,7 +45,8 @@ pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Sw
         let points: Vec<(f64, f64)> = halves.iter().map(|half| (half.time, scale(half.frequency))).collect();
         line(&points)
     };
-    let end_time = samples.len() as f64 / rate;
+    let (first, last) = (&halves[0], &halves[halves.len() - 1]);
+    let (start_time, end_time) = (first.time - 0.25 / first.frequency, last.time + 0.25 / last.frequency);
     let (logarithmic, linear) = (of(f64::ln), of(|frequency| frequency));
     let errors = [(logarithmic, true), (linear, false)].map(|(line, logarithmic)| {
         let at = |time: f64| {
@@ -54,7 +60,12 @@ pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Sw
             .iter()
             .map(|half| (half.frequency / at(half.time) - 1.0).powi(2))
             .sum();
-        ((error / halves.len() as f64).sqrt(), at(0.0), at(end_time), logarithmic)
+        (
+            (error / halves.len() as f64).sqrt(),
+            at(start_time),
+            at(end_time),
+            logarithmic,
+        )
     });
     let (error, start, end, logarithmic) = if errors[0].0 <= errors[1].0 {
         errors[0]
@@ -71,35 +82,53 @@ pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Sw
     })
 }
 
-/// What lies between zeros of the signal.
+/// What lies between zeros of the velocity.
 fn halves(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Half> {
-    let zeros: Vec<f64> = samples
-        .windows(2)
-        .enumerate()
-        .filter(|(_, two)| (two[0] < 0.0) != (two[1] < 0.0))
-        .map(|(at, two)| at as f64 + two[0] / (two[0] - two[1]))
-        .collect();
+    let velocity = velocity(samples, rate, quantity);
+    let zeros = zeros(&velocity);
     let half = |two: &[f64]| {
-        let frequency = 0.5 * rate / (two[1] - two[0]);
-        let peak = samples[two[0].ceil() as usize..=two[1].floor() as usize].iter();
-        let peak = peak.fold(0.0, |most: f64, value| most.max(value.abs()));
-        let omega = std::f64::consts::TAU * frequency;
-        let velocity = match quantity {
-            Quantity::Acceleration => peak / omega,
-            Quantity::Displacement => peak * omega,
-            Quantity::Velocity | Quantity::Force => peak,
-        };
+        let inside = &velocity[two[0].ceil() as usize..=two[1].floor() as usize];
         Half {
             time: 0.5 * (two[0] + two[1]) / rate,
-            frequency,
-            velocity,
+            frequency: 0.5 * rate / (two[1] - two[0]),
+            velocity: inside.iter().fold(0.0, |most: f64, value| most.max(value.abs())),
         }
     };
+    let whole = zeros.windows(2).filter(|two| two[0].ceil() <= two[1].floor());
+    whole.map(half).collect()
+}
+
+/// The velocity of the pad, m/s, whose amplitude stays in a sweep. What is slower than a tenth of a hertz is left out of it, so that
+/// an offset of the sensor does not run away.
+fn velocity(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<f64> {
+    let fading = 1.0 - SLOW / rate;
+    let mut last = 0.0;
+    let integrated = |sample: &f64| {
+        last = last * fading + sample / rate;
+        last
+    };
+    match quantity {
+        Quantity::Acceleration => samples.iter().map(integrated).collect(),
+        Quantity::Displacement => samples.windows(2).map(|two| (two[1] - two[0]) * rate).collect(),
+        Quantity::Velocity | Quantity::Force => samples.to_vec(),
+    }
+}
+
+/// Places between samples where the signal goes through zero, from one swing to the next. What is small is noise and no swing.
+fn zeros(velocity: &[f64]) -> Vec<f64> {
+    let square = velocity.iter().map(|value| value * value).sum::<f64>() / velocity.len().max(1) as f64;
+    let swing = SWING * square.sqrt();
+    let (mut zeros, mut zero, mut side) = (Vec::new(), 0.0, 0.0);
+    for (at, two) in velocity.windows(2).enumerate() {
+        if (two[0] < 0.0) != (two[1] < 0.0) {
+            zero = at as f64 + two[0] / (two[0] - two[1]);
+        }
+        if two[1].abs() > swing && two[1].signum() != side {
+            side = two[1].signum();
+            zeros.push(zero);
+        }
+    }
     zeros
-        .windows(2)
-        .filter(|two| two[0].ceil() <= two[1].floor())
-        .map(half)
-        .collect()
 }
 
 /// Slope and offset of the line that least squares give.
