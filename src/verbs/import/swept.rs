@@ -21,8 +21,10 @@ const RISE: f64 = 2.0;
 /// The largest relative deviation of its half periods from a line, or from one of logarithms, as a root mean square.
 const STRAIGHT: f64 = 0.1;
 /// A value is written with the fewest digits that change it by less than this share.
-const ROUNDING: f64 = 0.03;
+const ROUNDING: f64 = 0.05;
 
+/// How far the velocity of a half period may be from the usual one, as a share of it.
+const FULL: f64 = 0.2;
 /// Part of the RMS value of the velocity that a swing has.
 const SWING: f64 = 0.5;
 /// What fades out of an integral, 1/s: a tenth of a hertz.
@@ -37,49 +39,76 @@ struct Half {
 
 /// What the samples of a pad sweep over, if they do.
 pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Swept> {
-    let halves = halves(samples, rate, quantity);
+    let mut halves = halves(samples, rate, quantity);
+    let mut velocities: Vec<f64> = halves.iter().map(|half| half.velocity).collect();
+    velocities.sort_by(f64::total_cmp);
+    let usual = *velocities.get(velocities.len() / 2)?;
+    // A sweep fades in and out.
+    halves.retain(|half| (half.velocity / usual - 1.0).abs() < FULL);
     if halves.len() < LEAST {
         return None;
     }
-    let of = |scale: fn(f64) -> f64| {
-        let points: Vec<(f64, f64)> = halves.iter().map(|half| (half.time, scale(half.frequency))).collect();
-        line(&points)
-    };
+    let laws = [Law::through(&halves, true), Law::through(&halves, false)];
+    let law = laws
+        .into_iter()
+        .min_by(|a, b| a.error(&halves).total_cmp(&b.error(&halves)))?;
     let (first, last) = (&halves[0], &halves[halves.len() - 1]);
-    let (start_time, end_time) = (first.time - 0.25 / first.frequency, last.time + 0.25 / last.frequency);
-    let (logarithmic, linear) = (of(f64::ln), of(|frequency| frequency));
-    let errors = [(logarithmic, true), (linear, false)].map(|(line, logarithmic)| {
-        let at = |time: f64| {
-            if logarithmic {
-                line.0.mul_add(time, line.1).exp()
-            } else {
-                line.0.mul_add(time, line.1)
-            }
-        };
-        let error: f64 = halves
-            .iter()
-            .map(|half| (half.frequency / at(half.time) - 1.0).powi(2))
-            .sum();
-        (
-            (error / halves.len() as f64).sqrt(),
-            at(start_time),
-            at(end_time),
-            logarithmic,
-        )
-    });
-    let (error, start, end, logarithmic) = if errors[0].0 <= errors[1].0 {
-        errors[0]
-    } else {
-        errors[1]
-    };
-    let mut velocities: Vec<f64> = halves.iter().map(|half| half.velocity).collect();
-    velocities.sort_by(f64::total_cmp);
-    (error < STRAIGHT && start > 0.0 && end > RISE * start).then(|| Swept {
-        peak_velocity: rounded(velocities[velocities.len() / 2]),
+    let start = law.at(first.time - 0.25 / first.frequency);
+    let end = law.at(last.time + 0.25 / last.frequency);
+    (law.error(&halves) < STRAIGHT && start > 0.0 && end > RISE * start).then(|| Swept {
+        peak_velocity: rounded(usual),
         start: rounded(start),
         end: rounded(end),
-        logarithmic,
+        logarithmic: law.logarithmic,
     })
+}
+
+/// How the frequency grows: it, or its logarithm, on a line over time.
+struct Law {
+    slope: f64,
+    offset: f64,
+    logarithmic: bool,
+}
+
+impl Law {
+    /// The line of least squares, every second of the sweep counting alike.
+    fn through(halves: &[Half], logarithmic: bool) -> Law {
+        let scaled = |half: &Half| {
+            if logarithmic {
+                half.frequency.ln()
+            } else {
+                half.frequency
+            }
+        };
+        let mean = |of: &dyn Fn(&Half) -> f64| {
+            let (sum, weights) = halves.iter().fold((0.0, 0.0), |(sum, weights), half| {
+                (sum + of(half) / half.frequency, weights + 1.0 / half.frequency)
+            });
+            sum / weights
+        };
+        let (time, value) = (mean(&|half| half.time), mean(&scaled));
+        let slope =
+            mean(&|half| (half.time - time) * (scaled(half) - value)) / mean(&|half| (half.time - time).powi(2));
+        Law {
+            slope,
+            offset: value - slope * time,
+            logarithmic,
+        }
+    }
+
+    fn at(&self, time: f64) -> f64 {
+        let value = self.slope.mul_add(time, self.offset);
+        if self.logarithmic { value.exp() } else { value }
+    }
+
+    /// Root mean square of the relative deviations.
+    fn error(&self, halves: &[Half]) -> f64 {
+        let square: f64 = halves
+            .iter()
+            .map(|half| (half.frequency / self.at(half.time) - 1.0).powi(2))
+            .sum();
+        (square / halves.len() as f64).sqrt()
+    }
 }
 
 /// What lies between zeros of the velocity.
@@ -129,18 +158,6 @@ fn zeros(velocity: &[f64]) -> Vec<f64> {
         }
     }
     zeros
-}
-
-/// Slope and offset of the line that least squares give.
-fn line(points: &[(f64, f64)]) -> (f64, f64) {
-    let count = points.len() as f64;
-    let (x, y) = points
-        .iter()
-        .fold((0.0, 0.0), |(x, y), point| (x + point.0 / count, y + point.1 / count));
-    let (above, below) = points.iter().fold((0.0, 0.0), |(above, below), point| {
-        (above + (point.0 - x) * (point.1 - y), below + (point.0 - x).powi(2))
-    });
-    (above / below, y - above / below * x)
 }
 
 /// The nearest value of the fewest digits.
