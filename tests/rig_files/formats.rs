@@ -24,7 +24,7 @@ const NAMES: [(&str, &str, f64); 7] = [
 ];
 
 /// The mapping that the campaigns of all formats share.
-fn mapping() -> String {
+pub fn mapping() -> String {
     let section = |(name, source, sign): &(&str, &str, f64)| {
         let (location, rest) = name.split_once('_').unwrap();
         let side = rest.trim_end_matches("_z");
@@ -58,7 +58,7 @@ pub fn sweeps() -> Vec<Group> {
 }
 
 /// A campaign with these files as its sweeps. No rate is stated: it is that of the files.
-fn campaign(folder: &Path, ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
+pub fn campaign(folder: &Path, ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
     let original = fs::read_to_string(Path::new(ORIGINAL).join("campaign.toml")).unwrap();
     let head = original.split("[[channel]]").next().unwrap();
     let mut text = head.replace("[vehicle]", "mapping = \"../rig.toml\"\n\n[vehicle]");

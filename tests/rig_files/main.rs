@@ -1,5 +1,7 @@
 //! A campaign whose runs are files of rigs and other programs.
 
+// What samples show to be wrong.
+mod findings;
 // The same fit from every format.
 mod formats;
 // A campaign begun with files.

@@ -6,8 +6,12 @@ use qcar_signals::health::{Flaw, FlawKind, flaws};
 use qcar_signals::resample::Grid;
 
 use super::contents::{Campaign, Quantity, Role, Run, Test};
+use super::history::History;
 use super::recorded::Missing;
 use crate::error::{InputError, Place, Problem};
+
+// Both sides of the car beside each other.
+mod sides;
 
 /// Something that is odd about a channel of a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +63,14 @@ fn said(flaw: &Flaw, unit: &str) -> String {
     }
 }
 
+/// What the sensors of both sides of a sweep say of each other.
+fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
+    match run.test {
+        Test::Sweep(_) => sides::of_sides(run, history),
+        _ => Vec::new(),
+    }
+}
+
 impl Campaign {
     /// What is odd about the samples of every time history.
     ///
@@ -67,12 +79,19 @@ impl Campaign {
     pub fn findings(&self) -> Result<Vec<Finding>, InputError> {
         let mut all = Vec::new();
         for run in self.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
-            match self.recorded(run) {
-                Some(recorded) => all.extend(recorded.findings.iter().cloned()),
-                None => all.extend(self.of_plain(run)?),
-            }
+            all.extend(match run.plain {
+                true => self.of_plain(run)?,
+                false => self.of_recorded(run)?,
+            });
         }
         Ok(all)
+    }
+
+    /// What was found in the file of a run, and what its sensors say of each other.
+    pub(super) fn of_recorded(&self, run: &Run) -> Result<Vec<Finding>, InputError> {
+        let own = self.recorded(run).map(|recorded| recorded.findings.clone());
+        let history = self.history(run)?;
+        Ok(own.into_iter().flatten().chain(of_sides(run, &history)).collect())
     }
 
     fn of_plain(&self, run: &Run) -> Result<Vec<Finding>, InputError> {
@@ -86,7 +105,7 @@ impl Campaign {
         let of = |(channel, samples): &(super::Channel, Vec<f64>)| {
             of_samples(run, (&channel.name, channel.quantity.unit()), samples, grid)
         };
-        Ok(signals.flat_map(of).collect())
+        Ok(signals.flat_map(of).chain(of_sides(run, &history)).collect())
     }
 
     /// What is wrong with the recorded runs together: sources that no file has, and dead channels that a fit needs.

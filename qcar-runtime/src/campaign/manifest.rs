@@ -41,8 +41,14 @@ impl Campaign {
         InputError::unless_empty(campaign.problems_of_recorded(), Some(()))?;
         campaign.notices = notices(&campaign, &names);
         campaign.notices.extend(campaign.gaps_of_recorded());
-        let findings = campaign.recorded.iter().flat_map(|recorded| &recorded.findings);
-        campaign.notices.extend(findings.map(ToString::to_string));
+        let recorded = campaign
+            .runs
+            .iter()
+            .filter(|run| !run.plain && run.test.sample_rate().is_some());
+        for run in recorded.cloned().collect::<Vec<_>>() {
+            let findings = campaign.of_recorded(&run)?;
+            campaign.notices.extend(findings.iter().map(ToString::to_string));
+        }
         Ok(campaign)
     }
 }
@@ -298,7 +304,7 @@ fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) 
     };
     let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
     let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
-    highest.map_err(|problem| section.adopt(problem.into())).ok()
+    highest.map_err(|error| section.adopt(error)).ok()
 }
 
 /// Reads a test, whose file is named where it is no plain table.
@@ -426,7 +432,7 @@ fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, In
     for run in campaign.runs.iter().filter(|run| !run.plain) {
         match recorded::record(campaign, files, run) {
             Ok(recorded) => runs.push(recorded),
-            Err(wrong) => problems.extend(wrong),
+            Err(error) => problems.extend(error.problems),
         }
     }
     InputError::unless_empty(problems, Some(runs))

@@ -2,24 +2,26 @@
 
 use std::path::Path;
 
-use qcar_signals::resample::{Grid, reach, resample};
-use qcar_signals::signal::{Recording, Signal, TimeBase};
-
 use super::contents::{Campaign, Run, Tap, Test};
-use super::findings::{self, Finding};
-use crate::error::{Place, Problem};
-use even::{Broken, Even};
+use super::findings::Finding;
+use crate::error::{InputError, Place, Problem};
+use channel::Channel;
 use files::problem;
-use window::{Span, clock};
+use together::Together;
+use window::Span;
 
-// Samples that come evenly.
-mod even;
 // Each file read once.
 mod files;
-// Values in SI.
-mod values;
+// Samples that come evenly.
+mod even;
 // When a run begins and ends.
 mod window;
+// Values in SI.
+mod values;
+// What a tap makes of a channel.
+mod channel;
+// All channels of a run at one rate.
+mod together;
 
 pub(super) use files::Files;
 
@@ -66,15 +68,6 @@ pub(super) struct Missing {
     pub problem: Problem,
 }
 
-/// A channel with its values in SI.
-struct Channel<'a> {
-    tap: &'a Tap,
-    signal: &'a Signal,
-    base: TimeBase,
-    values: Vec<f64>,
-    rate: f64,
-}
-
 impl Campaign {
     /// What was read of a run, `None` where its file is a plain table.
     pub(super) fn recorded(&self, run: &Run) -> Option<&Recorded> {
@@ -92,173 +85,58 @@ impl Campaign {
 }
 
 /// The highest rate among the channels of a file that `taps` mean, Hz.
-pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, Problem> {
+pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, InputError> {
     let recording = files.get(file)?;
-    let found = taps.iter().filter(|tap| recording.has(&tap.source));
-    let signals: Vec<&Signal> = found
-        .map(|tap| recording.find(&tap.source).map_err(|fault| problem(file, &fault)))
-        .collect::<Result<_, _>>()?;
-    let rates = signals
-        .iter()
-        .filter_map(|signal| even::rate(&signal.time, signal.samples.len(), None));
-    rates.reduce(f64::max).ok_or_else(|| {
-        let found = match signals.first() {
-            Some(_) => "channels without times".to_string(),
-            None => "none of the channels that the campaign names".into(),
-        };
-        let remedy = "state `sample_rate`, and correct the `source` of the channels";
-        Problem::new(file, Place::File, found, "channels with a sample rate", remedy)
-    })
+    let (mut highest, mut is_any) = (0.0_f64, false);
+    for tap in taps.iter().filter(|tap| recording.has(&tap.source)) {
+        let signal = recording.find(&tap.source);
+        let signal = signal.map_err(|fault| InputError::from(problem(file, &fault)))?;
+        highest = highest.max(even::rate(&signal.time, signal.samples.len(), None).unwrap_or(0.0));
+        is_any = true;
+    }
+    if highest > 0.0 {
+        return Ok(highest);
+    }
+    let found = match is_any {
+        true => "channels without times",
+        false => "none of the channels that the campaign names",
+    };
+    let remedy = "state `sample_rate`, and correct the `source` of the channels";
+    Err(Problem::new(file, Place::File, found, "channels with a sample rate", remedy).into())
 }
 
 /// Reads a run.
-pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, Vec<Problem>> {
+pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, InputError> {
     let file = campaign.folder.join(&run.file);
-    let recording = files.get(&file).map_err(|problem| vec![problem])?;
+    let recording = files.get(&file)?;
     // A quasi-static curve needs no times.
     let declared = run.test.sample_rate().or(match run.test {
         Test::Bounce | Test::Longitudinal => Some(1.0),
         _ => None,
     });
-    let span = Span::of(&file, &recording, &run.window, declared).map_err(|problem| vec![problem])?;
+    let span = Span::of(&file, &recording, &run.window, declared)?;
     let (mut channels, mut missing, mut problems) = (Vec::new(), Vec::new(), Vec::new());
     for tap in campaign.taps_of(run) {
-        match channel(&file, &recording, tap, declared) {
+        match Channel::tapped(&file, &recording, tap, declared) {
             Ok(channel) => channels.push(channel),
-            Err(problem) if recording.has(&tap.source) => problems.push(problem),
-            Err(problem) => missing.push(Missing {
+            Err(error) if recording.has(&tap.source) => problems.extend(error.problems),
+            Err(error) => missing.extend(error.problems.into_iter().map(|problem| Missing {
                 name: tap.name.clone(),
                 problem,
-            }),
+            })),
         }
     }
     if channels.is_empty() || run.test.sample_rate().is_none() {
         problems.extend(missing.iter().map(|missing| missing.problem.clone()));
     }
-    if !problems.is_empty() {
-        return Err(problems);
-    }
-    let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
-    let rate = run.test.sample_rate().unwrap_or(highest);
-    let even = evened(&file, &channels, span, rate)?;
-    let grid = common(&file, &channels, &even, rate).map_err(|problem| vec![problem])?;
-    let both = || channels.iter().zip(&even);
+    InputError::unless_empty(problems, Some(()))?;
+    let together = Together::new(&file, &channels, span, run.test.sample_rate())?;
     Ok(Recorded {
         run: run.name.clone(),
-        start: grid.start - span.zero.unwrap_or(0.0),
-        rate: grid.rate,
-        columns: both()
-            .map(|(channel, even)| (channel.tap.name.clone(), taken(even, grid)))
-            .collect(),
+        start: together.grid.start - span.zero.unwrap_or(0.0),
+        rate: together.grid.rate,
+        columns: together.columns(),
         missing,
-        findings: both().flat_map(|(channel, even)| channel.findings(run, even)).collect(),
+        findings: together.findings(run),
     })
-}
-
-fn channel<'a>(
-    file: &Path,
-    recording: &'a Recording,
-    tap: &'a Tap,
-    declared: Option<f64>,
-) -> Result<Channel<'a>, Problem> {
-    let signal = recording.find(&tap.source).map_err(|fault| {
-        let problem = problem(file, &fault);
-        let expected = format!("{}, as `source` of `{}` says", problem.expected, tap.name);
-        Problem { expected, ..problem }
-    })?;
-    let known = clock(&signal.time, declared);
-    let rated = known.and_then(|base| Some((even::rate(&base, signal.samples.len(), declared)?, base)));
-    let Some((rate, base)) = rated else {
-        let remedy = "state the `sample_rate` of the run";
-        let place = Place::Channel(signal.full_name(), None);
-        return Err(Problem::new(
-            file,
-            place,
-            "no times",
-            "when the samples were taken",
-            remedy,
-        ));
-    };
-    Ok(Channel {
-        tap,
-        signal,
-        values: values::values(file, signal, &base, tap)?,
-        base,
-        rate,
-    })
-}
-
-/// The samples of each channel in the window.
-fn evened<'a>(file: &Path, channels: &'a [Channel<'_>], span: Span, rate: f64) -> Result<Vec<Even<'a>>, Vec<Problem>> {
-    let even = channels
-        .iter()
-        .map(|channel| channel.even(rate, span).map_err(|broken| channel.problem(file, broken)));
-    let (even, broken): (Vec<_>, Vec<_>) = even.partition(Result::is_ok);
-    match broken.is_empty() {
-        true => Ok(even.into_iter().flatten().collect()),
-        false => Err(broken.into_iter().filter_map(Result::err).collect()),
-    }
-}
-
-impl Channel<'_> {
-    fn even(&self, rate: f64, span: Span) -> Result<Even<'_>, Broken> {
-        let margin = (reach(self.rate, rate) * self.rate).ceil() as usize + 1;
-        Even::new(&self.values, &self.base, self.rate, span.ends(), margin)
-    }
-
-    /// What the samples in the window show to be odd. Curves dwell and creep as they should.
-    fn findings(&self, run: &Run, even: &Even<'_>) -> Vec<Finding> {
-        if run.test.sample_rate().is_none() {
-            return Vec::new();
-        }
-        let inside = Grid {
-            start: even.start(),
-            ..even.grid
-        };
-        let samples = &even.samples[even.inside.clone()];
-        findings::of_samples(run, (&self.tap.name, self.tap.si), samples, inside)
-    }
-
-    fn problem(&self, file: &Path, broken: Broken) -> Problem {
-        let place = Place::Channel(self.signal.full_name(), broken.at);
-        Problem::new(file, place, broken.found, broken.expected, broken.remedy)
-    }
-}
-
-/// The instants that all channels cover, on samples of the first one that has the rate.
-fn common(file: &Path, channels: &[Channel<'_>], even: &[Even<'_>], rate: f64) -> Result<Grid, Problem> {
-    let start = even.iter().map(Even::start).fold(f64::NEG_INFINITY, f64::max);
-    let end = even.iter().map(Even::end).fold(f64::INFINITY, f64::min);
-    let first = even.iter().map(Even::start).fold(f64::INFINITY, f64::min);
-    let last = even.iter().map(Even::end).fold(f64::NEG_INFINITY, f64::max);
-    // Channels of several rates begin and end within a sample or two of each other.
-    let apart = 2.0 / channels.iter().map(|channel| channel.rate).fold(rate, f64::min);
-    if start - first > apart || last - end > apart {
-        let at = even.iter().position(|even| even.end() == end && last - end > apart);
-        let at = at
-            .or_else(|| even.iter().position(|even| even.start() == start))
-            .unwrap_or(0);
-        let found = format!("samples from {} to {} s", even[at].start(), even[at].end());
-        let expected = format!("{first} to {last} s as in other channels");
-        let remedy = "give the run a `from` and `to` that all channels cover, or leave this one out with `without`";
-        let place = Place::Channel(channels[at].signal.full_name(), None);
-        return Err(Problem::new(file, place, found, expected, remedy));
-    }
-    let anchor = channels
-        .iter()
-        .position(|channel| channel.rate == rate)
-        .map(|at| even[at].start());
-    let anchor = anchor.unwrap_or(start);
-    let start = anchor + ((start - anchor) * rate - 1e-3).ceil().max(0.0) / rate;
-    let count = ((end - start) * rate + 1e-3).floor() as usize + 1;
-    Ok(Grid { start, rate, count })
-}
-
-/// The samples at the instants of the grid: as they are where they were taken then, else through the filter.
-fn taken(even: &Even<'_>, grid: Grid) -> Vec<f64> {
-    let as_they_are = even.sample_at(grid.start).filter(|_| even.grid.rate == grid.rate);
-    match as_they_are.and_then(|first| even.samples.get(first..first + grid.count)) {
-        Some(samples) => samples.to_vec(),
-        None => resample(even.samples, even.grid, grid),
-    }
 }

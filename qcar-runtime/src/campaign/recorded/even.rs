@@ -107,6 +107,16 @@ impl<'a> Even<'a> {
         self.grid.time(self.inside.end - 1)
     }
 
+    /// The samples in the window and their instants.
+    pub fn in_window(&self) -> (&[f64], Grid) {
+        let grid = Grid {
+            start: self.start(),
+            rate: self.grid.rate,
+            count: self.inside.len(),
+        };
+        (&self.samples[self.inside.clone()], grid)
+    }
+
     /// The index of the sample that is taken at an instant, if one is.
     pub fn sample_at(&self, instant: f64) -> Option<usize> {
         let place = (instant - self.grid.start) * self.grid.rate;

@@ -12,7 +12,7 @@ use qcar_signals::read::recognise;
 use qcar_signals::signal::Recording;
 
 use crate::bounded;
-use crate::error::{Place, Problem};
+use crate::error::{InputError, Place, Problem};
 
 /// What gzip packed begins with this.
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -20,12 +20,12 @@ const GZIP: &[u8] = b"\x1f\x8b";
 /// The files of a campaign.
 #[derive(Default)]
 pub(in crate::campaign) struct Files {
-    read: RefCell<HashMap<PathBuf, Result<Rc<Recording>, Problem>>>,
+    read: RefCell<HashMap<PathBuf, Result<Rc<Recording>, InputError>>>,
 }
 
 impl Files {
     /// The recording in a file.
-    pub fn get(&self, file: &Path) -> Result<Rc<Recording>, Problem> {
+    pub fn get(&self, file: &Path) -> Result<Rc<Recording>, InputError> {
         let known = self.read.borrow().get(file).cloned();
         known.unwrap_or_else(|| {
             let recording = read(file).map(Rc::new);
@@ -35,15 +35,21 @@ impl Files {
     }
 }
 
-fn read(file: &Path) -> Result<Recording, Problem> {
+fn read(file: &Path) -> Result<Recording, InputError> {
     let bytes = unpacked(file).map_err(|error| {
         let remedy = match error.kind() {
             io::ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
             _ => "correct the path (it is relative to the folder of campaign.toml) or put the file there",
         };
-        Problem::new(file, Place::File, error.to_string(), "a readable file", remedy)
+        InputError::from(Problem::new(
+            file,
+            Place::File,
+            error.to_string(),
+            "a readable file",
+            remedy,
+        ))
     })?;
-    recognise(&bytes).map_err(|fault| problem(file, &fault))
+    recognise(&bytes).map_err(|fault| problem(file, &fault).into())
 }
 
 fn unpacked(file: &Path) -> io::Result<Vec<u8>> {

@@ -8,10 +8,10 @@ use qcar_signals::signal::{Signal, TimeBase};
 use super::super::contents::Tap;
 use super::super::tap::{examples, of_quantity};
 use super::even::time;
-use crate::error::{Place, Problem};
+use crate::error::{InputError, Place, Problem};
 
 /// The samples that a tap makes of a channel, in SI; what is missing stays not a number.
-pub(super) fn values(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Vec<f64>, Problem> {
+pub(super) fn values(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Vec<f64>, InputError> {
     let si = unit(file, signal, tap)?;
     let scale = tap.scale.unwrap_or(1.0);
     let value = |sample: &f64| tap.sign * ((sample * scale + tap.offset) * si.multiply / si.divide);
@@ -25,16 +25,11 @@ pub(super) fn values(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -
 
 /// The unit of the scaled values: the declared one, else the file's. Where both are known and differ, somebody is wrong, unless
 /// a scale says that the values of the file are not to be taken as they are.
-fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, Problem> {
+fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, InputError> {
     let stated = in_si(&signal.unit).filter(|unit| of_quantity(Some(*unit), tap.si));
     let refuse = |found: String, expected: String, remedy: String| {
-        Err(Problem::new(
-            file,
-            Place::Channel(signal.name.clone(), None),
-            found,
-            expected,
-            remedy,
-        ))
+        let place = Place::Channel(signal.name.clone(), None);
+        Err(Problem::new(file, place, found, expected, remedy).into())
     };
     let Some(declared) = &tap.unit else {
         let found = match signal.unit.as_str() {
@@ -64,7 +59,7 @@ fn same_size(a: Si, b: Si) -> bool {
     (a.multiply * b.divide / (a.divide * b.multiply) - 1.0).abs() < 1e-9
 }
 
-fn mean_of_start(file: &Path, signal: &Signal, base: &TimeBase, values: &[f64], span: f64) -> Result<f64, Problem> {
+fn mean_of_start(file: &Path, signal: &Signal, base: &TimeBase, values: &[f64], span: f64) -> Result<f64, InputError> {
     let start = time(base, 0);
     let count = (0..values.len()).take_while(|&k| time(base, k) < start + span).count();
     let valid: Vec<f64> = values[..count]
@@ -78,13 +73,8 @@ fn mean_of_start(file: &Path, signal: &Signal, base: &TimeBase, values: &[f64], 
             "a recording that goes on longer than its zero",
             "shorten `zero_span`, or leave `zero` out",
         );
-        return Err(Problem::new(
-            file,
-            Place::Channel(signal.name.clone(), None),
-            found,
-            expected,
-            remedy,
-        ));
+        let place = Place::Channel(signal.name.clone(), None);
+        return Err(Problem::new(file, place, found, expected, remedy).into());
     }
     Ok(valid.iter().sum::<f64>() / valid.len() as f64)
 }

@@ -7,7 +7,7 @@ use qcar_signals::signal::{Recording, TimeBase};
 use super::super::contents::{Trigger, Window};
 use super::even::time;
 use super::files::problem;
-use crate::error::{Place, Problem};
+use crate::error::{InputError, Place, Problem};
 
 /// A window on the clock of the recording, s.
 #[derive(Clone, Copy, Debug, Default)]
@@ -20,7 +20,7 @@ pub(super) struct Span {
 
 impl Span {
     /// The window in this recording.
-    pub fn of(file: &Path, recording: &Recording, window: &Window, declared: Option<f64>) -> Result<Span, Problem> {
+    pub fn of(file: &Path, recording: &Recording, window: &Window, declared: Option<f64>) -> Result<Span, InputError> {
         let Some(trigger) = &window.trigger else {
             let (from, to) = (window.from, window.to);
             return Ok(Span { from, to, zero: from });
@@ -41,10 +41,10 @@ impl Span {
 }
 
 /// The time of the first sample above the value, after one that is not.
-fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Option<f64>) -> Result<f64, Problem> {
+fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Option<f64>) -> Result<f64, InputError> {
     let signal = recording
         .find(&trigger.channel)
-        .map_err(|fault| problem(file, &fault))?;
+        .map_err(|fault| InputError::from(problem(file, &fault)))?;
     let base = clock(&signal.time, declared);
     let above = |value: f64| value > trigger.above;
     let rises = |two: &[f64]| two.iter().all(|value| value.is_finite()) && !above(two[0]) && above(two[1]);
@@ -64,7 +64,8 @@ fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Optio
             "a moment that triggers the run",
             "correct `trigger` of the run, or give `from` and `to`",
         );
-        Problem::new(file, Place::Channel(signal.full_name(), None), found, expected, remedy)
+        let place = Place::Channel(signal.full_name(), None);
+        Problem::new(file, place, found, expected, remedy).into()
     })
 }
 
