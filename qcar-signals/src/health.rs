@@ -95,6 +95,10 @@ fn is_cut(samples: &[f64], at: usize, length: usize, step: f64) -> bool {
 const NEIGHBOURS: usize = 100;
 /// How many times further than any of them a spike stands out.
 const STANDS_OUT: f64 = 10.0;
+/// Neighbours to each side whose steps a spike is compared with: in an impact, all is rough.
+const NEAR: usize = 10;
+/// How many times larger than any of their steps a spike is.
+const ROUGH: f64 = 2.0;
 /// The share of the channel's range that a spike has at least.
 const OF_RANGE: f64 = 0.01;
 
@@ -103,19 +107,17 @@ fn spikes(samples: &[f64], range: f64) -> Option<Flaw> {
     let ends = [0.0; 2];
     let inner = samples.windows(5).map(|five| five[2] - median(five));
     let apart: Vec<f64> = ends.into_iter().chain(inner).chain(ends).collect();
-    let stands_out = |at: &usize| {
-        let limit = apart[*at].abs() / STANDS_OUT;
-        let (first, last) = (at.saturating_sub(NEIGHBOURS), (at + NEIGHBOURS + 1).min(apart.len()));
-        apart[*at].abs() > OF_RANGE * range && {
-            let mut others = (first..last).filter(|other| other.abs_diff(*at) > 2);
-            others.all(|other| apart[other].abs() < limit)
-        }
+    let around = |at: usize, reach: usize| at.saturating_sub(reach)..(at + reach + 1).min(samples.len());
+    let is_spike = |at: &usize| {
+        let own = apart[*at].abs();
+        let alone = |other: usize| other.abs_diff(*at) <= 2 || apart[other].abs() < own / STANDS_OUT;
+        let step = |to: usize| to > 0 && (samples[to] - samples[to - 1]).abs() > own / ROUGH;
+        let smooth = |other: usize| (*at - 2..=*at + 3).contains(&other) || !step(other);
+        own > OF_RANGE * range && around(*at, NEIGHBOURS).all(alone) && around(*at, NEAR).all(smooth)
     };
-    let found: Vec<usize> = (2..samples.len().saturating_sub(2)).filter(stands_out).collect();
-    let largest = found
-        .iter()
-        .copied()
-        .max_by(|a, b| apart[*a].abs().total_cmp(&apart[*b].abs()))?;
+    let found: Vec<usize> = (2..samples.len().saturating_sub(2)).filter(is_spike).collect();
+    let by_size = |a: &&usize, b: &&usize| apart[**a].abs().total_cmp(&apart[**b].abs());
+    let largest = *found.iter().max_by(by_size)?;
     Some(Flaw {
         kind: FlawKind::Spike(samples[largest]),
         samples: (largest, largest),

@@ -49,7 +49,14 @@ fn sound_signals_have_no_flaw() {
         })
         .collect();
     let valve: Vec<f64> = (0..4000).map(|k| if k / 500 % 2 == 0 { 0.0 } else { 1.0 }).collect();
-    for signal in [sweep(), slow, impact, valve, noise(20_000)] {
+    // The wheel on a cleat, from its first to its second impact.
+    let rough = [
+        0.4, 1.1, 3.0, 8.2, 23.6, 22.3, 20.3, 18.8, 13.1, 20.0, 10.0, 14.8, 8.1, 4.6, 2.0, -5.3, -11.4, -6.0, -2.0,
+        -0.7,
+    ];
+    let rest = |count: usize| (0..count).map(|k| 0.2 * (0.05 * k as f64).sin());
+    let cleat: Vec<f64> = rest(400).chain(rough).chain(rest(800)).collect();
+    for signal in [sweep(), slow, impact, valve, cleat, noise(20_000)] {
         for step in [0.0, 1e-4, 1e-3, 1e-2] {
             let given = if step > 0.0 {
                 rounded(&signal, step)

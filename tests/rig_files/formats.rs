@@ -74,7 +74,9 @@ pub fn campaign(folder: &Path, ending: &str, file: impl Fn(&Group) -> Vec<u8>) {
 }
 
 /// Name, value and standard error of each parameter that was fitted.
-fn fitted(folder: &Path) -> Vec<(String, f64, f64)> {
+type Fitted = Vec<(String, f64, f64)>;
+
+fn fitted(folder: &Path) -> Fitted {
     let arguments = ["fit", folder.to_str().unwrap(), "--starts", "1", "--format", "json"];
     let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
         .args(arguments)
@@ -89,7 +91,7 @@ fn fitted(folder: &Path) -> Vec<(String, f64, f64)> {
 }
 
 /// The fit of a campaign in some format, and that of the original without its other runs, whose K&C curves give starts.
-fn both(ending: &str, file: impl Fn(&Group) -> Vec<u8>) -> (Vec<(String, f64, f64)>, Vec<(String, f64, f64)>) {
+fn both(ending: &str, file: impl Fn(&Group) -> Vec<u8>) -> (Fitted, Fitted) {
     let folder = tempfile::tempdir().unwrap();
     let (own, plain) = (folder.path().join(ending), folder.path().join("plain"));
     fs::create_dir_all(&own).unwrap();

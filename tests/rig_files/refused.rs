@@ -121,6 +121,12 @@ fn mappings_are_read_with_care() {
         &["channel `FL_Body_Acc_Z`", "first 5 s", "shorten"],
     );
     body("source = \"FL_Body_Acc_Z\"\nzero_span = 5", "", &["no `zero`"]);
+    let run = "without = [\"body_left_y\"]";
+    body(
+        "source = \"FL_Body_Acc_Z\"",
+        run,
+        &["`run[1].without`", "\"body_left_y\"", "did you mean `body_left_z`?"],
+    );
 }
 
 #[test]
@@ -237,7 +243,10 @@ fn a_sensor_stands_in_one_file() {
     let head = crate::HEAD.replace("[vehicle]", "mapping = \"rig.toml\"\n\n[vehicle]");
     write(head.clone() + &history("rig.txt", ""));
     let error = open(folder.path()).unwrap_err().to_string();
-    assert!(error.contains("rig.toml: found"), "{error}");
+    assert!(
+        error.contains("`mapping`: found") && error.contains("rig.toml: No such file"),
+        "{error}"
+    );
     std::fs::write(path("rig.toml"), pad() + "[[channels]]\n").unwrap();
     let error = open(folder.path()).unwrap_err().to_string();
     assert!(

@@ -53,13 +53,16 @@ pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f6
 }
 
 fn said(flaw: &Flaw, unit: &str) -> String {
-    let count = flaw.count;
+    let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
     match flaw.kind {
         FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),
-        FlawKind::Clipped(value) => format!("{count} samples are cut off at {value} {unit}: the channel is clipped"),
-        FlawKind::Spike(value) if count == 1 => format!("a spike to {value} {unit}"),
-        FlawKind::Spike(value) => format!("{count} spikes, the largest to {value} {unit}"),
-        FlawKind::Drift(drift) => format!("the mean drifts by {drift} {unit}"),
+        FlawKind::Clipped(value) => format!(
+            "{count} samples are cut off at {} {unit}: the channel is clipped",
+            short(value)
+        ),
+        FlawKind::Spike(value) if count == 1 => format!("a spike to {} {unit}", short(value)),
+        FlawKind::Spike(value) => format!("{count} spikes, the largest to {} {unit}", short(value)),
+        FlawKind::Drift(drift) => format!("the mean drifts by {} {unit}", short(drift)),
     }
 }
 

@@ -2,14 +2,18 @@
 
 use std::path::Path;
 
-use super::contents::Tap;
-use super::contents::{
-    Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test,
-};
+use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test};
 use super::fields::{Document, Section};
 use super::recorded::{self, Files, Recorded};
-use super::{table, tap, unit};
+use super::{table, unit};
 use crate::error::{InputError, Place, Problem};
+use runs::{Known, run};
+use sensors::sensors;
+
+// Its channels.
+mod sensors;
+// Its tests.
+mod runs;
 
 /// The columns of a quasi-static curve, m and N.
 pub(super) const CURVE: &[&str] = &["displacement", "force"];
@@ -102,61 +106,6 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
     })
 }
 
-/// A channel, and where its values come from.
-struct Sensor {
-    channel: Channel,
-    tap: Tap,
-    /// Whether the tap says more than a plain table needs.
-    mapped: bool,
-}
-
-/// What a run is read beside.
-struct Known<'a> {
-    folder: &'a Path,
-    files: &'a Files,
-    /// `None` where something is wrong with them.
-    roads: Option<&'a [Road]>,
-    sensors: Option<&'a [Sensor]>,
-}
-
-/// The channels of the file that `mapping` names, then those of the campaign itself.
-fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
-    let shared = match top.optional_text("mapping") {
-        Some(file) => mapping(&folder.join(file)).map_err(|error| top.adopt(error)).ok(),
-        None => Some(Vec::new()),
-    };
-    let own = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
-    let (mut shared, own) = (shared?, own?);
-    let twice = own
-        .iter()
-        .find(|own| shared.iter().any(|shared| shared.channel.name == own.channel.name));
-    if let Some(twice) = twice {
-        let found = format!("the channel \"{}\", which `channel` has too", twice.channel.name);
-        top.wrong(
-            "mapping",
-            found,
-            "each channel once",
-            "remove it from one of the two files",
-        );
-    }
-    shared.iter_mut().for_each(|shared| shared.tap.shared = true);
-    shared.extend(own);
-    Some(shared)
-}
-
-/// The channels of a file that campaigns share.
-fn mapping(file: &Path) -> Result<Vec<Sensor>, InputError> {
-    let document = Document::read(file)?;
-    let sensors = {
-        let tree = document.parse()?;
-        let top = document.top(&tree);
-        let sensors = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
-        top.finish();
-        sensors
-    };
-    document.finish(sensors)
-}
-
 fn format(top: &Section<'_>) {
     if let Some(format) = top.number("format")
         && format != 1.0
@@ -238,183 +187,6 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
         fit: fit?,
         comment,
     })
-}
-
-fn sensor(section: &Section<'_>) -> Option<Sensor> {
-    let (name, location) = (section.text("name"), section.text("location"));
-    let (side, axis) = (section.choice("side", Side::NAMES), section.choice("axis", Axis::NAMES));
-    let quantity = section.choice("quantity", Quantity::NAMES);
-    if name.as_deref() == Some("time") {
-        section.wrong(
-            "name",
-            "\"time\"",
-            "another name",
-            "the column `time` holds the time; rename the channel",
-        );
-    }
-    let tap = tap::tap(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
-    section.finish();
-    let (tap, mapped) = tap?;
-    let channel = Channel {
-        name: name?,
-        location: location?,
-        side: side?,
-        axis: axis?,
-        quantity: quantity?,
-    };
-    Some(Sensor { channel, tap, mapped })
-}
-
-/// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
-fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
-    let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
-    let (name, without) = (section.optional_text("name"), section.texts("without"));
-    let window = tap::window(section);
-    let (read, columns) = section.choice("kind", KINDS)?;
-    let (columns, mapped) = tap::columns(section, columns)?;
-    let mapped = mapped
-        || known
-            .sensors
-            .is_some_and(|sensors| columns.is_empty() && sensors.iter().any(|own| own.mapped));
-    let (file, window) = (file?, window?);
-    let plain = is_table(&file) && !mapped && window.is_whole() && without.is_empty();
-    let test = read(section, known, (!plain).then_some(&file));
-    section.finish();
-    Some(Run {
-        name: name.unwrap_or_else(|| file.clone()),
-        file,
-        plain,
-        window,
-        without,
-        columns,
-        role: role?,
-        test: test?,
-    })
-}
-
-/// Whether a file may be a plain table.
-fn is_table(file: &str) -> bool {
-    file.ends_with(".csv") || file.ends_with(".csv.gz")
-}
-
-/// The rate of a run, Hz. In the file of a rig, `file`, it is the highest among its channels unless it is stated.
-fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
-    let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
-        return section.positive("sample_rate");
-    };
-    let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
-    let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
-    highest.map_err(|error| section.adopt(error)).ok()
-}
-
-/// Reads a test, whose file is named where it is no plain table.
-type ReadTest = fn(&Section<'_>, &Known<'_>, Option<&String>) -> Option<Test>;
-
-/// The kinds with the columns that a curve of the kind has.
-const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
-    ("sweep", (sweep, &[])),
-    ("bounce", (|_, _, _| Some(Test::Bounce), CURVE)),
-    (
-        "dynamic_bounce",
-        (|section, _, _| dynamic_bounce(section), DYNAMIC_CURVE),
-    ),
-    ("longitudinal", (|_, _, _| Some(Test::Longitudinal), CURVE)),
-    ("cleat", (cleat, &[])),
-    ("time_history", (time_history, &[])),
-];
-
-fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
-    let (peak_velocity, spacing) = (
-        section.positive("peak_velocity"),
-        section.choice("spacing", Spacing::NAMES),
-    );
-    let (start, end) = (section.positive("start_frequency"), section.positive("end_frequency"));
-    let sample_rate = sample_rate(section, known, file);
-    let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
-    if start_frequency >= end_frequency {
-        let expected = format!("above the start at {start_frequency} Hz");
-        section.wrong(
-            "end_frequency",
-            format!("{end_frequency} Hz"),
-            expected,
-            "correct the two frequencies",
-        );
-    }
-    if end_frequency >= sample_rate / 2.0 {
-        let expected = format!("below half the sample rate, {} Hz", sample_rate / 2.0);
-        section.wrong(
-            "end_frequency",
-            format!("{end_frequency} Hz"),
-            expected,
-            "correct the frequency or the rate",
-        );
-    }
-    let (peak_velocity, spacing) = (peak_velocity?, spacing?);
-    Some(Test::Sweep(Sweep {
-        peak_velocity,
-        start_frequency,
-        end_frequency,
-        spacing,
-        sample_rate,
-    }))
-}
-
-fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
-    let (peak_velocity, amplitude) = (section.positive("peak_velocity"), section.positive("amplitude"));
-    Some(Test::DynamicBounce {
-        peak_velocity: peak_velocity?,
-        amplitude: amplitude?,
-    })
-}
-
-fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
-    let (speed, sample_rate) = (section.positive("speed"), sample_rate(section, known, file));
-    let cleat = section.text("cleat")?;
-    if let Some(roads) = known.roads
-        && !roads.iter().any(|road| road.name == cleat)
-    {
-        let names: Vec<_> = roads.iter().map(|road| format!("\"{}\"", road.name)).collect();
-        let expected = match names.as_slice() {
-            [] => "the name of a [[road]], of which there is none".to_string(),
-            names => format!("the name of a [[road]]: {}", names.join(", ")),
-        };
-        section.wrong(
-            "cleat",
-            format!("\"{cleat}\""),
-            expected,
-            "correct the name, or add the road",
-        );
-    }
-    Some(Test::Cleat {
-        speed: speed?,
-        sample_rate: sample_rate?,
-        cleat,
-    })
-}
-
-fn time_history(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
-    let (sample_rate, band_limited) = (sample_rate(section, known, file), section.boolean("band_limited"));
-    let (band, periodic) = (section.range("band"), section.flag("periodic"));
-    let (sample_rate, band_limited) = (sample_rate?, band_limited?);
-    if let Some((low, high)) = band
-        && (low < 0.0 || high >= sample_rate / 2.0)
-    {
-        section.wrong(
-            "band",
-            format!("[{low}, {high}] Hz"),
-            format!(
-                "a band from 0 Hz to below half the sample rate, {} Hz",
-                sample_rate / 2.0
-            ),
-            "correct the band, or leave it out to compare all frequencies",
-        );
-    }
-    Some(Test::TimeHistory(Recording {
-        sample_rate,
-        band_limited,
-        band,
-        periodic,
-    }))
 }
 
 fn road(section: &Section<'_>) -> Option<Road> {

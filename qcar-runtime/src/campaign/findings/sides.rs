@@ -81,7 +81,23 @@ fn swapped_with(a: &Pair, b: &Pair) -> String {
     )
 }
 
+/// How alike two signals are, about the lines through them: an offset or a drift is no motion.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (about_line(a), about_line(b));
     let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    product(a, b) / (product(a, a) * product(b, b)).sqrt()
+    product(&a, &b) / (product(&a, &a) * product(&b, &b)).sqrt()
+}
+
+fn about_line(samples: &[f64]) -> Vec<f64> {
+    let count = samples.len() as f64;
+    let place = |at: usize| at as f64 - (count - 1.0) / 2.0;
+    let mean = samples.iter().sum::<f64>() / count;
+    let (above, below) = samples
+        .iter()
+        .enumerate()
+        .fold((0.0, 0.0), |(above, below), (at, sample)| {
+            (above + place(at) * sample, below + place(at).powi(2))
+        });
+    let off = |(at, sample): (usize, &f64)| sample - mean - above / below * place(at);
+    samples.iter().enumerate().map(off).collect()
 }
