@@ -2,22 +2,10 @@
 
 use std::fs;
 use std::path::Path;
-use std::process::Command;
 
 use crate::formats::sweeps;
+use crate::qcar;
 use crate::writers::mdf4;
-
-/// Exit status and all that was printed.
-fn qcar(folder: &Path, line: &str) -> (i32, String) {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
-    let output = command
-        .args(line.split_whitespace())
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    let text = [output.stdout, output.stderr].concat();
-    (output.status.code().unwrap(), String::from_utf8(text).unwrap())
-}
 
 fn files(folder: &Path) {
     for (sweep, name) in sweeps().iter().zip(["low.mf4", "middle.mf4", "high.mf4"]) {

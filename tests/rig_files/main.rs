@@ -15,6 +15,7 @@ mod writers;
 
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::InputError;
@@ -46,4 +47,16 @@ fn folder(sections: &str, file: (&str, &[u8])) -> TempDir {
 
 fn open(folder: &Path) -> Result<Campaign, InputError> {
     Campaign::open(folder)
+}
+
+/// Exit status and all that was printed.
+fn qcar(folder: &Path, line: &str) -> (i32, String) {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+    let output = command
+        .args(line.split_whitespace())
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    let text = [output.stdout, output.stderr].concat();
+    (output.status.code().unwrap(), String::from_utf8(text).unwrap())
 }

@@ -206,6 +206,41 @@ fn a_channel_of_another_length_is_named() {
 }
 
 #[test]
+fn channels_without_samples_are_named() {
+    let group = |name: &str, count: usize| Group {
+        rate: 100.0,
+        channels: vec![Channel::new(name, "g", vec![0.5; count])],
+    };
+    for (count, said) in [(0, "0 values in the first 1 s"), (1, "1 values in the first 1 s")] {
+        let file = mdf4::file(&[group("FL_Pad_Acc_Z", 1000), group("FL_Body_Acc_Z", count)]);
+        let keys = "source = \"FL_Body_Acc_Z\"\nzero = \"start\"";
+        let sections = pad() + &channel("body", keys) + &history("a.mf4", "sample_rate = 100");
+        let folder = folder(&sections, ("a.mf4", &file));
+        let error = open(folder.path()).unwrap_err().to_string();
+        assert!(
+            error.contains("channel `FL_Body_Acc_Z`") && error.contains(said),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn rates_beyond_reason_are_refused() {
+    let body = |of_run: &str, said: &[&str]| body("source = \"FL_Body_Acc_Z\"", of_run, said);
+    body(
+        "sample_rate = 1e12",
+        &[
+            "`sample_rate = 1000000000000`",
+            "at most 10 times the highest rate of its channels, 100 Hz",
+        ],
+    );
+    body(
+        "sample_rate = 1e-300",
+        &["1.99 s that all channels cover", "two samples"],
+    );
+}
+
+#[test]
 fn a_file_without_times_needs_a_rate() {
     let text = "FL_Pad_Acc_Z [g];FL_Body_Acc_Z [g]\n1;2\n2;3\n3;1\n4;7\n";
     let sections = |keys: &str| pad() + &channel("body", "source = \"FL_Body_Acc_Z\"") + &history("rig.txt", keys);

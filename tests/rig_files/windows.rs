@@ -156,3 +156,36 @@ fn curves_are_read_from_any_file() {
         (vec![-0.0105, 0.0, 0.0105], vec![300.0, 0.0, -300.0])
     );
 }
+
+/// A sine on the K&C rig, its velocity and force at a rate of their own.
+#[test]
+fn sines_of_a_rig_come_to_one_rate() {
+    let signals = |rate: f64, names: [(&str, &str, f64); 2]| Group {
+        rate,
+        channels: names
+            .map(|(name, unit, size)| Channel::new(name, unit, sampled(rate, |t| size * pad(t))))
+            .into(),
+    };
+    let file = mdf4::file(&[
+        signals(500.0, [("Weg", "mm", 20.0), ("unused", "V", 1.0)]),
+        signals(250.0, [("Geschwindigkeit", "mm/s", 75.0), ("Kraft", "kN", 0.4)]),
+    ]);
+    let columns =
+        "displacement = { source = \"Weg\" }\nvelocity = { source = \"Gesch*\" }\nforce = { source = \"Kraft\" }";
+    let run = "[[run]]\nkind = \"dynamic_bounce\"\nfile = \"kc.mf4\"\nrole = \"fit\"\npeak_velocity = 0.075\namplitude = 0.02\n";
+    let folder = folder(&format!("{run}{columns}\n"), ("kc.mf4", &file));
+    let campaign = open(folder.path()).unwrap();
+    let curve = campaign.dynamic_curve(&campaign.runs[0]).unwrap();
+    assert_eq!((curve.time.len(), curve.time[1]), (4001, 0.002));
+    for (column, size) in [
+        (&curve.displacement, 0.02),
+        (&curve.velocity, 0.075),
+        (&curve.force, 400.0),
+    ] {
+        let inner = 200..3800;
+        let worst = inner
+            .map(|k| (column[k] / size - pad(curve.time[k])).abs())
+            .fold(0.0, f64::max);
+        assert!(worst < 2.0 * RIPPLE, "{size}: {worst}");
+    }
+}

@@ -53,7 +53,8 @@ impl<'a> Channel<'a> {
 
     /// Its samples in the window, with what a filter to `rate` looks at beside it.
     pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even<'_>, InputError> {
-        let margin = (reach(self.rate, rate) * self.rate).ceil() as usize + 1;
+        let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;
+        let margin = margin.min(self.values.len() as f64) as usize;
         Even::new(&self.values, &self.base, self.rate, span.ends(), margin).map_err(|broken| {
             let place = Place::Channel(self.signal.full_name(), broken.at);
             Problem::new(file, place, broken.found, broken.expected, broken.remedy).into()

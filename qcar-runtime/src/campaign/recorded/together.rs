@@ -9,7 +9,10 @@ use super::super::findings::{Finding, of_samples};
 use super::channel::Channel;
 use super::even::Even;
 use super::window::Span;
-use crate::error::{InputError, Problem};
+use crate::error::{InputError, Place, Problem};
+
+/// A rate that is so many times the highest among the channels is a slip, and would fill the memory with nothing new.
+const MOST: f64 = 10.0;
 
 /// The channels of a run, and the instants that they are brought to.
 pub(super) struct Together<'a> {
@@ -23,6 +26,11 @@ impl<'a> Together<'a> {
     pub fn new(file: &Path, channels: &'a [Channel<'a>], span: Span, rate: Option<f64>) -> Result<Self, InputError> {
         let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
         let rate = rate.unwrap_or(highest);
+        if rate > MOST * highest {
+            let expected = format!("at most {MOST} times the highest rate of its channels, {highest} Hz");
+            let found = format!("`sample_rate = {rate}` for the run");
+            return Err(Problem::new(file, Place::File, found, expected, "correct it, or leave it out").into());
+        }
         let (mut even, mut problems) = (Vec::new(), Vec::new());
         for channel in channels {
             match channel.even(file, rate, span) {

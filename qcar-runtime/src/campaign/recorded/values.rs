@@ -60,8 +60,8 @@ fn same_size(a: Si, b: Si) -> bool {
 }
 
 fn mean_of_start(file: &Path, signal: &Signal, base: &TimeBase, values: &[f64], span: f64) -> Result<f64, InputError> {
-    let start = time(base, 0);
-    let count = (0..values.len()).take_while(|&k| time(base, k) < start + span).count();
+    let inside = |k: &usize| time(base, *k) < time(base, 0) + span;
+    let count = (0..values.len()).take_while(inside).count();
     let valid: Vec<f64> = values[..count]
         .iter()
         .copied()
