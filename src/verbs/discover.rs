@@ -115,6 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let search = if arguments.by_rules { discover } else { select::discover };
     let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), search)?;
+    answer.evidence.notices.splice(0..0, campaign.notices.iter().cloned());
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }

@@ -113,6 +113,25 @@ fn a_channel_that_one_run_lacks_is_said() {
     );
 }
 
+#[test]
+fn a_fit_and_a_search_say_it_too() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rig.toml"), mapping()).unwrap();
+    let own = folder.path().join("own");
+    fs::create_dir(&own).unwrap();
+    campaign(&own, "mf4", |sweep| mdf4::file(std::slice::from_ref(sweep)));
+    let mut low = sweeps().remove(0);
+    samples(&mut low, "FL_Body_Acc_Z")[20_000] = 3.0;
+    fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
+    for verb in ["fit own --starts 1", "discover own --format json"] {
+        let (status, said) = qcar(folder.path(), verb);
+        assert!(
+            status < 2 && said.contains("sweep_0.mf4, `body_left_z`, 20.000 s: a spike"),
+            "{verb}: {said}"
+        );
+    }
+}
+
 /// A campaign of plain tables is read as ever; only `check` looks at what its samples show.
 #[test]
 fn plain_tables_are_checked_too() {
