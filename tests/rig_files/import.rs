@@ -4,8 +4,8 @@ use std::fs;
 use std::path::Path;
 
 use crate::formats::sweeps;
-use crate::qcar;
 use crate::writers::mdf4;
+use crate::{open, qcar};
 
 fn files(folder: &Path) {
     for (sweep, name) in sweeps().iter().zip(["low.mf4", "middle.mf4", "high.mf4"]) {
@@ -67,4 +67,19 @@ fn nothing_is_written_over_or_left_half_written() {
     let (status, said) = qcar(folder.path(), "import low.mf4 cut.mf4 --out other");
     assert!(status == 2 && said.contains("cut.mf4"), "{said}");
     assert!(!folder.path().join("other").exists());
+}
+
+#[test]
+fn a_workbook_of_a_kinematics_rig_becomes_a_curve() {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples/table/kc_bounce.xlsx");
+    let (status, said) = qcar(folder.path(), &format!("import {} --out kc", sample.display()));
+    assert!(
+        status == 0 && said.contains("taken for a K&C curve, `Vertical force` over `Wheel travel`"),
+        "{said}"
+    );
+    let campaign = open(&folder.path().join("kc")).unwrap();
+    let curve = campaign.curve(&campaign.runs[0]).unwrap();
+    assert_eq!((curve.displacement.len(), curve.displacement[0]), (81, -0.08));
+    assert!(curve.force.iter().all(|force| (1632.0..7295.0).contains(force)));
 }

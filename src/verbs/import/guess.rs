@@ -126,7 +126,8 @@ impl Guess {
     }
 }
 
-fn quantity_of(unit: &str) -> Option<Quantity> {
+/// The quantity of a unit, where it is one of a sensor.
+pub(super) fn quantity_of(unit: &str) -> Option<Quantity> {
     let all = [
         Quantity::Acceleration,
         Quantity::Velocity,

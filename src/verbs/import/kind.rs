@@ -1,9 +1,11 @@
 //! Which kind of run a file is.
 
+use qcar_runtime::campaign::Quantity;
 use qcar_signals::si::in_si;
-use qcar_signals::signal::Signal;
+use qcar_signals::signal::{Recording, Signal, TimeBase};
 
 use super::Measured;
+use super::guess::quantity_of;
 use super::sensors::Sensors;
 use super::swept::{Swept, swept};
 use crate::table::number;
@@ -24,6 +26,8 @@ pub(super) struct Proposed {
 enum Kind {
     Sweep(Swept),
     Cleat,
+    /// Of a K&C rig: the names of the displacement and of the force.
+    Curve(String, String),
     TimeHistory,
 }
 
@@ -43,6 +47,7 @@ impl Proposed {
                 number(own.peak_velocity, DIGITS)
             ),
             Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),
+            Kind::Curve(displacement, force) => format!("a K&C curve, `{force}` over `{displacement}`"),
             Kind::TimeHistory => "a time history".into(),
         }
     }
@@ -62,7 +67,7 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
             swept.map_or(Kind::TimeHistory, Kind::Sweep)
         }
         None if of(false).any(|(_, signal)| is_impact(&signal.samples)) => Kind::Cleat,
-        None => Kind::TimeHistory,
+        None => curve(&file.recording).unwrap_or(Kind::TimeHistory),
     };
     let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
     Proposed {
@@ -73,6 +78,22 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
             .reduce(f64::max)
             .map(whole),
     }
+}
+
+/// A file without times that has one displacement and one force.
+fn curve(recording: &Recording) -> Option<Kind> {
+    let timeless = recording.signals.iter().all(|signal| signal.time == TimeBase::Unknown);
+    let only = |quantity: Quantity| {
+        let mut of = recording
+            .signals
+            .iter()
+            .filter(|signal| quantity_of(&signal.unit) == Some(quantity));
+        of.next()
+            .filter(|_| of.next().is_none())
+            .map(|signal| signal.name.clone())
+    };
+    timeless.then_some(())?;
+    Some(Kind::Curve(only(Quantity::Displacement)?, only(Quantity::Force)?))
 }
 
 /// Printed times leave a rate a little off the whole number that it is.
@@ -107,8 +128,9 @@ fn is_impact(samples: &[f64]) -> bool {
 
 /// The `[[run]]` sections. The last sweep judges the fit of the others.
 pub(super) fn sections(runs: &[Proposed]) -> String {
-    let sweeps = runs.iter().filter(|run| !matches!(run.kind, Kind::Cleat)).count();
-    let last = runs.iter().rposition(|run| !matches!(run.kind, Kind::Cleat));
+    let is_record = |run: &&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
+    let sweeps = runs.iter().filter(is_record).count();
+    let last = runs.iter().rposition(|run| is_record(&run));
     let mut text = "\n# The runs. A part of a recording is a run of its own: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
     for (at, run) in runs.iter().enumerate() {
         let judges = matches!(run.kind, Kind::Cleat) || (sweeps > 1 && last == Some(at));
@@ -118,6 +140,7 @@ pub(super) fn sections(runs: &[Proposed]) -> String {
         };
         text += &format!("\n[[run]]\nfile = {:?}\nrole = {role}\n{}", run.file, keys(&run.kind));
         text += &match run.rate {
+            _ if matches!(run.kind, Kind::Curve(..)) => String::new(),
             Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
             None => "# sample_rate = # Hz; the file says none, give yours\n".into(),
         };
@@ -142,6 +165,10 @@ fn keys(kind: &Kind) -> String {
             "kind = \"cleat\"\n# speed = # m/s, give yours\n# cleat = # the name of a [[road]] below, give yours\n"
                 .into()
         }
+        Kind::Curve(displacement, force) => format!(
+            "kind = \"bounce\" # or \"longitudinal\"\ndisplacement = {{ source = {displacement:?} }} # compression is positive, in m and N \
+             from the design position:\nforce = {{ source = {force:?} }} # give sign and offset where they are not\n"
+        ),
         Kind::TimeHistory => {
             "kind = \"time_history\"\nband_limited = true # false where the inputs are held between samples\n".into()
         }
