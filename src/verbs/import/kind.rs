@@ -166,8 +166,8 @@ fn keys(kind: &Kind) -> String {
                 .into()
         }
         Kind::Curve(displacement, force) => format!(
-            "kind = \"bounce\" # or \"longitudinal\"\ndisplacement = {{ source = {displacement:?} }} # compression is positive, in m and N \
-             from the design position:\nforce = {{ source = {force:?} }} # give sign and offset where they are not\n"
+            "kind = \"bounce\" # or \"longitudinal\"\n# Compression is positive, and forces count from the design position: give `sign` and \
+             `offset` where that is not so.\ndisplacement = {{ source = {displacement:?} }}\nforce = {{ source = {force:?} }}\n"
         ),
         Kind::TimeHistory => {
             "kind = \"time_history\"\nband_limited = true # false where the inputs are held between samples\n".into()
