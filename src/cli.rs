@@ -4,8 +4,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
 use crate::verbs::{
-    check, compare, completions, diff, discover, effects, fit, frf, inspect, kc, matrices, new, patch, score, show,
-    simulate, study,
+    check, compare, completions, diff, discover, effects, fit, frf, import, inspect, kc, matrices, new, patch, score,
+    show, simulate, study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -25,6 +25,7 @@ pub struct Cli {
 enum Verb {
     New(new::Arguments),
     Inspect(inspect::Arguments),
+    Import(import::Arguments),
     Check(check::Arguments),
     Show(show::Arguments),
     Matrices(matrices::Arguments),
@@ -48,6 +49,7 @@ impl Cli {
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
             Verb::Inspect(arguments) => inspect::run(&arguments),
+            Verb::Import(arguments) => import::run(&arguments),
             Verb::Check(arguments) => check::run(&arguments),
             Verb::Show(arguments) => show::run(&arguments),
             Verb::Matrices(arguments) => matrices::run(&arguments),

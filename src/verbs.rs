@@ -26,6 +26,8 @@ pub mod matrices;
 pub mod frf;
 // What was measured: the channels of a file
 pub mod inspect;
+// and the campaign that they make,
+pub mod import;
 // and K&C curves,
 pub mod kc;
 // a model fitted to it,

@@ -96,7 +96,9 @@ fn friction_and_what_yields_beside_it_are_named_in_a_real_damper() {
     let answer = measured("mr_damper");
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
-    assert_eq!(effects[0]["name"], "coulomb_friction");
+    // Friction with memory or without, and a damper that yields at its end.
+    let friction = ["coulomb_friction", "elasto_slip_friction"];
+    assert!(friction.iter().any(|name| effects[0]["name"] == *name), "{answer}");
     assert!(effects.len() <= 2, "{answer}");
     let left = answer["left"][0]["after_percent"].as_f64().expect("a number");
     assert!(left < 12.0, "{left} %");

@@ -7,10 +7,18 @@
 mod unit;
 // A file of columns of numbers.
 mod table;
+// How evenly times come.
+mod steps;
 // What a campaign lists, as types.
 mod contents;
 // TOML read key by key, all problems gathered.
 mod fields;
+// Which channel of a measured file a sensor is.
+mod tap;
+// Runs from files of rigs and other programs.
+mod recorded;
+// What their samples show to be wrong.
+mod findings;
 // From `campaign.toml` to the types.
 mod manifest;
 // Time histories of runs.
@@ -22,9 +30,10 @@ mod truth;
 
 pub use contents::{
     Axis, Campaign, Channel, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep,
-    Test,
+    Tap, Test, Trigger, Window,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
+pub use findings::Finding;
 pub use history::History;
 pub use truth::{Effect, Truth};
 pub use unit::{Dimension, dimension};

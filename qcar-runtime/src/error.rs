@@ -44,6 +44,10 @@ pub enum Place {
     Cell(u64, String),
     /// A whole column of a table, or a named item that has no line of its own.
     Name(String),
+    /// A channel of a measured file, and the moment (s).
+    Channel(String, Option<f64>),
+    /// A place in a measured file, in the words of its reader.
+    Words(String),
     /// A key of a TOML file: line, column in characters, and path such as `run[2].kind` (empty for broken syntax).
     Key(usize, usize, String),
 }
@@ -55,6 +59,9 @@ impl fmt::Display for Place {
             Place::Line(line) => write!(out, ", line {line}"),
             Place::Cell(line, column) => write!(out, ", line {line}, column `{column}`"),
             Place::Name(name) => write!(out, ", `{name}`"),
+            Place::Channel(name, None) => write!(out, ", channel `{name}`"),
+            Place::Channel(name, Some(time)) => write!(out, ", channel `{name}` at {time:.4} s"),
+            Place::Words(words) => write!(out, ", {words}"),
             Place::Key(line, column, key) if key.is_empty() => write!(out, ", line {line}, column {column}"),
             Place::Key(line, column, key) => write!(out, ", line {line}, column {column}, `{key}`"),
         }

@@ -8,10 +8,18 @@
 pub mod error;
 // What all formats are read into.
 pub mod signal;
+// Which of its channels a name means.
+pub mod find;
+// Their samples at one rate.
+pub mod resample;
+// What is wrong with them.
+pub mod health;
 // Checked access to the bytes of a file.
 mod bytes;
 // Which texts are units.
 mod units;
+// What they are in SI.
+pub mod si;
 // Names, units and columns of a table, whatever it is stored in.
 mod table;
 // One module a format.

@@ -139,17 +139,22 @@ impl Recording {
 }
 
 impl Signal {
-    fn is_called(&self, name: &str) -> bool {
+    pub(crate) fn is_called(&self, name: &str) -> bool {
         let with_group = name.strip_suffix(&self.name).and_then(|group| group.strip_suffix('/'));
         self.name == name || with_group.is_some_and(|group| group == self.source.group && !group.is_empty())
     }
 
-    /// `group/name`, with the place in the file.
-    fn qualified(&self) -> String {
+    /// `group/name`, or the name where there is no group.
+    pub fn full_name(&self) -> String {
         match self.source.group.as_str() {
-            "" => format!("`{}` at {}", self.name, self.source.place),
-            group => format!("`{group}/{}` at {}", self.name, self.source.place),
+            "" => self.name.clone(),
+            group => format!("{group}/{}", self.name),
         }
+    }
+
+    /// The same with the place in the file.
+    fn qualified(&self) -> String {
+        format!("`{}` at {}", self.full_name(), self.source.place)
     }
 }
 

@@ -12,11 +12,12 @@ use toml::de::{DeTable, DeValue};
 use crate::files::read_text;
 
 /// What may stand beside `[parameters]`: the keys of campaigns and of their answers.
-const NEIGHBOURS: [&str; 10] = [
+const NEIGHBOURS: [&str; 11] = [
     "format",
     "name",
     "description",
     "model",
+    "mapping",
     "channel",
     "run",
     "road",

@@ -1,22 +1,27 @@
-//! `qcar check`: every rule of the compiler, on shipped models or on files.
+//! `qcar check`: every rule of the compiler, on shipped models or on files, and what campaigns show to be wrong with
+//! themselves.
+
+use std::path::Path;
 
 use clap::Args;
-use qcar_dsl::diagnostic::Report;
 use qcar_dsl::resolve::options::Choices;
-use qcar_dsl::schedule::Compiled;
 
 use crate::catalogue;
 use crate::failure::Failure;
 
-/// Check models and say what to write instead
+// Of measurements.
+mod campaign;
+
+/// Check models and say what to write instead, or campaigns and say what their samples show
 ///
-/// Without a name, all shipped models are checked. The exit status is 1 where a model is refused.
+/// Without a name, all shipped models are checked. The exit status is 1 where a model is refused, or where a sweep that is to be
+/// fitted has a dead channel. What else is odd about a measurement (clipping, spikes, drift, dead channels) is a warning.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar check models/axles/quarter_car.axle\n  qcar check --members models/families/corner.axle"
+    after_help = "Examples:\n  qcar check models/axles/quarter_car.axle\n  qcar check models/campaigns/axle_a_rig\n  qcar check --members models/families/corner.axle"
 )]
 pub struct Arguments {
-    /// Names of shipped models, or paths of model files
+    /// Names of shipped models, paths of model files, or folders of campaigns
     models: Vec<String>,
     /// Of a family's file, check every member that its options allow
     #[arg(long)]
@@ -32,16 +37,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if arguments.members {
         return members(&named);
     }
-    let results = named
-        .iter()
-        .map(|name| catalogue::compile(name))
-        .collect::<Result<Vec<_>, _>>()?;
-    let all_well = results.iter().all(Result::is_ok);
-    let text = named
-        .iter()
-        .zip(results)
-        .map(|(name, result)| verdict(name, result))
-        .collect();
+    let verdicts = named.iter().map(|name| verdict(name)).collect::<Result<Vec<_>, _>>()?;
+    let all_well = verdicts.iter().all(|(well, _)| *well);
+    let text = verdicts.into_iter().map(|(_, text)| text).collect();
     if all_well {
         Ok(text)
     } else {
@@ -49,14 +47,18 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
 }
 
-fn verdict(name: &str, result: Result<Compiled, Report>) -> String {
-    match result {
-        Err(report) => format!("{name}: refused\n{report}\n"),
-        Ok(compiled) => match compiled.model.warnings() {
-            warnings if warnings.diagnostics.is_empty() => format!("{name}: ok\n"),
-            warnings => format!("{name}: ok, with warnings\n{warnings}\n"),
-        },
+/// Whether all is well with a model or a campaign, and what to say of it.
+fn verdict(name: &str) -> Result<(bool, String), Failure> {
+    if Path::new(name).is_dir() {
+        return campaign::verdict(Path::new(name));
     }
+    Ok(match catalogue::compile(name)? {
+        Err(report) => (false, format!("{name}: refused\n{report}\n")),
+        Ok(compiled) => match compiled.model.warnings() {
+            warnings if warnings.diagnostics.is_empty() => (true, format!("{name}: ok\n")),
+            warnings => (true, format!("{name}: ok, with warnings\n{warnings}\n")),
+        },
+    })
 }
 
 /// All members of all families, those that are refused with their options.

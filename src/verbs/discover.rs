@@ -121,6 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let numbers = arguments.assume.clone().unwrap_or_default();
     let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), numbers)?;
+    answer.evidence.notices.splice(0..0, campaign.notices.iter().cloned());
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }

@@ -1,6 +1,6 @@
 //! `qcar inspect`: the channels of a measured file.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use qcar_runtime::bounded;
@@ -36,7 +36,18 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let file = &arguments.file;
+    let recording = recording(&arguments.file)?;
+    Ok(match arguments.format {
+        Format::Text => text(&recording),
+        Format::Json => json::line(&Inspected::of(&recording)),
+    })
+}
+
+/// What is in a file.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
     bounded::open(file).map_err(|error| {
         let remedy = "correct the path, or put the file there";
         InputError::from(Problem::new(
@@ -47,11 +58,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
             remedy,
         ))
     })?;
-    let recording = read(file).map_err(|error| Failure::Input(error.to_string()))?;
-    Ok(match arguments.format {
-        Format::Text => text(&recording),
-        Format::Json => json::line(&Inspected::of(&recording)),
-    })
+    read(file).map_err(|error| Failure::Input(error.to_string()))
 }
 
 /// What a file holds, as JSON.
@@ -156,7 +163,8 @@ impl<'a> Single<'a> {
     }
 }
 
-fn text(recording: &Recording) -> String {
+/// What is in a file, for people.
+pub(super) fn text(recording: &Recording) -> String {
     let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
     if !recording.signals.is_empty() {
         text += &format!("\n{}", channels(recording));

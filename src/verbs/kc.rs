@@ -186,7 +186,7 @@ fn gradient(
     slope: Option<Slope>,
 ) -> Gradient {
     Gradient {
-        file: run.file.clone(),
+        file: run.name.clone(),
         slope,
         test,
         quantity,

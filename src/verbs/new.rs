@@ -9,7 +9,7 @@ use crate::failure::{Failure, flag};
 // A model file and its parameters.
 mod axle;
 // A folder of measurements to come.
-mod campaign;
+pub(super) mod campaign;
 
 /// Write the first files of an axle or of a campaign, with comments that say how to go on
 ///

@@ -8,8 +8,9 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 15] = [
+const VERBS: [&str; 16] = [
     "new",
+    "import",
     "check",
     "show",
     "matrices",

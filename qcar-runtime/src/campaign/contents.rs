@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use super::recorded::Recorded;
+
 /// What `[vehicle]` may hold beside parameters of the model, corner values, SI.
 pub const FACTS: [&str; 7] = [
     "m_corner",
@@ -32,12 +34,16 @@ pub struct Campaign {
     pub parameters: Vec<Parameter>,
     /// The sensors, in the order of the file.
     pub channels: Vec<Channel>,
+    /// Where their values come from in files that are no plain tables; one for each channel.
+    pub taps: Vec<Tap>,
     /// The tests, in the order of the file.
     pub runs: Vec<Run>,
     /// The road profiles.
     pub roads: Vec<Road>,
     /// What is odd but no error, as sentences to show to the engineer.
     pub notices: Vec<String>,
+    /// What was read of the runs whose files are no plain tables.
+    pub(super) recorded: Vec<Recorded>,
 }
 
 /// Masses of the model that a campaign names itself; see [`Roles`](crate::roles::Roles).
@@ -81,6 +87,49 @@ pub struct Channel {
     pub quantity: Quantity,
 }
 
+/// Which channel of a measured file a sensor or a column of a curve is, and what makes SI of its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tap {
+    /// The sensor's name, or the column's.
+    pub name: String,
+    /// The channel in the file: its name, `group/name`, or a pattern with `*` and `?`.
+    pub source: String,
+    /// The unit of the values once they have been scaled; `None` for that of the file.
+    pub unit: Option<String>,
+    /// The unit of what comes out.
+    pub si: &'static str,
+    /// What the values of the file are taken times, if anything.
+    pub scale: Option<f64>,
+    /// What is added then, in `unit`.
+    pub offset: f64,
+    /// 1, or -1 where the sensor is mounted the other way round.
+    pub sign: f64,
+    /// Seconds at the beginning of the recording whose mean is taken off, if any.
+    pub zero: Option<f64>,
+    /// Whether it stands in a file that campaigns share, so that none of a campaign's runs need have it.
+    pub shared: bool,
+}
+
+/// The part of a recording that is a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Window {
+    /// s, counted from the trigger where there is one; the beginning of the recording, or the trigger, without.
+    pub from: Option<f64>,
+    /// s, as `from`; the end of the recording without.
+    pub to: Option<f64>,
+    /// What the times count from.
+    pub trigger: Option<Trigger>,
+}
+
+/// The first time that a channel rises above a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trigger {
+    /// The channel in the file, as [`Tap::source`].
+    pub channel: String,
+    /// In the unit of the file.
+    pub above: f64,
+}
+
 /// Where on the vehicle a sensor sits. A centre sensor measures the mean of both corners.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "each says it")]
@@ -117,8 +166,18 @@ pub enum Quantity {
 /// A test and the file that holds it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
+    /// What it is called in results: its file, unless the campaign says otherwise.
+    pub name: String,
     /// Relative to the folder of the campaign.
     pub file: String,
+    /// Whether the file is a table with the names and units of the campaign, or one of a rig or another program.
+    pub plain: bool,
+    /// The part of the recording that it is.
+    pub window: Window,
+    /// Sensors that are not to be taken from it.
+    pub without: Vec<String>,
+    /// The columns of a curve.
+    pub columns: Vec<Tap>,
     /// What it may be used for.
     pub role: Role,
     /// What was done.
@@ -230,6 +289,13 @@ impl Campaign {
     /// Where `campaign.toml` lies, to be named in errors.
     pub fn manifest(&self) -> PathBuf {
         self.folder.join("campaign.toml")
+    }
+}
+
+impl Window {
+    /// Whether it is the whole recording, on the recording's clock.
+    pub fn is_whole(&self) -> bool {
+        *self == Window::default()
     }
 }
 

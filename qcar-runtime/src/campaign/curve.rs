@@ -56,6 +56,13 @@ impl Campaign {
         if !matches!(run.test, Test::Bounce | Test::Longitudinal) {
             return Err(other_kind(&file, "a quasi-static curve"));
         }
+        if let Some(recorded) = self.recorded(run) {
+            return Ok(Curve {
+                displacement: recorded.column("displacement"),
+                force: recorded.column("force"),
+                file,
+            });
+        }
         let mut table = read(&file, CURVE)?;
         Ok(Curve {
             displacement: table.take("displacement"),
@@ -72,6 +79,15 @@ impl Campaign {
         let file = self.folder.join(&run.file);
         if !matches!(run.test, Test::DynamicBounce { .. }) {
             return Err(other_kind(&file, "a dynamic bounce"));
+        }
+        if let Some(recorded) = self.recorded(run) {
+            return Ok(DynamicCurve {
+                time: recorded.times(),
+                displacement: recorded.column("displacement"),
+                velocity: recorded.column("velocity"),
+                force: recorded.column("force"),
+                file,
+            });
         }
         let mut table = read(&file, DYNAMIC_CURVE)?;
         let time = increasing(&mut table, "time")?;

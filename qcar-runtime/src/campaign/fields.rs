@@ -103,6 +103,11 @@ impl<'a> Section<'a> {
             .note(span, self.path(key), found.into(), expected.into(), remedy.into());
     }
 
+    /// Notes what was found wrong with a file that this one names.
+    pub fn adopt(&self, error: InputError) {
+        self.document.problems.borrow_mut().extend(error.problems);
+    }
+
     /// A text.
     pub fn text(&self, key: &'static str) -> Option<String> {
         let value = self.required(key, "a text in quotes")?;
@@ -117,6 +122,29 @@ impl<'a> Section<'a> {
     /// A text, empty where the key is left out.
     pub fn remark(&self, key: &'static str) -> String {
         self.optional_text(key).unwrap_or_default()
+    }
+
+    /// Texts, none where the key is left out.
+    pub fn texts(&self, key: &'static str) -> Vec<String> {
+        let Some(value) = self.optional(key) else {
+            return Vec::new();
+        };
+        let members = value
+            .as_array()
+            .map(|array| array.iter().map(|member| member.get_ref().as_str()));
+        let texts = members.and_then(|members| members.map(|text| text.map(String::from)).collect());
+        self.typed(key, texts, value, "texts in quotes, `[\"...\"]`")
+            .unwrap_or_default()
+    }
+
+    /// Whether the key is there.
+    pub fn has(&self, key: &'static str) -> bool {
+        self.optional(key).is_some()
+    }
+
+    /// A finite number, `None` where the key is left out.
+    pub fn optional_number(&self, key: &'static str) -> Option<f64> {
+        self.optional(key).and_then(|_| self.number(key))
     }
 
     /// A finite number.

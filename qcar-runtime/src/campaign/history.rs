@@ -1,8 +1,10 @@
 //! Time histories: uniformly sampled channels of a run.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use super::contents::{Campaign, Channel, Run, Test};
+use super::recorded::Recorded;
+use super::steps;
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 
@@ -49,9 +51,11 @@ impl Campaign {
     /// in steps of the declared sample rate.
     pub fn history(&self, run: &Run) -> Result<History, InputError> {
         let file = self.folder.join(&run.file);
+        if let Some(recorded) = self.recorded(run) {
+            return self.recorded_history(run, recorded);
+        }
         let Some(sample_rate) = run.test.sample_rate() else {
-            let remedy = "ask for its curve, or correct the `kind` of the run";
-            return Err(Problem::new(file, Place::File, "a curve", "a time history", remedy).into());
+            return Err(no_history(&file));
         };
         let mut table = table::read(&file)?;
         let names: Vec<_> = self.channels.iter().map(|channel| channel.name.as_str()).collect();
@@ -83,14 +87,32 @@ impl Campaign {
             signals,
         })
     }
+
+    fn recorded_history(&self, run: &Run, recorded: &Recorded) -> Result<History, InputError> {
+        let file = self.folder.join(&run.file);
+        if run.test.sample_rate().is_none() {
+            return Err(no_history(&file));
+        }
+        let signals = recorded.columns.iter().filter_map(|(name, samples)| {
+            let channel = self.channel(name)?;
+            Some((channel.clone(), samples.clone()))
+        });
+        Ok(History {
+            file,
+            test: run.test.clone(),
+            start: recorded.start,
+            sample_rate: recorded.rate,
+            signals: signals.collect(),
+        })
+    }
 }
 
-/// Largest relative difference between the declared sample rate and that of the whole record. Below it, the phase error
-/// of a transmissibility is nil, since all channels share the clock, and frequencies are that exact.
-const RATE_TOLERANCE: f64 = 1e-3;
+fn no_history(file: &Path) -> InputError {
+    let remedy = "ask for its curve, or correct the `kind` of the run";
+    Problem::new(file, Place::File, "a curve", "a time history", remedy).into()
+}
 
 /// Time must grow in every step, the steps must be one sample long as a rule, and none may be half or twice as long.
-/// Printed times are rounded, so that a single step is only right to that extent.
 fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), InputError> {
     let at = |row: usize, found: String, expected: String, remedy: &str| {
         Err(Problem::new(&table.file, table.cell(row, "time"), found, expected, remedy).into())
@@ -104,8 +126,8 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             "export the whole record",
         );
     }
-    let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    if let Some(row) = steps.iter().position(|&step| step <= 0.0) {
+    let intervals: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if let Some(row) = intervals.iter().position(|&step| step <= 0.0) {
         let found = format!("{} s after {} s", time[row + 1], time[row]);
         return at(
             row + 1,
@@ -114,8 +136,8 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             "sort the record, or remove what is recorded twice",
         );
     }
-    let typical = median(&steps);
-    if !(0.5..=1.5).contains(&(typical / dt)) {
+    let typical = steps::median(&intervals);
+    if !steps::is_one(typical, sample_rate) {
         let (found, expected) = (
             format!("steps of {typical} s"),
             format!("steps of {dt} s by `sample_rate = {sample_rate}`"),
@@ -127,14 +149,13 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             "correct `sample_rate` in campaign.toml, or the unit of time (s)",
         );
     }
-    if let Some(row) = steps.iter().position(|&step| !(0.5..=1.5).contains(&(step / dt))) {
-        let found = format!("a step of {} s", steps[row]);
+    if let Some(row) = intervals.iter().position(|&step| !steps::is_one(step, sample_rate)) {
+        let found = format!("a step of {} s", intervals[row]);
         let remedy = "a gap cannot be guessed: export the record again, or cut it before the gap";
         return at(row + 1, found, format!("a step of {dt} s"), remedy);
     }
     let measured = last as f64 / (time[last] - time[0]);
-    let rounding = 0.5 / last as f64;
-    if (measured / sample_rate - 1.0).abs() > RATE_TOLERANCE + rounding {
+    if !steps::agree(measured, sample_rate, last) {
         let (found, expected) = (
             format!("{measured} samples a second"),
             format!("`sample_rate = {sample_rate}`"),
@@ -142,10 +163,4 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
         return at(last, found, expected, "correct `sample_rate` in campaign.toml");
     }
     Ok(())
-}
-
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    let (_, median, _) = sorted.select_nth_unstable_by(values.len() / 2, f64::total_cmp);
-    *median
 }

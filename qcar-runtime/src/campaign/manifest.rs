@@ -2,12 +2,18 @@
 
 use std::path::Path;
 
-use super::contents::{
-    Axis, Campaign, Channel, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep, Test,
-};
+use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test};
 use super::fields::{Document, Section};
+use super::recorded::{self, Files, Recorded};
 use super::{table, unit};
 use crate::error::{InputError, Place, Problem};
+use runs::{Known, run};
+use sensors::sensors;
+
+// Its channels.
+mod sensors;
+// Its tests.
+mod runs;
 
 /// The columns of a quasi-static curve, m and N.
 pub(super) const CURVE: &[&str] = &["displacement", "force"];
@@ -17,25 +23,41 @@ pub(super) const DYNAMIC_CURVE: &[&str] = &["time", "displacement", "velocity", 
 pub(super) const ROAD: &[&str] = &["x", "z", "slope"];
 
 impl Campaign {
-    /// Opens a campaign: reads `campaign.toml` of `folder` and the header line of every file that it lists.
+    /// Opens a campaign: reads `campaign.toml` of `folder`, the header line of every plain table that it lists, and the
+    /// runs of all other files.
     ///
     /// # Errors
-    /// All problems of `campaign.toml` together; where it has none, all problems of the files' headers.
+    /// All problems of `campaign.toml` together; where it has none, all problems of the files' headers; where they have
+    /// none, all problems of the other files.
     pub fn open(folder: impl AsRef<Path>) -> Result<Campaign, InputError> {
         let folder = folder.as_ref();
         let document = Document::read(&folder.join("campaign.toml"))?;
+        let files = Files::default();
         let campaign = {
             let tree = document.parse()?;
-            campaign(folder, document.top(&tree))
+            campaign(folder, document.top(&tree), &files)
         };
         let mut campaign = document.finish(campaign)?;
-        let recorded = recorded_columns(&campaign)?;
-        campaign.notices = notices(&campaign, &recorded);
+        let mut names = plain_columns(&campaign)?;
+        campaign.recorded = recorded_runs(&campaign, &files)?;
+        let columns = campaign.recorded.iter().flat_map(|recorded| &recorded.columns);
+        names.extend(columns.map(|(name, _)| name.clone()));
+        InputError::unless_empty(campaign.problems_of_recorded(), Some(()))?;
+        campaign.notices = notices(&campaign, &names);
+        campaign.notices.extend(campaign.gaps_of_recorded());
+        let recorded = campaign
+            .runs
+            .iter()
+            .filter(|run| !run.plain && run.test.sample_rate().is_some());
+        for run in recorded.cloned().collect::<Vec<_>>() {
+            let findings = campaign.of_recorded(&run)?;
+            campaign.notices.extend(findings.iter().map(ToString::to_string));
+        }
         Ok(campaign)
     }
 }
 
-fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
+fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {
     format(&top);
     let (name, model, description) = (top.text("name"), top.text("model"), top.remark("description"));
     let vehicle = top
@@ -46,20 +68,27 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
     let parameters = top
         .section("parameters")
         .map_or(Some(Vec::new()), |section| parameters(&section));
-    let channels = each(top.sections("channel"), "name", channel, |channel| &channel.name);
+    let sensors = sensors(folder, &top);
     let roads = each(top.sections("road"), "name", road, |road| &road.name);
+    let known = Known {
+        folder,
+        files,
+        roads: roads.as_deref(),
+        sensors: sensors.as_deref(),
+    };
     let runs = each(
         top.sections("run"),
         "file",
-        |section| run(section, roads.as_deref()),
-        |run| &run.file,
+        |section| run(section, &known),
+        |run| &run.name,
     );
     if runs.as_ref().is_some_and(Vec::is_empty) {
         top.wrong("run", "no run", "at least one [[run]]", "list the measured files");
     }
     top.finish();
     let (folder, notices) = (folder.to_path_buf(), Vec::new());
-    let (name, model, parameters, channels, runs, roads) = (name?, model?, parameters?, channels?, runs?, roads?);
+    let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
+    let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
     Some(Campaign {
         folder,
         name,
@@ -69,9 +98,11 @@ fn campaign(folder: &Path, top: Section<'_>) -> Option<Campaign> {
         roles,
         parameters,
         channels,
+        taps,
         runs,
         roads,
         notices,
+        recorded: Vec::new(),
     })
 }
 
@@ -158,157 +189,6 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
     })
 }
 
-fn channel(section: &Section<'_>) -> Option<Channel> {
-    let (name, location) = (section.text("name"), section.text("location"));
-    let (side, axis) = (section.choice("side", Side::NAMES), section.choice("axis", Axis::NAMES));
-    let (quantity, unit) = (section.choice("quantity", Quantity::NAMES), section.text("unit"));
-    if name.as_deref() == Some("time") {
-        section.wrong(
-            "name",
-            "\"time\"",
-            "another name",
-            "the column `time` holds the time; rename the channel",
-        );
-    }
-    if let (Some(quantity), Some(unit)) = (quantity, &unit)
-        && unit::dimension(unit) != unit::dimension(quantity.unit())
-    {
-        let expected = format!("\"{}\"", quantity.unit());
-        let remedy = format!(
-            "convert the column `{}` in every file, and write this unit",
-            name.as_deref().unwrap_or("")
-        );
-        section.wrong("unit", format!("\"{unit}\""), expected, remedy);
-    }
-    section.finish();
-    unit?;
-    Some(Channel {
-        name: name?,
-        location: location?,
-        side: side?,
-        axis: axis?,
-        quantity: quantity?,
-    })
-}
-
-/// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
-fn run(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Run> {
-    let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
-    let read = section.choice("kind", KINDS)?;
-    let test = read(section, roads);
-    section.finish();
-    Some(Run {
-        file: file?,
-        role: role?,
-        test: test?,
-    })
-}
-
-type ReadTest = fn(&Section<'_>, Option<&[Road]>) -> Option<Test>;
-
-const KINDS: &[(&str, ReadTest)] = &[
-    ("sweep", |section, _| sweep(section)),
-    ("bounce", |_, _| Some(Test::Bounce)),
-    ("dynamic_bounce", |section, _| dynamic_bounce(section)),
-    ("longitudinal", |_, _| Some(Test::Longitudinal)),
-    ("cleat", cleat),
-    ("time_history", |section, _| time_history(section)),
-];
-
-fn sweep(section: &Section<'_>) -> Option<Test> {
-    let (peak_velocity, spacing) = (
-        section.positive("peak_velocity"),
-        section.choice("spacing", Spacing::NAMES),
-    );
-    let (start, end) = (section.positive("start_frequency"), section.positive("end_frequency"));
-    let sample_rate = section.positive("sample_rate");
-    let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
-    if start_frequency >= end_frequency {
-        let expected = format!("above the start at {start_frequency} Hz");
-        section.wrong(
-            "end_frequency",
-            format!("{end_frequency} Hz"),
-            expected,
-            "correct the two frequencies",
-        );
-    }
-    if end_frequency >= sample_rate / 2.0 {
-        let expected = format!("below half the sample rate, {} Hz", sample_rate / 2.0);
-        section.wrong(
-            "end_frequency",
-            format!("{end_frequency} Hz"),
-            expected,
-            "correct the frequency or the rate",
-        );
-    }
-    let (peak_velocity, spacing) = (peak_velocity?, spacing?);
-    Some(Test::Sweep(Sweep {
-        peak_velocity,
-        start_frequency,
-        end_frequency,
-        spacing,
-        sample_rate,
-    }))
-}
-
-fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
-    let (peak_velocity, amplitude) = (section.positive("peak_velocity"), section.positive("amplitude"));
-    Some(Test::DynamicBounce {
-        peak_velocity: peak_velocity?,
-        amplitude: amplitude?,
-    })
-}
-
-fn cleat(section: &Section<'_>, roads: Option<&[Road]>) -> Option<Test> {
-    let (speed, sample_rate) = (section.positive("speed"), section.positive("sample_rate"));
-    let cleat = section.text("cleat")?;
-    if let Some(roads) = roads
-        && !roads.iter().any(|road| road.name == cleat)
-    {
-        let names: Vec<_> = roads.iter().map(|road| format!("\"{}\"", road.name)).collect();
-        let expected = match names.as_slice() {
-            [] => "the name of a [[road]], of which there is none".to_string(),
-            names => format!("the name of a [[road]]: {}", names.join(", ")),
-        };
-        section.wrong(
-            "cleat",
-            format!("\"{cleat}\""),
-            expected,
-            "correct the name, or add the road",
-        );
-    }
-    Some(Test::Cleat {
-        speed: speed?,
-        sample_rate: sample_rate?,
-        cleat,
-    })
-}
-
-fn time_history(section: &Section<'_>) -> Option<Test> {
-    let (sample_rate, band_limited) = (section.positive("sample_rate"), section.boolean("band_limited"));
-    let (band, periodic) = (section.range("band"), section.flag("periodic"));
-    let (sample_rate, band_limited) = (sample_rate?, band_limited?);
-    if let Some((low, high)) = band
-        && (low < 0.0 || high >= sample_rate / 2.0)
-    {
-        section.wrong(
-            "band",
-            format!("[{low}, {high}] Hz"),
-            format!(
-                "a band from 0 Hz to below half the sample rate, {} Hz",
-                sample_rate / 2.0
-            ),
-            "correct the band, or leave it out to compare all frequencies",
-        );
-    }
-    Some(Test::TimeHistory(Recording {
-        sample_rate,
-        band_limited,
-        band,
-        periodic,
-    }))
-}
-
 fn road(section: &Section<'_>) -> Option<Road> {
     let (name, file) = (section.text("name"), section.text("file"));
     section.finish();
@@ -318,8 +198,20 @@ fn road(section: &Section<'_>) -> Option<Road> {
     })
 }
 
-/// The columns of all time histories, once the header of every file has been found right.
-fn recorded_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+/// The runs of files that are no plain tables.
+fn recorded_runs(campaign: &Campaign, files: &Files) -> Result<Vec<Recorded>, InputError> {
+    let (mut runs, mut problems) = (Vec::new(), Vec::new());
+    for run in campaign.runs.iter().filter(|run| !run.plain) {
+        match recorded::record(campaign, files, run) {
+            Ok(recorded) => runs.push(recorded),
+            Err(error) => problems.extend(error.problems),
+        }
+    }
+    InputError::unless_empty(problems, Some(runs))
+}
+
+/// The columns of all plain time histories, once the header of every plain table has been found right.
+fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let channels: Vec<_> = campaign.channels.iter().map(|channel| channel.name.as_str()).collect();
     let (mut recorded, mut problems) = (Vec::new(), Vec::new());
     for (file, required, allowed) in tables(campaign, &channels) {
@@ -359,7 +251,8 @@ fn with_columns(problem: Problem, required: &[&str], allowed: &[&str]) -> Proble
 
 /// Every file with the columns that it must and may have.
 fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a [&'a str], &'a [&'a str])> {
-    let runs = campaign.runs.iter().map(|run| match run.test {
+    let plain = campaign.runs.iter().filter(|run| run.plain);
+    let runs = plain.map(|run| match run.test {
         Test::Bounce | Test::Longitudinal => (run.file.as_str(), CURVE, &[][..]),
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
@@ -372,7 +265,7 @@ fn notices(campaign: &Campaign, recorded: &[String]) -> Vec<String> {
     let unused = campaign
         .channels
         .iter()
-        .filter(|channel| !recorded.contains(&channel.name));
+        .filter(|channel| !recorded.contains(&channel.name) && !campaign.is_missed(&channel.name));
     let say = |channel: &Channel| {
         let (file, name) = (campaign.manifest(), &channel.name);
         format!(

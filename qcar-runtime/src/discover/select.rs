@@ -52,19 +52,18 @@ pub fn discover(
     let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
     progress(News::Known(&alone, &[], &base.explanation));
     let mut sets = vec![base];
-    // The most probable set is extended until nothing that could be added is worth it.
-    let mut next = Some(0);
-    while let Some(place) = next {
+    while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
         let more = extensions(&sets[place], evidence, progress)?;
         sets.extend(more);
-        let best = best(&sets);
-        tell(&sets[best], progress);
-        let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
-        next = (is_open && !is_settled(&sets, best, evidence)).then_some(best);
+        tell(&sets[best(&sets)], progress);
     }
-    let without = reductions(&sets[best(&sets)], &sets[0], evidence, progress);
-    sets.extend(without);
+    // What is not missed was only a step on the way.
+    while let Some(place) = unreduced(&sets) {
+        sets[place].reduced = true;
+        let less = reductions(&sets[place], &sets[0], evidence, progress);
+        sets.extend(less);
+    }
     let alone = &sets[0];
     let mut discovery = judged(&sets, evidence);
     if is_unexplained(&discovery, &evidence.numbers) {
@@ -124,6 +123,32 @@ impl Discovery {
             self.learned = law;
         }
     }
+}
+
+/// Sets of one effect that are extended where the most probable one leaves much: of two effects the one that explains
+/// more alone need not be among them (a beam of two).
+const BEAM: usize = 2;
+
+/// Which set is extended next: the most probable one, until nothing that could be added to it is worth it.
+fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+    let best = best(sets);
+    let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
+    let first = is_open.then_some(best).filter(|_| !is_settled(sets, best, evidence));
+    first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], &evidence.numbers)))
+}
+
+/// The next of the sets of one effect that the beam holds.
+fn second(sets: &[Set]) -> Option<usize> {
+    let single = |place: &usize| sets[*place].assembly.effects().len() == 1;
+    let (extended, open): (Vec<usize>, Vec<usize>) = (0..sets.len()).filter(single).partition(|&k| sets[k].extended);
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
+}
+
+/// The most probable set, as long as it has several effects that were not tried without one of them.
+fn unreduced(sets: &[Set]) -> Option<usize> {
+    let best = best(sets);
+    (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
 /// The set that was found, where it has several effects.
@@ -275,16 +300,15 @@ fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     -((effects.len() * of_effect) as f64).ln()
 }
 
-/// The set less one of its effects each: what is not missed was only a step on the way. That holds for the last too: from
-/// here its part may come to a better place than that from which the set was extended.
+/// The set less one of its effects each, of the last too: from here the others may come to a better place than that from
+/// which the set was extended.
 fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
-    let effects = set.assembly.effects().len();
-    if effects < 2 {
-        return Vec::new();
-    }
     progress(News::Doing("fitting with one effect less"));
     let without = |left_out| without(left_out, set, base, evidence);
-    (0..effects).into_par_iter().filter_map(without).collect()
+    (0..set.assembly.effects().len())
+        .into_par_iter()
+        .filter_map(without)
+        .collect()
 }
 
 /// The set less one of its effects, by its place; `None` where that cannot be fitted.

@@ -78,7 +78,7 @@ fn level(
     let observations = observations
         .map(|(((channel, fitted), ratio), differences)| observation(&history, channel, *fitted, ratio, differences));
     Ok(Level {
-        name: run.file.clone(),
+        name: run.name.clone(),
         role: run.role,
         excitation,
         observations: observations.collect(),

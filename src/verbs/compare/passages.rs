@@ -50,7 +50,7 @@ impl Run {
     fn name(&self) -> String {
         match self {
             Run::Standard(own) => format!("{:.0} km/h over {:.0} mm", 3.6 * own.speed, 1e3 * own.height),
-            Run::Measured(own, _) => own.run.file.clone(),
+            Run::Measured(own, _) => own.run.name.clone(),
         }
     }
 

@@ -189,7 +189,7 @@ pub(super) fn of_campaigns(sides: &[Side; 2], [a, b]: [&Measured; 2]) -> Result<
 /// Two runs that were driven alike.
 fn alike(a: &Campaign, first: &Level, b: &Campaign, second: &Level) -> bool {
     let test = |campaign: &Campaign, level: &Level| {
-        let run = campaign.runs.iter().find(|run| run.file == level.name);
+        let run = campaign.runs.iter().find(|run| run.name == level.name);
         run.map(|run| run.test.clone())
     };
     match (test(a, first), test(b, second)) {

@@ -40,7 +40,11 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     put(
         &folder,
         "campaign.toml",
-        &manifest(name, &seen_from(&folder, &arguments.model), model.about()),
+        &manifest(
+            name,
+            &seen_from(&folder, &arguments.model, catalogue::is_shipped(&arguments.model)),
+            model.about(),
+        ),
     )?;
     let (folder, columns) = (folder.display(), columns(model.about()).join(","));
     Ok(format!(
@@ -59,11 +63,12 @@ fn make(folder: &Path) -> Result<(), InputError> {
     })
 }
 
-/// The model as the campaign must name it: a path is relative to the folder of the campaign, not to where one stands.
-fn seen_from(folder: &Path, model: &str) -> String {
-    let path = Path::new(model);
-    if catalogue::is_shipped(model) || path.is_absolute() {
-        return model.into();
+/// A model or a file as the campaign must name it: a path is relative to the folder of the campaign, not to where one stands.
+/// What is `shipped` has a name and no path.
+pub(in crate::verbs) fn seen_from(folder: &Path, named: &str, shipped: bool) -> String {
+    let path = Path::new(named);
+    if shipped || path.is_absolute() {
+        return named.into();
     }
     let mut upwards = PathBuf::new();
     for part in folder.components() {
@@ -78,12 +83,27 @@ fn seen_from(folder: &Path, model: &str) -> String {
 }
 
 fn manifest(name: &str, model: &str, about: &About) -> String {
+    let columns = columns(about).join(",");
+    let mut out = make_head(name, model, about);
+    let _ = writeln!(
+        out,
+        "\n# The sensors: each is a column of the time histories. Remove those that you have not."
+    );
+    out.extend(sensors(about).iter().map(Sensor::section));
+    let _ = write!(
+        out,
+        "\n# The sweeps of the 4-poster, with the header line\n#   {columns}\n{RUNS}"
+    );
+    out
+}
+
+/// What a campaign.toml begins with: the model, what is known before any fit, and start values.
+pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> String {
     let (known, estimated): (Vec<&Parameter>, _) = about
         .parameters
         .iter()
         .filter(|parameter| !matches!(parameter.default, Default::Same(_)))
         .partition(|parameter| parameter.known);
-    let columns = columns(about).join(",");
     let mut out = format!(
         "# A campaign of measurements; docs/campaign-format.md describes it. All is SI, all paths are relative to this \
          folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
@@ -95,15 +115,6 @@ fn manifest(name: &str, model: &str, about: &About) -> String {
     out += ROLLING;
     out += "\n# Start values and ranges. With fit = false a value stays as it is.\n";
     out.extend(estimated.into_iter().map(of_fit));
-    let _ = writeln!(
-        out,
-        "\n# The sensors: each is a column of the time histories. Remove those that you have not."
-    );
-    out.extend(sensors(about).iter().map(Sensor::section));
-    let _ = write!(
-        out,
-        "\n# The sweeps of the 4-poster, with the header line\n#   {columns}\n{RUNS}"
-    );
     out
 }
 

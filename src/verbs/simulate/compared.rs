@@ -156,7 +156,7 @@ fn differences(about: &About, named: &RoleNames, cleat: &Cleat, ride: &Ride) -> 
         let rate = cleat.measured.sample_rate;
         let errors = Errors::between(pair.measured, pair.simulated, &alignment, rate, &Windows::default())?;
         Ok(Difference {
-            run: cleat.run.file.clone(),
+            run: cleat.run.name.clone(),
             role: if cleat.run.role == Role::Fit { "fit" } else { "held_out" },
             mass: pair.mass.into(),
             axis: pair.axis.name(),

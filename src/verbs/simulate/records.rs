@@ -70,7 +70,7 @@ pub(super) fn records(campaign: &Campaign, model: &dyn Model, values: &Values) -
         .map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     let mut records = Vec::new();
     for (own, simulated) in evidence.runs.iter().zip(simulated) {
-        let run = campaign.runs.iter().find(|run| run.file == own.name);
+        let run = campaign.runs.iter().find(|run| run.name == own.name);
         records.push(record(
             campaign,
             (run.expect("the evidence is of this campaign"), &own.stimulus),
@@ -111,7 +111,7 @@ fn record(
         signals.push((sensor, [measured, simulated]));
     }
     Ok(Record {
-        run: run.file.clone(),
+        run: run.name.clone(),
         rate: history.sample_rate,
         start: history.start + cut as f64 / history.sample_rate,
         signals,
@@ -129,7 +129,7 @@ fn error(run: &Run, sensor: &Point, measured: &[f64], simulated: &[f64]) -> Reco
         .zip(simulated)
         .map(|(measured, simulated)| simulated - measured));
     RecordError {
-        run: run.file.clone(),
+        run: run.name.clone(),
         role: if run.role == Role::Fit { "fit" } else { "held_out" },
         channel: format!("{}_{}", sensor.location, sensor.axis.name()),
         quantity: sensor.quantity.name(),

@@ -255,7 +255,7 @@ pub(crate) fn histories(
     folder: &Path,
 ) -> std::result::Result<(), InputError> {
     for (cleat, ride) in cleats.iter().zip(rides) {
-        let stem = stem(&cleat.run.file);
+        let stem = stem(&cleat.run.name);
         put(folder, &format!("{stem}.csv"), &history(about, ride))?;
     }
     Ok(())

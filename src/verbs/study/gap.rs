@@ -78,7 +78,7 @@ pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
 
 /// How fast a run rolls over its obstacle; `None` of other runs.
 fn speed(of: &Study, file: &str) -> Option<f64> {
-    let run = of.fitted.campaign.runs.iter().find(|run| run.file == file)?;
+    let run = of.fitted.campaign.runs.iter().find(|run| run.name == file)?;
     match &run.test {
         Test::Cleat { speed, .. } => Some(*speed),
         _ => None,

@@ -110,7 +110,7 @@ fn listed(run: &Run) -> Listed {
         Test::TimeHistory(recording) => ("time history", vec![drive("sampled at", recording.sample_rate, "Hz")]),
     };
     Listed {
-        file: run.file.clone(),
+        file: run.name.clone(),
         role: if run.role == Role::Fit { "fit" } else { "held_out" },
         kind,
         drive,

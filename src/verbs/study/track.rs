@@ -116,7 +116,7 @@ fn run(models: &Models, track: &gather::Track, place: usize, cleat: &Cleat) -> O
         return None;
     };
     Some(Run {
-        file: cleat.run.file.clone(),
+        file: cleat.run.name.clone(),
         role: if cleat.run.role == Role::Fit { "fit" } else { "held_out" },
         speed: *speed,
         cleat: name.clone(),

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
 use super::screen::Prospect;
-use super::{News, Progress};
+use super::{BEAM, News, Progress};
 use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
@@ -217,7 +217,10 @@ fn best<'a>(
         // What is behind by more than its last steps gained will not come first.
         let improves = behind <= runner.gained().max(CLOSE);
         let is_best_there = !late && !places.contains(&name.1);
-        let wanted = improves && (known || names.len() < round.kept) || is_best_there && names.len() < 2 * round.kept;
+        let is_of_beam = names.len() < BEAM;
+        let wanted = improves && (known || names.len() < round.kept)
+            || is_best_there && names.len() < 2 * round.kept
+            || !known && is_of_beam;
         let count = starts.entry(runner.candidate).or_default();
         if wanted && *count < round.starts {
             *count += 1;

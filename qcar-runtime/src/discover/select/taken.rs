@@ -1,6 +1,6 @@
 //! What of an effect in a model is to be found, and what an explanation says of it.
 
-use crate::discover::candidate::{Added, Candidate, Change};
+use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Form, Nuisance};
 use crate::discover::posterior::Explanation;
 
@@ -8,6 +8,8 @@ use crate::discover::posterior::Explanation;
 #[derive(Clone)]
 pub struct Taken {
     unknowns: Vec<Unknown>,
+    /// The parameters of the model that say how much of it there is, not where it acts.
+    magnitudes: Vec<String>,
 }
 
 /// A number that belongs to an effect, by its name in the effect.
@@ -32,7 +34,21 @@ impl Taken {
                 vec![Unknown::Coefficient(parameter.effect_name.clone(), place, *form)]
             }
         };
-        Taken { unknowns }
+        let is_magnitude = |own: &&Added| !own.known && own.role != ParameterRole::Shape;
+        let magnitudes = match &candidate.change {
+            Change::Model { parameters, .. } => {
+                parameters.iter().filter(is_magnitude).map(|p| p.name.clone()).collect()
+            }
+            Change::Sensor { .. } => Vec::new(),
+        };
+        Taken { unknowns, magnitudes }
+    }
+
+    /// True where a magnitude stands at an end of its range: the effect does duty for another. A shape may go to its limit.
+    pub fn stands_at_an_end(&self, explanation: &Explanation) -> bool {
+        let at_end =
+            |name: &String| free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0);
+        self.magnitudes.iter().any(at_end)
     }
 
     /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.

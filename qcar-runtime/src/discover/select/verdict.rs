@@ -19,6 +19,8 @@ pub struct Set {
     pub log_prior: f64,
     /// Whether its extensions were looked for.
     pub extended: bool,
+    /// Whether it was tried without each of its effects.
+    pub reduced: bool,
     /// Others that were dropped on the way to it.
     pub rivals: Vec<Rival>,
 }
@@ -31,6 +33,7 @@ impl Set {
             explanation,
             log_prior,
             extended: false,
+            reduced: false,
             rivals: Vec::new(),
         }
     }
@@ -61,6 +64,14 @@ impl Set {
             rivals: self.rivals.clone(),
         };
         effects.map(finding).collect()
+    }
+
+    /// True where an effect stands for another.
+    fn stands_at_an_end(&self) -> bool {
+        let effects = self.assembly.effects().iter();
+        effects
+            .map(|own| &own.taken)
+            .any(|own| own.stands_at_an_end(&self.explanation))
     }
 
     /// Names and places of its effects, in one order.
@@ -280,7 +291,8 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let count = sets[best].names().len();
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
         let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-        let part = (0..sets.len()).filter(is_less).max_by(order);
+        let is_answer = |other: &usize| is_less(other) && !sets[*other].stands_at_an_end();
+        let part = (0..sets.len()).filter(is_answer).max_by(order);
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
             !predicts(&sets[best], &sets[part], evidence) || part != 0 && closes < evidence.numbers.explained()

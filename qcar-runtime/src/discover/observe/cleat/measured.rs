@@ -42,7 +42,7 @@ impl Evidence {
             return Ok(());
         };
         if let Err(error) = Roles::of(about, &campaign.roles) {
-            self.notices.push(format!("{}: {error}; the run is left out", run.file));
+            self.notices.push(format!("{}: {error}; the run is left out", run.name));
             return Ok(());
         }
         let (tyre, load) = tyre(campaign)?;
@@ -50,23 +50,23 @@ impl Evidence {
             Ok(window) => window,
             Err(reason) => {
                 self.notices
-                    .push(format!("{}: {reason}; the run is left out", run.file));
+                    .push(format!("{}: {reason}; the run is left out", run.name));
                 return Ok(());
             }
         };
         let (place, before) = (self.runs.len(), self.series.len());
-        for sensor in self.known(about, &run.file, points(&cleat.measured)) {
+        for sensor in self.known(about, &run.name, points(&cleat.measured)) {
             let series = window.series(place, sensor.clone(), &signal(&cleat.measured, &sensor)?);
             match series.filter(|_| is_output(about, &sensor)) {
                 Some(series) => self.series.push(series),
                 None => self
                     .notices
-                    .push(format!("{}: {sensor} says nothing; it is left out", run.file)),
+                    .push(format!("{}: {sensor} says nothing; it is left out", run.name)),
             }
         }
         if self.series.len() > before {
             self.runs.push(Run {
-                name: run.file.clone(),
+                name: run.name.clone(),
                 role: run.role,
                 level: rise(&cleat.road),
                 stimulus: Stimulus::Cleat(Passage {

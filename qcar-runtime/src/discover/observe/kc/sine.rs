@@ -37,12 +37,12 @@ impl Evidence {
         let frequency = peak_velocity / amplitude / TAU;
         let Some((reach, series)) = harmonics(self.runs.len(), &curve, frequency) else {
             let what = format!("no whole cycle of a sine of {frequency:.3} Hz; the run is left out");
-            self.notices.push(format!("{}: {what}", run.file));
+            self.notices.push(format!("{}: {what}", run.name));
             return Ok(());
         };
         self.series.extend(series);
         self.runs.push(Run {
-            name: run.file.clone(),
+            name: run.name.clone(),
             role: run.role,
             level: reach,
             stimulus: Stimulus::Sine {

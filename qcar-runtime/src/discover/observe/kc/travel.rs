@@ -49,7 +49,7 @@ impl Evidence {
         let damping = (axis == Axis::Z).then(|| damping(campaign)).transpose()?.flatten();
         let Some(cycle) = Loop::read(&curve.displacement, &curve.force) else {
             self.notices
-                .push(format!("{}: no whole cycle; the run is left out", run.file));
+                .push(format!("{}: no whole cycle; the run is left out", run.name));
             return Ok(());
         };
         let place = self.runs.len();
@@ -57,7 +57,7 @@ impl Evidence {
         self.series
             .extend(damping.map(|c| cycle.series(place, axis, Kind::Width, c.abs() * RIG)));
         self.runs.push(Run {
-            name: run.file.clone(),
+            name: run.name.clone(),
             role: run.role,
             level: cycle.ends[1].max(-cycle.ends[0]),
             stimulus: Stimulus::Travel {
@@ -87,7 +87,7 @@ impl Evidence {
                 .map(|name| still(name));
             resting.map_or(Ok(on), Err)
         });
-        on.map_err(|why| self.notices.push(format!("{}: {why}; the run is left out", run.file)))
+        on.map_err(|why| self.notices.push(format!("{}: {why}; the run is left out", run.name)))
             .ok()
     }
 }

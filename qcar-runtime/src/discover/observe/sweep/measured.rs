@@ -56,10 +56,10 @@ impl Evidence {
             [reference, ..] if is_one(&pads) => reference.clone(),
             _ => return Err(not_one(about, &pads, history.file).into()),
         };
-        let sensors = self.known(about, &run.file, others);
+        let sensors = self.known(about, &run.name, others);
         if sensors.is_empty() {
             self.notices
-                .push(format!("{}: no sensor but the pad's; the run is left out", run.file));
+                .push(format!("{}: no sensor but the pad's; the run is left out", run.name));
             return Ok(());
         }
         let excitation = signal(&history, &reference)?;
@@ -84,7 +84,7 @@ impl Evidence {
             if !stands_clear(&first) {
                 let said = format!("`{}` shows nothing but noise", sensor.location);
                 self.notices
-                    .push(format!("{}: {said}; that sensor is left out", run.file));
+                    .push(format!("{}: {said}; that sensor is left out", run.name));
                 continue;
             }
             let others = (2..=ORDERS).map(|order| series(place, &sensor, order, respond(order)));
@@ -94,7 +94,7 @@ impl Evidence {
             return Ok(());
         }
         self.runs.push(Run {
-            name: run.file.clone(),
+            name: run.name.clone(),
             role: run.role,
             level: sweep.peak_velocity,
             stimulus: Stimulus::Sweep {

@@ -30,19 +30,19 @@ impl Evidence {
             band_limited, periodic, ..
         } = *recording;
         let history = campaign.history(run)?;
-        let known = self.known(about, &run.file, points(&history));
+        let known = self.known(about, &run.name, points(&history));
         let (inputs, responses): (Vec<_>, Vec<_>) = known
             .into_iter()
             .partition(|point| excitation_of(about, point).is_some());
         if responses.is_empty() {
             self.notices
-                .push(format!("{}: no response was recorded; the run is left out", run.file));
+                .push(format!("{}: no response was recorded; the run is left out", run.name));
             return Ok(());
         }
         if inputs.is_empty() {
             self.notices.push(format!(
                 "{}: no input of the model was recorded; the run is taken for one that nothing drives",
-                run.file
+                run.name
             ));
         }
         let mut signals = Vec::new();
@@ -89,7 +89,7 @@ impl Evidence {
         };
         let first = signals.first().unwrap_or(&recorded[0]);
         self.runs.push(Run {
-            name: run.file.clone(),
+            name: run.name.clone(),
             role: run.role,
             level: rms(&first.1),
             stimulus: Stimulus::History {
@@ -146,7 +146,7 @@ fn repeats(about: &About, campaign: &Campaign, run: &crate::campaign::Run, is_fr
         Some(state) => format!("`{}` of the model, which nothing holds", about.states[state].name),
         None => return Ok(()),
     };
-    let place = Place::Name(format!("run {}, periodic", run.file));
+    let place = Place::Name(format!("run {}, periodic", run.name));
     let remedy = "leave `periodic` out: the state at the beginning is estimated then";
     Err(Problem::new(campaign.manifest(), place, why, "a motion that repeats", remedy).into())
 }

@@ -1,0 +1,194 @@
+//! What measured samples show to be wrong with themselves, before anything is fitted to them.
+
+use std::fmt;
+
+use qcar_signals::health::{Flaw, FlawKind, flaws};
+use qcar_signals::resample::Grid;
+
+use super::contents::{Campaign, Quantity, Role, Run, Test};
+use super::history::History;
+use super::recorded::Missing;
+use crate::error::{InputError, Place, Problem};
+
+// Both sides of the car beside each other.
+mod sides;
+
+/// Something that is odd about a channel of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The run's name.
+    pub run: String,
+    /// The sensor's name.
+    pub channel: String,
+    /// Times of the first and last sample concerned, s, on the clock of the file.
+    pub span: (f64, f64),
+    /// What it is, with values in SI.
+    pub what: String,
+    /// True where a sweep that is fitted rests on a channel that is dead.
+    pub fatal: bool,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, last) = self.span;
+        write!(out, "{}, `{}`, {first:.3} s", self.run, self.channel)?;
+        if last > first {
+            write!(out, " to {last:.3} s")?;
+        }
+        write!(out, ": {}", self.what)
+    }
+}
+
+/// What is odd about the samples of a sensor in a run, whose SI unit is `unit`.
+pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
+    let steady = unit == Quantity::Acceleration.unit();
+    let finding = |flaw: &Flaw| Finding {
+        run: run.name.clone(),
+        channel: channel.into(),
+        span: (grid.time(flaw.samples.0), grid.time(flaw.samples.1)),
+        what: said(flaw, unit),
+        fatal: matches!((&flaw.kind, &run.test), (FlawKind::Dead(_), Test::Sweep(_))) && run.role == Role::Fit,
+    };
+    flaws(samples, steady).iter().map(finding).collect()
+}
+
+fn said(flaw: &Flaw, unit: &str) -> String {
+    let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
+    match flaw.kind {
+        FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),
+        FlawKind::Clipped(value) => format!(
+            "{count} samples are cut off at {} {unit}: the channel is clipped",
+            short(value)
+        ),
+        FlawKind::Spike(value) if count == 1 => format!("a spike to {} {unit}", short(value)),
+        FlawKind::Spike(value) => format!("{count} spikes, the largest to {} {unit}", short(value)),
+        FlawKind::Drift(drift) => format!("the mean drifts by {} {unit}", short(drift)),
+    }
+}
+
+/// What the sensors of both sides of a sweep say of each other.
+fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
+    match run.test {
+        Test::Sweep(_) => sides::of_sides(run, history),
+        _ => Vec::new(),
+    }
+}
+
+impl Campaign {
+    /// What is odd about the samples of every time history.
+    ///
+    /// # Errors
+    /// As [`Campaign::history`].
+    pub fn findings(&self) -> Result<Vec<Finding>, InputError> {
+        let mut all = Vec::new();
+        for run in self.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
+            all.extend(match run.plain {
+                true => self.of_plain(run)?,
+                false => self.of_recorded(run)?,
+            });
+        }
+        Ok(all)
+    }
+
+    /// What was found in the file of a run, and what its sensors say of each other.
+    pub(super) fn of_recorded(&self, run: &Run) -> Result<Vec<Finding>, InputError> {
+        let own = self.recorded(run).map(|recorded| recorded.findings.clone());
+        let history = self.history(run)?;
+        Ok(own.into_iter().flatten().chain(of_sides(run, &history)).collect())
+    }
+
+    fn of_plain(&self, run: &Run) -> Result<Vec<Finding>, InputError> {
+        let history = self.history(run)?;
+        let grid = Grid {
+            start: history.start,
+            rate: history.sample_rate,
+            count: history.len(),
+        };
+        let signals = history.signals.iter();
+        let of = |(channel, samples): &(super::Channel, Vec<f64>)| {
+            of_samples(run, (&channel.name, channel.quantity.unit()), samples, grid)
+        };
+        Ok(signals.flat_map(of).chain(of_sides(run, &history)).collect())
+    }
+
+    /// What is wrong with the recorded runs together: sources that no file has, and dead channels that a fit needs.
+    pub(super) fn problems_of_recorded(&self) -> Vec<Problem> {
+        let unheard = self
+            .taps
+            .iter()
+            .filter(|tap| !tap.shared && self.is_heard_nowhere(&tap.name));
+        let unheard = unheard.filter_map(|tap| Some(self.missing(&tap.name).next()?.1.problem.clone()));
+        let findings = self.recorded.iter().flat_map(|recorded| &recorded.findings);
+        let dead = findings
+            .filter(|finding| finding.fatal)
+            .map(|finding| self.dead(finding));
+        unheard.chain(dead).collect()
+    }
+
+    /// Whether no run has a sensor, as far as it may be in a measured file.
+    fn is_heard_nowhere(&self, name: &str) -> bool {
+        let mut plain = self
+            .runs
+            .iter()
+            .filter(|run| run.plain && run.test.sample_rate().is_some());
+        plain.next().is_none() && !self.recorded.iter().any(|recorded| recorded.has(name))
+    }
+
+    /// Whether some file was looked into for a sensor in vain.
+    pub(super) fn is_missed(&self, name: &str) -> bool {
+        self.missing(name).next().is_some()
+    }
+
+    fn dead(&self, finding: &Finding) -> Problem {
+        let (run, name) = (&finding.run, &finding.channel);
+        let place = Place::Channel(name.clone(), None);
+        let remedy =
+            format!("leave it out of the run with `without = [\"{name}\"]`, or repair the sensor and measure again");
+        Problem::new(
+            self.folder.join(run),
+            place,
+            &finding.what,
+            "a signal that a fit can use",
+            remedy,
+        )
+    }
+
+    /// Sentences on channels that some run lacks and another of its kind has, or that no run has.
+    pub(super) fn gaps_of_recorded(&self) -> Vec<String> {
+        let mut said = Vec::new();
+        for tap in &self.taps {
+            let mut missing = self.missing(&tap.name);
+            match missing.next() {
+                Some((_, first)) if self.is_heard_nowhere(&tap.name) => said.push(first.problem.to_string()),
+                Some(first) => {
+                    let lacking = std::iter::once(first)
+                        .chain(missing)
+                        .filter(|(run, _)| self.has_relative(run, &tap.name));
+                    said.extend(
+                        lacking.map(|(_, missing)| format!("{}; other runs of the kind have it", missing.problem)),
+                    );
+                }
+                None => {}
+            }
+        }
+        said
+    }
+
+    /// Whether a run of the same kind has a sensor.
+    fn has_relative(&self, run: &str, name: &str) -> bool {
+        let kind = |name: &str| {
+            let run = self.runs.iter().find(|run| run.name == name);
+            run.map(|run| std::mem::discriminant(&run.test))
+        };
+        let mut others = self.recorded.iter().filter(|other| kind(&other.run) == kind(run));
+        others.any(|other| other.has(name))
+    }
+
+    /// The runs whose file has no channel for a sensor.
+    fn missing<'a>(&'a self, name: &'a str) -> impl Iterator<Item = (&'a str, &'a Missing)> {
+        self.recorded.iter().flat_map(move |recorded| {
+            let own = recorded.missing.iter().filter(move |missing| missing.name == name);
+            own.map(|missing| (recorded.run.as_str(), missing))
+        })
+    }
+}

@@ -1,0 +1,196 @@
+//! The `[[run]]` sections: what each kind of test needs.
+
+use std::path::Path;
+
+use super::super::contents::{Recording, Road, Role, Run, Spacing, Sweep, Tap, Test};
+use super::super::fields::Section;
+use super::super::recorded::{self, Files};
+use super::super::tap;
+use super::sensors::Sensor;
+use super::{CURVE, DYNAMIC_CURVE};
+use crate::spelling;
+
+/// What a run is read beside.
+pub(super) struct Known<'a> {
+    pub folder: &'a Path,
+    pub files: &'a Files,
+    /// `None` where something is wrong with them.
+    pub roads: Option<&'a [Road]>,
+    pub sensors: Option<&'a [Sensor]>,
+}
+
+/// Which keys a run may have depends on its kind: without a known kind, none of them is refused.
+pub(super) fn run(section: &Section<'_>, known: &Known<'_>) -> Option<Run> {
+    let (file, role) = (section.text("file"), section.choice("role", Role::NAMES));
+    let (name, without) = (section.optional_text("name"), without(section, known));
+    let window = tap::window(section);
+    let (read, columns) = section.choice("kind", KINDS)?;
+    let (columns, mapped) = tap::columns(section, columns)?;
+    let mapped = mapped
+        || known
+            .sensors
+            .is_some_and(|sensors| columns.is_empty() && sensors.iter().any(|own| own.mapped));
+    let (file, window) = (file?, window?);
+    let plain = is_table(&file) && !mapped && window.is_whole() && without.is_empty();
+    let test = read(section, known, (!plain).then_some(&file));
+    section.finish();
+    Some(Run {
+        name: name.unwrap_or_else(|| file.clone()),
+        file,
+        plain,
+        window,
+        without,
+        columns,
+        role: role?,
+        test: test?,
+    })
+}
+
+/// The sensors that are not taken from a run.
+fn without(section: &Section<'_>, known: &Known<'_>) -> Vec<String> {
+    let without = section.texts("without");
+    let names: Vec<&str> = known
+        .sensors
+        .unwrap_or_default()
+        .iter()
+        .map(|own| own.channel.name.as_str())
+        .collect();
+    let unknown = without
+        .iter()
+        .find(|name| known.sensors.is_some() && !names.contains(&name.as_str()));
+    if let Some(unknown) = unknown {
+        let remedy = spelling::remedy(unknown, names);
+        section.wrong(
+            "without",
+            format!("\"{unknown}\""),
+            "names of channels of the campaign",
+            remedy,
+        );
+    }
+    without
+}
+
+/// Whether a file may be a plain table.
+fn is_table(file: &str) -> bool {
+    file.ends_with(".csv") || file.ends_with(".csv.gz")
+}
+
+/// The rate of a run, Hz. In the file of a rig, `file`, it is the highest among its channels unless it is stated.
+fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
+    let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
+        return section.positive("sample_rate");
+    };
+    let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
+    let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
+    highest.map_err(|error| section.adopt(error)).ok()
+}
+
+/// Reads a test, whose file is named where it is no plain table.
+type ReadTest = fn(&Section<'_>, &Known<'_>, Option<&String>) -> Option<Test>;
+
+/// The kinds with the columns that a curve of the kind has.
+const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
+    ("sweep", (sweep, &[])),
+    ("bounce", (|_, _, _| Some(Test::Bounce), CURVE)),
+    (
+        "dynamic_bounce",
+        (|section, _, _| dynamic_bounce(section), DYNAMIC_CURVE),
+    ),
+    ("longitudinal", (|_, _, _| Some(Test::Longitudinal), CURVE)),
+    ("cleat", (cleat, &[])),
+    ("time_history", (time_history, &[])),
+];
+
+fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+    let (peak_velocity, spacing) = (
+        section.positive("peak_velocity"),
+        section.choice("spacing", Spacing::NAMES),
+    );
+    let (start, end) = (section.positive("start_frequency"), section.positive("end_frequency"));
+    let sample_rate = sample_rate(section, known, file);
+    let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
+    if start_frequency >= end_frequency {
+        let expected = format!("above the start at {start_frequency} Hz");
+        section.wrong(
+            "end_frequency",
+            format!("{end_frequency} Hz"),
+            expected,
+            "correct the two frequencies",
+        );
+    }
+    if end_frequency >= sample_rate / 2.0 {
+        let expected = format!("below half the sample rate, {} Hz", sample_rate / 2.0);
+        section.wrong(
+            "end_frequency",
+            format!("{end_frequency} Hz"),
+            expected,
+            "correct the frequency or the rate",
+        );
+    }
+    let (peak_velocity, spacing) = (peak_velocity?, spacing?);
+    Some(Test::Sweep(Sweep {
+        peak_velocity,
+        start_frequency,
+        end_frequency,
+        spacing,
+        sample_rate,
+    }))
+}
+
+fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
+    let (peak_velocity, amplitude) = (section.positive("peak_velocity"), section.positive("amplitude"));
+    Some(Test::DynamicBounce {
+        peak_velocity: peak_velocity?,
+        amplitude: amplitude?,
+    })
+}
+
+fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+    let (speed, sample_rate) = (section.positive("speed"), sample_rate(section, known, file));
+    let cleat = section.text("cleat")?;
+    if let Some(roads) = known.roads
+        && !roads.iter().any(|road| road.name == cleat)
+    {
+        let names: Vec<_> = roads.iter().map(|road| format!("\"{}\"", road.name)).collect();
+        let expected = match names.as_slice() {
+            [] => "the name of a [[road]], of which there is none".to_string(),
+            names => format!("the name of a [[road]]: {}", names.join(", ")),
+        };
+        section.wrong(
+            "cleat",
+            format!("\"{cleat}\""),
+            expected,
+            "correct the name, or add the road",
+        );
+    }
+    Some(Test::Cleat {
+        speed: speed?,
+        sample_rate: sample_rate?,
+        cleat,
+    })
+}
+
+fn time_history(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
+    let (sample_rate, band_limited) = (sample_rate(section, known, file), section.boolean("band_limited"));
+    let (band, periodic) = (section.range("band"), section.flag("periodic"));
+    let (sample_rate, band_limited) = (sample_rate?, band_limited?);
+    if let Some((low, high)) = band
+        && (low < 0.0 || high >= sample_rate / 2.0)
+    {
+        section.wrong(
+            "band",
+            format!("[{low}, {high}] Hz"),
+            format!(
+                "a band from 0 Hz to below half the sample rate, {} Hz",
+                sample_rate / 2.0
+            ),
+            "correct the band, or leave it out to compare all frequencies",
+        );
+    }
+    Some(Test::TimeHistory(Recording {
+        sample_rate,
+        band_limited,
+        band,
+        periodic,
+    }))
+}

@@ -1,0 +1,96 @@
+//! The `[[channel]]` sections of a campaign and of the file that campaigns share.
+
+use std::path::Path;
+
+use super::super::contents::{Axis, Channel, Quantity, Side, Tap};
+use super::super::fields::{Document, Section};
+use super::super::tap;
+use super::each;
+
+/// A channel, and where its values come from.
+pub(super) struct Sensor {
+    pub channel: Channel,
+    pub tap: Tap,
+    /// Whether the tap says more than a plain table needs.
+    pub mapped: bool,
+}
+
+/// The channels of the file that `mapping` names, then those of the campaign itself.
+pub(super) fn sensors(folder: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
+    let shared = match top.optional_text("mapping") {
+        Some(file) => mapping(&folder.join(file), top),
+        None => Some(Vec::new()),
+    };
+    let own = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
+    let (mut shared, own) = (shared?, own?);
+    let twice = own
+        .iter()
+        .find(|own| shared.iter().any(|shared| shared.channel.name == own.channel.name));
+    if let Some(twice) = twice {
+        let found = format!("the channel \"{}\", which `channel` has too", twice.channel.name);
+        top.wrong(
+            "mapping",
+            found,
+            "each channel once",
+            "remove it from one of the two files",
+        );
+    }
+    shared.iter_mut().for_each(|shared| shared.tap.shared = true);
+    shared.extend(own);
+    Some(shared)
+}
+
+/// The channels of a file that campaigns share.
+fn mapping(file: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
+    let document = match Document::read(file) {
+        Ok(document) => document,
+        Err(error) => {
+            let found = error
+                .problems
+                .first()
+                .map_or(String::new(), |problem| problem.found.clone());
+            let remedy = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+            let found = format!("{}: {found}", file.display());
+            top.wrong(
+                "mapping",
+                found,
+                "a readable text file with [[channel]] sections",
+                remedy,
+            );
+            return None;
+        }
+    };
+    let sensors = document.parse().map(|tree| {
+        let top = document.top(&tree);
+        let sensors = each(top.sections("channel"), "name", sensor, |sensor| &sensor.channel.name);
+        top.finish();
+        sensors
+    });
+    let sensors = sensors.and_then(|sensors| document.finish(sensors));
+    sensors.map_err(|error| top.adopt(error)).ok()
+}
+
+fn sensor(section: &Section<'_>) -> Option<Sensor> {
+    let (name, location) = (section.text("name"), section.text("location"));
+    let (side, axis) = (section.choice("side", Side::NAMES), section.choice("axis", Axis::NAMES));
+    let quantity = section.choice("quantity", Quantity::NAMES);
+    if name.as_deref() == Some("time") {
+        section.wrong(
+            "name",
+            "\"time\"",
+            "another name",
+            "the column `time` holds the time; rename the channel",
+        );
+    }
+    let tap = tap::tap(section, name.as_deref().unwrap_or(""), quantity.map(Quantity::unit));
+    section.finish();
+    let (tap, mapped) = tap?;
+    let channel = Channel {
+        name: name?,
+        location: location?,
+        side: side?,
+        axis: axis?,
+        quantity: quantity?,
+    };
+    Some(Sensor { channel, tap, mapped })
+}

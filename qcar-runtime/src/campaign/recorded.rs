@@ -1,0 +1,142 @@
+//! Runs whose files are no plain tables: channels found by name, in SI, at one rate, cut to their window.
+
+use std::path::Path;
+
+use super::contents::{Campaign, Run, Tap, Test};
+use super::findings::Finding;
+use crate::error::{InputError, Place, Problem};
+use channel::Channel;
+use files::problem;
+use together::Together;
+use window::Span;
+
+// Each file read once.
+mod files;
+// Samples that come evenly.
+mod even;
+// When a run begins and ends.
+mod window;
+// Values in SI.
+mod values;
+// What a tap makes of a channel.
+mod channel;
+// All channels of a run at one rate.
+mod together;
+
+pub(super) use files::Files;
+
+/// What was read of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Recorded {
+    /// The run's name.
+    pub run: String,
+    /// Time of the first sample, s.
+    pub start: f64,
+    /// Hz.
+    pub rate: f64,
+    /// Name and samples (SI) of each sensor or column, all of one length.
+    pub columns: Vec<(String, Vec<f64>)>,
+    /// Taps that the file has no channel for.
+    pub missing: Vec<Missing>,
+    /// What the samples show to be odd, before they were resampled.
+    pub findings: Vec<Finding>,
+}
+
+impl Recorded {
+    /// Whether it has a sensor or column.
+    pub fn has(&self, name: &str) -> bool {
+        self.columns.iter().any(|(own, _)| own == name)
+    }
+
+    /// A column of a curve, which none lacks.
+    pub fn column(&self, name: &str) -> Vec<f64> {
+        let column = self.columns.iter().find(|(own, _)| own == name);
+        column.expect("a curve without this column was refused").1.clone()
+    }
+
+    /// The times of the samples, s.
+    pub fn times(&self) -> Vec<f64> {
+        let count = self.columns.first().map_or(0, |(_, samples)| samples.len());
+        (0..count).map(|at| self.start + at as f64 / self.rate).collect()
+    }
+}
+
+/// A tap that a file has no channel for.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Missing {
+    pub name: String,
+    pub problem: Problem,
+}
+
+impl Campaign {
+    /// What was read of a run, `None` where its file is a plain table.
+    pub(super) fn recorded(&self, run: &Run) -> Option<&Recorded> {
+        self.recorded.iter().find(|recorded| recorded.run == run.name)
+    }
+
+    /// The taps of a run: the sensors, or the columns of a curve.
+    fn taps_of<'a>(&'a self, run: &'a Run) -> Vec<&'a Tap> {
+        let taps = match run.test.sample_rate() {
+            Some(_) => &self.taps,
+            None => &run.columns,
+        };
+        taps.iter().filter(|tap| !run.without.contains(&tap.name)).collect()
+    }
+}
+
+/// The highest rate among the channels of a file that `taps` mean, Hz.
+pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, InputError> {
+    let recording = files.get(file)?;
+    let (mut highest, mut is_any) = (0.0_f64, false);
+    for tap in taps.iter().filter(|tap| recording.has(&tap.source)) {
+        let signal = recording.find(&tap.source);
+        let signal = signal.map_err(|fault| InputError::from(problem(file, &fault)))?;
+        highest = highest.max(even::rate(&signal.time, signal.samples.len(), None).unwrap_or(0.0));
+        is_any = true;
+    }
+    if highest > 0.0 {
+        return Ok(highest);
+    }
+    let found = match is_any {
+        true => "channels without times",
+        false => "none of the channels that the campaign names",
+    };
+    let remedy = "state `sample_rate`, and correct the `source` of the channels";
+    Err(Problem::new(file, Place::File, found, "channels with a sample rate", remedy).into())
+}
+
+/// Reads a run.
+pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, InputError> {
+    let file = campaign.folder.join(&run.file);
+    let recording = files.get(&file)?;
+    // A quasi-static curve needs no times.
+    let declared = run.test.sample_rate().or(match run.test {
+        Test::Bounce | Test::Longitudinal => Some(1.0),
+        _ => None,
+    });
+    let span = Span::of(&file, &recording, &run.window, declared)?;
+    let (mut channels, mut missing, mut problems) = (Vec::new(), Vec::new(), Vec::new());
+    for tap in campaign.taps_of(run) {
+        match Channel::tapped(&file, &recording, tap, declared) {
+            Ok(channel) => channels.push(channel),
+            Err(error) if recording.has(&tap.source) => problems.extend(error.problems),
+            Err(error) => missing.extend(error.problems.into_iter().map(|problem| Missing {
+                name: tap.name.clone(),
+                problem,
+            })),
+        }
+    }
+    if channels.is_empty() || run.test.sample_rate().is_none() {
+        problems.extend(missing.iter().map(|missing| missing.problem.clone()));
+    }
+    InputError::unless_empty(problems, Some(()))?;
+    let together = Together::new(&file, &channels, span, run.test.sample_rate())?;
+    Ok(Recorded {
+        run: run.name.clone(),
+        start: together.grid.start - span.zero.unwrap_or(0.0),
+        rate: together.grid.rate,
+        columns: together.columns(),
+        missing,
+        findings: together.findings(run),
+    })
+}

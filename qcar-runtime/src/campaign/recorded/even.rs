@@ -1,0 +1,192 @@
+//! Samples that come evenly and are all there.
+
+use std::ops::Range;
+
+use qcar_signals::resample::Grid;
+use qcar_signals::signal::TimeBase;
+
+use super::super::steps;
+
+/// Relative distance from whole hertz within which a clock is meant to have them.
+const WHOLE: f64 = 1e-6;
+/// Parts of a sample by which a time may miss an end of the window.
+const SLACK: f64 = 1e-3;
+
+/// A part of a channel without any gap.
+pub(super) struct Even<'a> {
+    /// What lies in the window, and beside it what the filter may look at.
+    pub samples: &'a [f64],
+    /// Their instants.
+    pub grid: Grid,
+    /// Those in the window.
+    pub inside: Range<usize>,
+}
+
+/// Why a window holds no even samples.
+pub(super) struct Broken {
+    /// s, where it is a moment.
+    pub at: Option<f64>,
+    pub found: String,
+    pub expected: String,
+    pub remedy: &'static str,
+}
+
+/// The time of a sample, s; a base without times counts samples.
+pub(super) fn time(base: &TimeBase, at: usize) -> f64 {
+    match base {
+        TimeBase::Even { start, step } => start + at as f64 * step,
+        TimeBase::Times(times) => times[at],
+        TimeBase::Unknown => at as f64,
+    }
+}
+
+/// Samples a second: the declared rate where the times agree with it, else theirs; `None` with less than two samples.
+pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Option<f64> {
+    let own = match base {
+        TimeBase::Even { step, .. } => 1.0 / step,
+        TimeBase::Times(times) if times.len() > 1 => {
+            let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
+            let typical = 1.0 / steps::median(&steps);
+            let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
+            ones.len() as f64 / ones.iter().sum::<f64>()
+        }
+        TimeBase::Times(_) | TimeBase::Unknown => return declared,
+    };
+    let declared = declared.filter(|declared| steps::agree(own, *declared, count.max(2) - 1));
+    let whole = Some(own.round()).filter(|whole| (own - whole).abs() < WHOLE * whole);
+    declared
+        .or(whole)
+        .or(Some(own))
+        .filter(|rate| rate.is_finite() && *rate > 0.0)
+}
+
+impl<'a> Even<'a> {
+    /// The samples from `from` to `to` (s; the whole channel without), with up to `margin` more at each side.
+    pub fn new(
+        samples: &'a [f64],
+        base: &TimeBase,
+        rate: f64,
+        (from, to): (Option<f64>, Option<f64>),
+        margin: usize,
+    ) -> Result<Even<'a>, Broken> {
+        let range = inside(samples.len(), base, rate, (from, to))?;
+        let broken = |at: usize| is_gap(base, at, rate) || !samples[at].is_finite();
+        if let Some(at) = range
+            .clone()
+            .find(|&at| !samples[at].is_finite() || (at > range.start && broken(at)))
+        {
+            return Err(at_break(samples, base, at, rate));
+        }
+        let (first, last) = (range.start, range.end - 1);
+        let before = (first.saturating_sub(margin)..first).rev();
+        let before = before
+            .take_while(|&at| samples[at].is_finite() && !is_gap(base, at + 1, rate))
+            .count();
+        let after = (last + 1..samples.len().min(last + 1 + margin))
+            .take_while(|&at| !broken(at))
+            .count();
+        let grid = Grid {
+            start: time(base, first) - before as f64 / rate,
+            rate,
+            count: before + range.len() + after,
+        };
+        Ok(Even {
+            samples: &samples[first - before..=last + after],
+            grid,
+            inside: before..before + range.len(),
+        })
+    }
+
+    /// The instant of the first sample in the window, s.
+    pub fn start(&self) -> f64 {
+        self.grid.time(self.inside.start)
+    }
+
+    /// The instant of the last sample in the window, s.
+    pub fn end(&self) -> f64 {
+        self.grid.time(self.inside.end - 1)
+    }
+
+    /// The samples in the window and their instants.
+    pub fn in_window(&self) -> (&[f64], Grid) {
+        let grid = Grid {
+            start: self.start(),
+            rate: self.grid.rate,
+            count: self.inside.len(),
+        };
+        (&self.samples[self.inside.clone()], grid)
+    }
+
+    /// The index of the sample that is taken at an instant, if one is.
+    pub fn sample_at(&self, instant: f64) -> Option<usize> {
+        let place = (instant - self.grid.start) * self.grid.rate;
+        ((place - place.round()).abs() <= SLACK).then_some(place.round() as usize)
+    }
+}
+
+/// The indices of the samples in the window, of which there are at least two.
+fn inside(
+    count: usize,
+    base: &TimeBase,
+    rate: f64,
+    (from, to): (Option<f64>, Option<f64>),
+) -> Result<Range<usize>, Broken> {
+    if count < 2 {
+        return Err(Broken {
+            at: None,
+            found: format!("{count} samples"),
+            expected: "at least two".into(),
+            remedy: "export the whole record",
+        });
+    }
+    let (start, end, slack) = (time(base, 0), time(base, count - 1), SLACK / rate);
+    let (first_time, last_time) = (from.unwrap_or(start), to.unwrap_or(end));
+    let before = |limit: f64| {
+        let (mut low, mut high) = (0, count);
+        while low < high {
+            let middle = usize::midpoint(low, high);
+            (low, high) = if time(base, middle) < limit {
+                (middle + 1, high)
+            } else {
+                (low, middle)
+            };
+        }
+        low
+    };
+    let range = before(first_time - slack)..before(last_time + slack);
+    let covered = first_time > start - 1.0 / rate && last_time < end + 1.0 / rate;
+    if covered && range.len() >= 2 {
+        return Ok(range);
+    }
+    Err(Broken {
+        at: None,
+        found: format!("a window from {first_time} to {last_time} s"),
+        expected: format!("a part of the recording, which goes from {start} to {end} s"),
+        remedy: "correct `from`, `to` or the trigger of the run",
+    })
+}
+
+/// Whether the time before a sample is not that of one step.
+fn is_gap(base: &TimeBase, at: usize, rate: f64) -> bool {
+    matches!(base, TimeBase::Times(_)) && !steps::is_one(time(base, at) - time(base, at - 1), rate)
+}
+
+fn at_break(samples: &[f64], base: &TimeBase, at: usize, rate: f64) -> Broken {
+    let lost = samples[at..].iter().take_while(|value| !value.is_finite()).count();
+    let found = match lost {
+        0 => format!("a step of {} s", time(base, at) - time(base, at - 1)),
+        1 => "a sample without a value".into(),
+        lost => format!("{lost} samples without values"),
+    };
+    let expected = match lost {
+        0 => format!("steps of {} s", 1.0 / rate),
+        _ => "a value for every sample of the run".into(),
+    };
+    Broken {
+        at: Some(time(base, at)),
+        found,
+        expected,
+        remedy: "what was lost cannot be guessed: choose `from` and `to` beside it, leave the channel out with `without`, or \
+                 export the record again",
+    }
+}

@@ -1,0 +1,102 @@
+//! The channels of a run at one rate, all from the same instant to the same instant.
+
+use std::path::Path;
+
+use qcar_signals::resample::{Grid, resample};
+
+use super::super::contents::Run;
+use super::super::findings::{Finding, of_samples};
+use super::channel::Channel;
+use super::even::Even;
+use super::window::Span;
+use crate::error::{InputError, Place, Problem};
+
+/// A rate that is so many times the highest among the channels is a slip, and would fill the memory with nothing new.
+const MOST: f64 = 10.0;
+
+/// The channels of a run, and the instants that they are brought to.
+pub(super) struct Together<'a> {
+    channels: &'a [Channel<'a>],
+    even: Vec<Even<'a>>,
+    pub grid: Grid,
+}
+
+impl<'a> Together<'a> {
+    /// At `rate`, or at the highest among the channels.
+    pub fn new(file: &Path, channels: &'a [Channel<'a>], span: Span, rate: Option<f64>) -> Result<Self, InputError> {
+        let highest = channels.iter().map(|channel| channel.rate).fold(0.0, f64::max);
+        let rate = rate.unwrap_or(highest);
+        if rate > MOST * highest {
+            let expected = format!("at most {MOST} times the highest rate of its channels, {highest} Hz");
+            let found = format!("`sample_rate = {rate}` for the run");
+            return Err(Problem::new(file, Place::File, found, expected, "correct it, or leave it out").into());
+        }
+        let (mut even, mut problems) = (Vec::new(), Vec::new());
+        for channel in channels {
+            match channel.even(file, rate, span) {
+                Ok(own) => even.push(own),
+                Err(error) => problems.extend(error.problems),
+            }
+        }
+        InputError::unless_empty(problems, Some(()))?;
+        let grid = grid(file, channels, &even, rate)?;
+        Ok(Together { channels, even, grid })
+    }
+
+    /// Names and samples, all of one length.
+    pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
+        let both = self.channels.iter().zip(&self.even);
+        both.map(|(channel, even)| (channel.tap.name.clone(), taken(even, self.grid)))
+            .collect()
+    }
+
+    /// What the samples in the window show to be odd. Curves dwell and creep as they should.
+    pub fn findings(&self, run: &Run) -> Vec<Finding> {
+        if run.test.sample_rate().is_none() {
+            return Vec::new();
+        }
+        let both = self.channels.iter().zip(&self.even);
+        let of = |(channel, even): (&Channel, &Even)| {
+            let (samples, grid) = even.in_window();
+            of_samples(run, (&channel.tap.name, channel.tap.si), samples, grid)
+        };
+        both.flat_map(of).collect()
+    }
+}
+
+/// The instants that all channels cover, on samples of the first one that has the rate.
+fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even<'_>], rate: f64) -> Result<Grid, InputError> {
+    let latest = |of: fn(&Even<'_>) -> f64| even.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    let earliest = |of: fn(&Even<'_>) -> f64| even.iter().map(of).fold(f64::INFINITY, f64::min);
+    let (start, end) = (latest(|even| even.start()), earliest(|even| even.end()));
+    let (first, last) = (earliest(|even| even.start()), latest(|even| even.end()));
+    // Channels of several rates begin and end within a sample or two of each other.
+    let apart = 2.0 / channels.iter().map(|channel| channel.rate).fold(rate, f64::min);
+    let ends_early = even.iter().position(|even| last - even.end() > apart);
+    let begins_late = even.iter().position(|even| even.start() - first > apart);
+    if let Some(at) = ends_early.or(begins_late) {
+        let found = format!("samples from {} to {} s", even[at].start(), even[at].end());
+        let expected = format!("{first} to {last} s as in other channels");
+        let remedy = "give the run a `from` and `to` that all channels cover, or leave this one out with `without`";
+        return Err(Problem::new(file, channels[at].place(), found, expected, remedy).into());
+    }
+    let anchor = channels.iter().position(|channel| channel.rate == rate);
+    let anchor = anchor.map_or(start, |at| even[at].start());
+    let start = anchor + ((start - anchor) * rate - 1e-3).ceil().max(0.0) / rate;
+    let count = ((end - start) * rate + 1e-3).floor() as usize + 1;
+    if count < 2 {
+        let found = format!("{} s that all channels cover", end - start);
+        let expected = format!("two samples at {rate} Hz at least");
+        return Err(Problem::new(file, channels[0].place(), found, expected, "choose a longer window").into());
+    }
+    Ok(Grid { start, rate, count })
+}
+
+/// The samples at the instants of the grid: as they are where they were taken then, else through the filter.
+fn taken(even: &Even<'_>, grid: Grid) -> Vec<f64> {
+    let as_they_are = even.sample_at(grid.start).filter(|_| even.grid.rate == grid.rate);
+    match as_they_are.and_then(|first| even.samples.get(first..first + grid.count)) {
+        Some(samples) => samples.to_vec(),
+        None => resample(even.samples, even.grid, grid),
+    }
+}

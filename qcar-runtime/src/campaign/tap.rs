@@ -1,0 +1,177 @@
+//! Which channel of a measured file a sensor is, and what makes SI of its values.
+
+use super::contents::{Quantity, Tap, Trigger, Window};
+use super::fields::Section;
+use super::unit;
+use qcar_signals::si::{Si, in_si};
+
+/// Seconds at the beginning of a recording whose mean is taken off by `zero = "start"`.
+const ZERO_SPAN: f64 = 1.0;
+
+/// The keys that say where values come from; with one of them a channel is tapped.
+const MAPPED: [&str; 5] = ["source", "scale", "offset", "sign", "zero"];
+
+/// A channel's tap, and whether the section says more than what a plain table needs.
+///
+/// `si` is the unit of the values to be had. A plain channel states it as its `unit`, and has its own name as source.
+pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -> Option<(Tap, bool)> {
+    let mapped = MAPPED.iter().any(|key| section.has(key));
+    let source = section.optional_text("source");
+    let (scale, offset) = (section.optional_number("scale"), section.optional_number("offset"));
+    let (sign, zero) = (sign(section), zero(section));
+    let unit = match mapped {
+        true => section.optional_text("unit"),
+        false => Some(section.text("unit")?),
+    };
+    if let (Some(si), Some(unit)) = (si, &unit) {
+        check_unit(section, name, unit, si, mapped);
+    }
+    let tap = Tap {
+        name: name.into(),
+        source: source.unwrap_or_else(|| name.into()),
+        unit,
+        si: si?,
+        scale,
+        offset: offset.unwrap_or(0.0),
+        sign: sign?,
+        zero: zero?,
+        shared: false,
+    };
+    Some((tap, mapped))
+}
+
+fn check_unit(section: &Section<'_>, name: &str, unit: &str, si: &'static str, mapped: bool) {
+    if mapped && !of_quantity(in_si(unit), si) {
+        let remedy = "write the unit that the values have after `scale` and `offset`";
+        section.wrong("unit", format!("\"{unit}\""), examples(si), remedy);
+    }
+    if !mapped && unit::dimension(unit) != unit::dimension(si) {
+        let remedy = format!("convert the column `{name}` in every file, and write this unit");
+        section.wrong("unit", format!("\"{unit}\""), format!("\"{si}\""), remedy);
+    }
+}
+
+/// Whether a unit is one of the quantity whose SI unit is `si`.
+pub(super) fn of_quantity(unit: Option<Si>, si: &str) -> bool {
+    unit.map(|unit| unit.dimension) == unit::dimension(si)
+}
+
+/// What a unit of a quantity looks like.
+pub(super) fn examples(si: &str) -> String {
+    let [a, b] = match si {
+        "m/s^2" => ["g", "mm/s^2"],
+        "m/s" => ["mm/s", "km/h"],
+        "m" => ["mm", "in"],
+        _ => ["kN", "lbf"],
+    };
+    format!("a unit of the kind of {si}, such as \"{a}\" or \"{b}\"")
+}
+
+fn sign(section: &Section<'_>) -> Option<f64> {
+    match section.optional_number("sign") {
+        None => Some(1.0),
+        Some(sign) if sign.abs() == 1.0 => Some(sign),
+        Some(other) => {
+            section.wrong(
+                "sign",
+                format!("{other}"),
+                "1 or -1",
+                "for another factor write `scale`",
+            );
+            None
+        }
+    }
+}
+
+/// How many seconds at the beginning give the zero, if any do.
+fn zero(section: &Section<'_>) -> Option<Option<f64>> {
+    let span = section.has("zero_span").then(|| section.positive("zero_span"));
+    if !section.has("zero") {
+        if span.is_some() {
+            section.wrong(
+                "zero_span",
+                "no `zero`",
+                "`zero = \"start\"` beside it",
+                "add it, or remove `zero_span`",
+            );
+        }
+        return Some(None);
+    }
+    section.choice("zero", &[("start", ())])?;
+    Some(Some(span.unwrap_or(Some(ZERO_SPAN))?))
+}
+
+/// The tap of each column of a curve that the run maps, and whether it maps any.
+pub(super) fn columns(section: &Section<'_>, columns: &[&'static str]) -> Option<(Vec<Tap>, bool)> {
+    let (mut taps, mut any) = (Vec::new(), false);
+    for &column in columns.iter().filter(|column| **column != "time") {
+        let si = match column {
+            "displacement" => Quantity::Displacement.unit(),
+            "velocity" => Quantity::Velocity.unit(),
+            _ => Quantity::Force.unit(),
+        };
+        taps.push(match section.section(column) {
+            Some(own) => {
+                any = true;
+                let tap = mapped_column(&own, column, si);
+                own.finish();
+                tap
+            }
+            None => Some(Tap::plain(column, si)),
+        });
+    }
+    Some((taps.into_iter().collect::<Option<_>>()?, any))
+}
+
+fn mapped_column(section: &Section<'_>, column: &str, si: &'static str) -> Option<Tap> {
+    section.text("source")?;
+    tap(section, column, Some(si)).map(|(tap, _)| tap)
+}
+
+impl Tap {
+    /// Values in SI under the column's own name.
+    pub(super) fn plain(name: &str, si: &'static str) -> Tap {
+        Tap {
+            name: name.into(),
+            source: name.into(),
+            unit: Some(si.into()),
+            si,
+            scale: None,
+            offset: 0.0,
+            sign: 1.0,
+            zero: None,
+            shared: false,
+        }
+    }
+}
+
+/// The part of a recording that is a run.
+pub(super) fn window(section: &Section<'_>) -> Option<Window> {
+    let (from, to) = (section.optional_number("from"), section.optional_number("to"));
+    let trigger = match section.section("trigger") {
+        Some(section) => Some(trigger(&section)?),
+        None => None,
+    };
+    if let (Some(from), Some(to)) = (from, to)
+        && from >= to
+    {
+        let expected = format!("above `from = {from}`");
+        section.wrong(
+            "to",
+            format!("{to} s"),
+            expected,
+            "correct the two times: the window is empty",
+        );
+        return None;
+    }
+    Some(Window { from, to, trigger })
+}
+
+fn trigger(section: &Section<'_>) -> Option<Trigger> {
+    let (channel, above) = (section.text("channel"), section.number("above"));
+    section.finish();
+    Some(Trigger {
+        channel: channel?,
+        above: above?,
+    })
+}

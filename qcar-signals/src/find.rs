@@ -1,0 +1,144 @@
+//! Which channel of a recording a name or a pattern means.
+
+use std::collections::BTreeSet;
+
+use crate::error::{Fault, Place};
+use crate::signal::{Recording, Signal};
+
+/// How many channels an error lists.
+const LISTED: usize = 6;
+
+impl Recording {
+    /// The channel that `pattern` means: a name, `group/name`, or either with `*` for any characters and `?` for one. A
+    /// channel that is called so to the letter goes before others.
+    ///
+    /// # Errors
+    /// No such channel, with those of similar names; or several.
+    pub fn find(&self, pattern: &str) -> Result<&Signal, Box<Fault>> {
+        let exact = self.signals.iter().any(|signal| signal.is_called(pattern));
+        let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
+        if exact || passed_over {
+            return self.signal(pattern);
+        }
+        let fitting: Vec<&Signal> = self.signals.iter().filter(|signal| is_meant(pattern, signal)).collect();
+        match fitting.as_slice() {
+            [signal] => Ok(signal),
+            [] => Err(self.missing(pattern)),
+            several => {
+                let found = format!("{} channels: {}", several.len(), listed(several));
+                let remedy = "write more of the name, or `group/name`";
+                Err(Fault::new(Place::File, found, "one channel that fits", remedy).of(pattern))
+            }
+        }
+    }
+
+    /// Whether some channel is meant by `pattern`, be it one of several or one that could not be read.
+    pub fn has(&self, pattern: &str) -> bool {
+        let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
+        let mut signals = self.signals.iter();
+        passed_over || signals.any(|signal| signal.is_called(pattern) || is_meant(pattern, signal))
+    }
+
+    fn missing(&self, pattern: &str) -> Box<Fault> {
+        let near = self.near(pattern);
+        let found = match near.as_slice() {
+            [] => "no channel of this name or a similar one".into(),
+            near => format!("no channel of this name; the nearest are {}", listed(near)),
+        };
+        let remedy = "correct the name; `qcar inspect` lists the channels of the file";
+        Fault::new(Place::File, found, "a channel of the file", remedy).of(pattern)
+    }
+
+    /// Channels whose names share most pairs of letters with a pattern, at least a third, the nearest first.
+    fn near(&self, pattern: &str) -> Vec<&Signal> {
+        let wanted = pairs(pattern);
+        let mut near: Vec<(f64, &Signal)> = self
+            .signals
+            .iter()
+            .map(|signal| {
+                let own = pairs(&signal.name);
+                let common = wanted.intersection(&own).count() as f64;
+                (2.0 * common / (wanted.len() + own.len()).max(1) as f64, signal)
+            })
+            .filter(|(likeness, _)| *likeness > 1.0 / 3.0)
+            .collect();
+        near.sort_by(|a, b| b.0.total_cmp(&a.0));
+        near.into_iter().map(|(_, signal)| signal).collect()
+    }
+}
+
+fn is_meant(pattern: &str, signal: &Signal) -> bool {
+    fits(pattern, &signal.name) || fits(pattern, &signal.full_name())
+}
+
+fn listed(signals: &[&Signal]) -> String {
+    let names: Vec<String> = signals
+        .iter()
+        .take(LISTED)
+        .map(|signal| format!("`{}`", signal.full_name()))
+        .collect();
+    let more = signals.len().saturating_sub(LISTED);
+    let rest = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
+    names.join(", ") + &rest
+}
+
+fn pairs(name: &str) -> BTreeSet<(char, char)> {
+    let letters: Vec<char> = name.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
+    letters.windows(2).map(|two| (two[0], two[1])).collect()
+}
+
+/// Whether a name fits a pattern of `*` and `?`.
+fn fits(pattern: &str, name: &str) -> bool {
+    let (pattern, name): (Vec<char>, Vec<char>) = (pattern.chars().collect(), name.chars().collect());
+    let (mut at, mut of) = (0, 0);
+    // Where to go on when what follows the last `*` does not fit: it takes one character more.
+    let mut last_star = None;
+    while of < name.len() {
+        match pattern.get(at) {
+            Some('*') => {
+                last_star = Some((at, of));
+                at += 1;
+            }
+            Some(&c) if c == '?' || c == name[of] => (at, of) = (at + 1, of + 1),
+            _ => match last_star {
+                Some((star, taken)) => {
+                    last_star = Some((star, taken + 1));
+                    (at, of) = (star + 1, taken + 1);
+                }
+                None => return false,
+            },
+        }
+    }
+    pattern[at..].iter().all(|c| *c == '*')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fits;
+
+    #[test]
+    fn patterns_fit_whole_names() {
+        for (pattern, name) in [
+            ("*Acc_Z", "FL_Body_Acc_Z"),
+            ("FL*Z", "FL_Z"),
+            ("a?c", "abc"),
+            ("*", ""),
+            ("*a*b*", "xaxxb"),
+        ] {
+            assert!(fits(pattern, name), "{pattern} {name}");
+        }
+        for (pattern, name) in [
+            ("*Acc_Z", "FL_Acc_Z_filtered"),
+            ("FL", "FL_Z"),
+            ("a?c", "ac"),
+            ("", "a"),
+            ("*ab", "aab_"),
+        ] {
+            assert!(!fits(pattern, name), "{pattern} {name}");
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! What the runs of a campaign are, and what their samples show to be wrong.
+
+use std::path::Path;
+
+use qcar_runtime::campaign::{Campaign, Role, Run, Test};
+use qcar_runtime::error::InputError;
+
+use crate::failure::Failure;
+use crate::table::{Table, number};
+
+/// Significant digits.
+const DIGITS: usize = 6;
+
+/// Whether every fit can rest on the samples, and what to say of the campaign.
+pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
+    let campaign = Campaign::open(folder)?;
+    let findings = campaign.findings()?;
+    let mut said = campaign.notices.clone();
+    for finding in &findings {
+        let sentence = finding.to_string();
+        // Those of files of rigs are among the notices already.
+        if !said.contains(&sentence) {
+            said.push(sentence);
+        }
+    }
+    let well = !findings.iter().any(|finding| finding.fatal);
+    let verdict = match (well, said.is_empty()) {
+        (true, true) => "ok".to_string(),
+        (true, false) => "ok, with warnings".into(),
+        (false, _) => "not fit for a fit".into(),
+    };
+    let said: String = said.iter().map(|sentence| format!("{sentence}\n")).collect();
+    Ok((
+        well,
+        format!("{}: {verdict}\n{}{said}", folder.display(), runs(&campaign)?),
+    ))
+}
+
+fn runs(campaign: &Campaign) -> Result<String, InputError> {
+    let mut table = Table::new(["run", "kind", "role", "channels", "samples", "rate_Hz", "from_s"]);
+    for run in &campaign.runs {
+        let role = if run.role == Role::Fit { "fit" } else { "held_out" };
+        let mut row = vec![run.name.clone(), kind(run).into(), role.into()];
+        row.extend(match run.test.sample_rate() {
+            Some(rate) => {
+                let history = campaign.history(run)?;
+                [history.signals.len(), history.len()]
+                    .map(|count| count.to_string())
+                    .into_iter()
+                    .chain([number(rate, DIGITS), number(history.start, DIGITS)])
+                    .collect::<Vec<_>>()
+            }
+            None => vec!["-".into(); 4],
+        });
+        table.row(row);
+    }
+    Ok(table.text())
+}
+
+fn kind(run: &Run) -> &'static str {
+    match run.test {
+        Test::Sweep(_) => "sweep",
+        Test::Bounce => "bounce",
+        Test::DynamicBounce { .. } => "dynamic bounce",
+        Test::Longitudinal => "longitudinal",
+        Test::Cleat { .. } => "cleat",
+        Test::TimeHistory(_) => "time history",
+    }
+}

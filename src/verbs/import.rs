@@ -1,0 +1,126 @@
+//! `qcar import`: measured files looked into, and a campaign of them begun.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use qcar_signals::signal::Recording;
+
+use super::inspect;
+use super::new::campaign::{make_head, seen_from};
+use crate::catalogue;
+use crate::failure::{Failure, flag};
+use crate::files::put;
+
+// Which sensor a channel is, by its name and unit.
+mod guess;
+// Names taken apart.
+mod tokens;
+// The sensors of a campaign.
+mod sensors;
+// Which kind of run a file is.
+mod kind;
+// What a sweep does, from its pad.
+mod swept;
+
+/// Look into measured files and begin a campaign with them
+///
+/// Lists the channels of each file, proposes which sensor of the model each is, by its name and unit, and which kind of run the file
+/// is: of a sweep the frequencies and the velocity of the pad. The new folder holds a campaign.toml that says what is still to be
+/// filled in. The files stay where they are.
+#[derive(Args)]
+#[command(
+    after_help = "Example:\n  qcar import models/campaigns/axle_a_rig/rig/sweep_025.csv.gz models/campaigns/axle_a_rig/rig/sweep_100.csv.gz --out imported --model axle_a"
+)]
+pub struct Arguments {
+    /// Measured files: MDF, RPC III, UFF 58, TDMS, MAT, .xlsx or text
+    #[arg(required = true)]
+    files: Vec<PathBuf>,
+    /// The folder to write, which must not be there
+    #[arg(long, value_name = "CAMPAIGN")]
+    out: PathBuf,
+    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    #[arg(long, default_value = "quarter_car")]
+    model: String,
+}
+
+/// A file and what is in it.
+struct Measured {
+    /// As the user names it.
+    file: PathBuf,
+    /// As the campaign must name it.
+    seen: String,
+    recording: Recording,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    must_be_new(&arguments.out)?;
+    let model = catalogue::load(&arguments.model)?;
+    let name = name_of(&arguments.out)?;
+    let mut files = Vec::new();
+    for file in &arguments.files {
+        files.push(Measured {
+            seen: seen_from(&arguments.out, &file.display().to_string(), false),
+            recording: inspect::recording(file)?,
+            file: file.clone(),
+        });
+    }
+    let proposed = sensors::propose(&files, model.about());
+    let runs: Vec<kind::Proposed> = files.iter().map(|file| kind::propose(file, &proposed)).collect();
+    let model_name = seen_from(
+        &arguments.out,
+        &arguments.model,
+        catalogue::is_shipped(&arguments.model),
+    );
+    let mut text = make_head(&name, &model_name, model.about());
+    text += &sensors::sections(&proposed);
+    text += &kind::sections(&runs);
+    put(&arguments.out, "campaign.toml", &text)?;
+    Ok(told(arguments, &files, &proposed, &runs))
+}
+
+fn must_be_new(folder: &Path) -> Result<(), Failure> {
+    match folder.exists() {
+        false => Ok(()),
+        true => {
+            let found = format!("{}, which is there already", folder.display());
+            Err(flag(
+                "--out",
+                found,
+                "a folder that is still to be made",
+                "take another name, or move it away",
+            )
+            .into())
+        }
+    }
+}
+
+/// The campaign is called as its folder is.
+fn name_of(folder: &Path) -> Result<String, Failure> {
+    let name = folder.file_name().and_then(|name| name.to_str());
+    name.map(String::from).ok_or_else(|| {
+        let found = folder.display().to_string();
+        flag(
+            "--out",
+            found,
+            "the path of a new folder",
+            "write a name such as `rig_front`",
+        )
+        .into()
+    })
+}
+
+fn told(arguments: &Arguments, files: &[Measured], proposed: &sensors::Sensors, runs: &[kind::Proposed]) -> String {
+    let mut text = String::new();
+    for (file, run) in files.iter().zip(runs) {
+        text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.recording));
+        text += &format!("taken for {}\n\n", run.said());
+    }
+    text += &sensors::table(proposed);
+    let out = arguments.out.display();
+    text += &format!(
+        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and give what stands behind a `#` with `give yours`\n"
+    );
+    text += &format!("2. qcar check {out}\n3. qcar fit {out}\n");
+    text
+}

@@ -1,0 +1,176 @@
+//! Which kind of run a file is.
+
+use qcar_runtime::campaign::Quantity;
+use qcar_signals::si::in_si;
+use qcar_signals::signal::{Recording, Signal, TimeBase};
+
+use super::Measured;
+use super::guess::quantity_of;
+use super::sensors::Sensors;
+use super::swept::{Swept, swept};
+use crate::table::number;
+
+/// Significant digits of what is proposed.
+const DIGITS: usize = 6;
+/// A record without a pad whose largest value is so many times its RMS value is one of an impact.
+const IMPACT: f64 = 5.0;
+
+/// A run and what it seems to be.
+pub(super) struct Proposed {
+    file: String,
+    kind: Kind,
+    /// Hz, the highest among its sensors.
+    rate: Option<f64>,
+}
+
+enum Kind {
+    Sweep(Swept),
+    Cleat,
+    /// Of a K&C rig: the names of the displacement and of the force.
+    Curve(String, String),
+    TimeHistory,
+}
+
+impl Proposed {
+    /// In words.
+    pub fn said(&self) -> String {
+        match &self.kind {
+            Kind::Sweep(own) => format!(
+                "a sweep from {} to {} Hz, its frequency growing {}, at {} m/s",
+                number(own.start, DIGITS),
+                number(own.end, DIGITS),
+                if own.logarithmic {
+                    "as a logarithm does"
+                } else {
+                    "evenly"
+                },
+                number(own.peak_velocity, DIGITS)
+            ),
+            Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),
+            Kind::Curve(displacement, force) => format!("a K&C curve, `{force}` over `{displacement}`"),
+            Kind::TimeHistory => "a time history".into(),
+        }
+    }
+}
+
+/// The kind of run that a file holds.
+pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
+    let of = |drives: bool| {
+        let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
+        known.filter_map(|sensor| Some((sensor, file.recording.find(&sensor.source).ok()?)))
+    };
+    let pad = of(true).next();
+    let kind = match pad {
+        Some((sensor, signal)) => {
+            let rate = signal.time.rate();
+            let swept = rate.and_then(|rate| swept(&in_units(signal), rate, sensor.guess.quantity));
+            swept.map_or(Kind::TimeHistory, Kind::Sweep)
+        }
+        None if of(false).any(|(_, signal)| is_impact(&signal.samples)) => Kind::Cleat,
+        None => curve(&file.recording).unwrap_or(Kind::TimeHistory),
+    };
+    let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
+    Proposed {
+        file: file.seen.clone(),
+        kind,
+        rate: signals
+            .filter_map(|signal| signal.time.rate())
+            .reduce(f64::max)
+            .map(whole),
+    }
+}
+
+/// A file without times that has one displacement and one force.
+fn curve(recording: &Recording) -> Option<Kind> {
+    let timeless = recording.signals.iter().all(|signal| signal.time == TimeBase::Unknown);
+    let only = |quantity: Quantity| {
+        let mut of = recording
+            .signals
+            .iter()
+            .filter(|signal| quantity_of(&signal.unit) == Some(quantity));
+        of.next()
+            .filter(|_| of.next().is_none())
+            .map(|signal| signal.name.clone())
+    };
+    timeless.then_some(())?;
+    Some(Kind::Curve(only(Quantity::Displacement)?, only(Quantity::Force)?))
+}
+
+/// Printed times leave a rate a little off the whole number that it is.
+fn whole(rate: f64) -> f64 {
+    if (rate / rate.round() - 1.0).abs() < 1e-6 {
+        rate.round()
+    } else {
+        rate
+    }
+}
+
+/// The samples in SI, as far as the file says their unit, about their mean.
+fn in_units(signal: &Signal) -> Vec<f64> {
+    let factor = in_si(&signal.unit).map_or(1.0, |si| si.multiply / si.divide);
+    let valid = signal.samples.iter().filter(|value| value.is_finite());
+    let mean = valid.clone().sum::<f64>() / valid.count().max(1) as f64;
+    let value = |value: &f64| {
+        if value.is_finite() {
+            (value - mean) * factor
+        } else {
+            0.0
+        }
+    };
+    signal.samples.iter().map(value).collect()
+}
+
+fn is_impact(samples: &[f64]) -> bool {
+    let largest = samples.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let square = samples.iter().map(|value| value * value).sum::<f64>() / samples.len().max(1) as f64;
+    largest > IMPACT * square.sqrt()
+}
+
+/// The `[[run]]` sections. The last sweep judges the fit of the others.
+pub(super) fn sections(runs: &[Proposed]) -> String {
+    let is_record = |run: &&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
+    let sweeps = runs.iter().filter(is_record).count();
+    let last = runs.iter().rposition(|run| is_record(&run));
+    let mut text = "\n# The runs. A part of a recording is a run of its own: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
+    for (at, run) in runs.iter().enumerate() {
+        let judges = matches!(run.kind, Kind::Cleat) || (sweeps > 1 && last == Some(at));
+        let role = match judges {
+            true => "\"held_out\" # it judges the fit",
+            false => "\"fit\" # parameters are fitted to it",
+        };
+        text += &format!("\n[[run]]\nfile = {:?}\nrole = {role}\n{}", run.file, keys(&run.kind));
+        text += &match run.rate {
+            _ if matches!(run.kind, Kind::Curve(..)) => String::new(),
+            Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
+            None => "# sample_rate = # Hz; the file says none, give yours\n".into(),
+        };
+    }
+    if runs.iter().any(|run| matches!(run.kind, Kind::Cleat)) {
+        text += "\n# The profile of the cleat, with the header line x,z,slope.\n# [[road]]\n# name = \"cleat_20\"\n# file = \"road/cleat_20.csv\"\n";
+    }
+    text
+}
+
+fn keys(kind: &Kind) -> String {
+    match kind {
+        Kind::Sweep(own) => format!(
+            "kind = \"sweep\" # frequencies and velocity as the pad moves, rounded: check them\npeak_velocity = {} # m/s\n\
+             start_frequency = {} # Hz\nend_frequency = {} # Hz\nspacing = \"{}\"\n",
+            number(own.peak_velocity, DIGITS),
+            number(own.start, DIGITS),
+            number(own.end, DIGITS),
+            if own.logarithmic { "logarithmic" } else { "linear" },
+        ),
+        Kind::Cleat => {
+            "kind = \"cleat\"\n# speed = # m/s, give yours\n# cleat = # the name of a [[road]] below, give yours\n"
+                .into()
+        }
+        Kind::Curve(displacement, force) => format!(
+            "kind = \"bounce\" # or \"longitudinal\"\n# Compression is positive, and forces count from the design position: give `sign` and \
+             `offset` where that is not so.\ndisplacement = {{ source = {displacement:?} }}\nforce = {{ source = {force:?} }}\n"
+        ),
+        Kind::TimeHistory => {
+            "kind = \"time_history\"\nband_limited = true # false where the inputs are held between samples\n".into()
+        }
+    }
+}

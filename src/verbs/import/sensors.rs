@@ -1,0 +1,123 @@
+//! The sensors of the new campaign: each with the channel that it is in the files.
+
+use qcar_runtime::model::About;
+
+use super::Measured;
+use super::guess::Guess;
+use crate::table::Table;
+
+/// A sensor and its channel.
+pub(super) struct Sensor {
+    pub guess: Guess,
+    /// The channel's name, with its group where a file has several of the name.
+    pub source: String,
+    /// The unit in the file.
+    pub unit: String,
+}
+
+/// What is proposed.
+pub(super) struct Sensors {
+    pub known: Vec<Sensor>,
+    /// Channels that are none, and why.
+    pub others: Vec<(String, String)>,
+}
+
+/// The sensors in the order in which the files have their channels, each once.
+pub(super) fn propose(files: &[Measured], about: &About) -> Sensors {
+    let mut all = Sensors {
+        known: Vec::new(),
+        others: Vec::new(),
+    };
+    for file in files {
+        for signal in &file.recording.signals {
+            let source = match file.recording.signal(&signal.name) {
+                Ok(_) => signal.name.clone(),
+                Err(_) => signal.full_name(),
+            };
+            match Guess::of(signal, about) {
+                Ok(guess) => all.add(guess, source, &signal.unit),
+                Err(why) => all.pass(source, why.into()),
+            }
+        }
+    }
+    all
+}
+
+impl Sensors {
+    fn add(&mut self, guess: Guess, source: String, unit: &str) {
+        match self.known.iter().find(|known| known.guess.name() == guess.name()) {
+            Some(known) if known.source == source => {}
+            Some(known) => {
+                let why = format!("`{}` is taken for `{}` already", known.source, guess.name());
+                self.pass(source, why);
+            }
+            None => self.known.push(Sensor {
+                guess,
+                source,
+                unit: unit.into(),
+            }),
+        }
+    }
+
+    fn pass(&mut self, source: String, why: String) {
+        if !self.others.iter().any(|(name, _)| *name == source) {
+            self.others.push((source, why));
+        }
+    }
+}
+
+/// The `[[channel]]` sections.
+pub(super) fn sections(sensors: &Sensors) -> String {
+    let mut text = "\n# The sensors, as the names and units of the channels say. Check each, above all its sign: z is up, x forward.\n".to_string();
+    text.extend(sensors.known.iter().map(section));
+    if !sensors.others.is_empty() {
+        text += "\n# Channels that are taken for no sensor; give a [[channel]] to those that are one.\n";
+    }
+    let others = sensors.others.iter();
+    text.extend(others.map(|(name, why)| format!("# {name:?}: {why}\n")));
+    text
+}
+
+fn section(sensor: &Sensor) -> String {
+    let Guess {
+        location,
+        side,
+        axis,
+        quantity,
+        has_unit,
+        ..
+    } = &sensor.guess;
+    let unit = match (has_unit, sensor.unit.as_str()) {
+        (true, unit) => format!("# in {unit}, as the file says\n"),
+        (false, "") => format!(
+            "# unit = # such as \"{}\"; the file says none, give yours\n",
+            quantity.unit()
+        ),
+        (false, unit) => format!(
+            "# unit = # and scale = ; the file says `{unit}`, which is no {}, give yours\n",
+            quantity.name()
+        ),
+    };
+    format!(
+        "\n[[channel]]\nname = \"{}\"\nlocation = \"{location}\"\nside = \"{side}\"\naxis = \"{}\"\nquantity = \"{}\"\n\
+         source = {:?}\n{unit}",
+        sensor.guess.name(),
+        axis.name(),
+        quantity.name(),
+        sensor.source,
+    )
+}
+
+/// What is taken for what.
+pub(super) fn table(sensors: &Sensors) -> String {
+    let mut table = Table::new(["channel", "is", "unit"]);
+    for sensor in &sensors.known {
+        let unit = if sensor.unit.is_empty() { "-" } else { &sensor.unit };
+        table.row(vec![sensor.source.clone(), sensor.guess.name(), unit.into()]);
+    }
+    let others = sensors.others.iter();
+    table.text()
+        + &others
+            .map(|(name, why)| format!("{name}: no sensor, {why}\n"))
+            .collect::<String>()
+}

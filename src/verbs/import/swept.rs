@@ -1,0 +1,220 @@
+//! What a sine sweep does, from the signal of its pad.
+
+use qcar_runtime::campaign::Quantity;
+
+/// A sine whose frequency rises, at a velocity that stays.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Swept {
+    /// m/s.
+    pub peak_velocity: f64,
+    /// Hz.
+    pub start: f64,
+    /// Hz.
+    pub end: f64,
+    pub logarithmic: bool,
+}
+
+/// Half periods that a sweep has at least.
+const LEAST: usize = 20;
+/// A sweep rises at least to so many times its first frequency.
+const RISE: f64 = 2.0;
+/// The largest relative deviation of its half periods from a line, or from one of logarithms, as a root mean square.
+const STRAIGHT: f64 = 0.1;
+/// A value is written with the fewest digits that change it by less than this share.
+const ROUNDING: f64 = 0.05;
+
+/// How far the velocity of a half period may be from the usual one, as a share of it.
+const FULL: f64 = 0.2;
+/// Part of the RMS value of the velocity that a swing has.
+const SWING: f64 = 0.5;
+/// What fades out of an integral, 1/s: a tenth of a hertz.
+const SLOW: f64 = 0.6;
+
+/// A half period: its middle (s), its frequency (Hz) and the peak of the velocity in it (m/s).
+struct Half {
+    time: f64,
+    frequency: f64,
+    velocity: f64,
+}
+
+/// What the samples of a pad sweep over, if they do.
+pub(super) fn swept(samples: &[f64], rate: f64, quantity: Quantity) -> Option<Swept> {
+    let mut halves = halves(samples, rate, quantity);
+    let mut velocities: Vec<f64> = halves.iter().map(|half| half.velocity).collect();
+    velocities.sort_by(f64::total_cmp);
+    let usual = *velocities.get(velocities.len() / 2)?;
+    // A sweep fades in and out.
+    halves.retain(|half| (half.velocity / usual - 1.0).abs() < FULL);
+    if halves.len() < LEAST {
+        return None;
+    }
+    let laws = [Law::through(&halves, true), Law::through(&halves, false)];
+    let law = laws
+        .into_iter()
+        .min_by(|a, b| a.error(&halves).total_cmp(&b.error(&halves)))?;
+    let (first, last) = (&halves[0], &halves[halves.len() - 1]);
+    let start = law.at(first.time - 0.25 / first.frequency);
+    let end = law.at(last.time + 0.25 / last.frequency);
+    (law.error(&halves) < STRAIGHT && start > 0.0 && end > RISE * start).then(|| Swept {
+        peak_velocity: rounded(usual),
+        start: rounded(start),
+        end: rounded(end),
+        logarithmic: law.logarithmic,
+    })
+}
+
+/// How the frequency grows: it, or its logarithm, on a line over time.
+struct Law {
+    slope: f64,
+    offset: f64,
+    logarithmic: bool,
+}
+
+impl Law {
+    /// The line of least squares, every second of the sweep counting alike.
+    fn through(halves: &[Half], logarithmic: bool) -> Law {
+        let scaled = |half: &Half| {
+            if logarithmic {
+                half.frequency.ln()
+            } else {
+                half.frequency
+            }
+        };
+        let mean = |of: &dyn Fn(&Half) -> f64| {
+            let (sum, weights) = halves.iter().fold((0.0, 0.0), |(sum, weights), half| {
+                (sum + of(half) / half.frequency, weights + 1.0 / half.frequency)
+            });
+            sum / weights
+        };
+        let (time, value) = (mean(&|half| half.time), mean(&scaled));
+        let slope =
+            mean(&|half| (half.time - time) * (scaled(half) - value)) / mean(&|half| (half.time - time).powi(2));
+        Law {
+            slope,
+            offset: value - slope * time,
+            logarithmic,
+        }
+    }
+
+    fn at(&self, time: f64) -> f64 {
+        let value = self.slope.mul_add(time, self.offset);
+        if self.logarithmic { value.exp() } else { value }
+    }
+
+    /// Root mean square of the relative deviations.
+    fn error(&self, halves: &[Half]) -> f64 {
+        let square: f64 = halves
+            .iter()
+            .map(|half| (half.frequency / self.at(half.time) - 1.0).powi(2))
+            .sum();
+        (square / halves.len() as f64).sqrt()
+    }
+}
+
+/// What lies between zeros of the velocity.
+fn halves(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Half> {
+    let velocity = velocity(samples, rate, quantity);
+    let zeros = zeros(&velocity);
+    let half = |two: &[f64]| {
+        let inside = &velocity[two[0].ceil() as usize..=two[1].floor() as usize];
+        Half {
+            time: 0.5 * (two[0] + two[1]) / rate,
+            frequency: 0.5 * rate / (two[1] - two[0]),
+            velocity: inside.iter().fold(0.0, |most: f64, value| most.max(value.abs())),
+        }
+    };
+    let whole = zeros.windows(2).filter(|two| two[0].ceil() <= two[1].floor());
+    whole.map(half).collect()
+}
+
+/// The velocity of the pad, m/s, whose amplitude stays in a sweep. What is slower than a tenth of a hertz is left out of it, so that
+/// an offset of the sensor does not run away.
+fn velocity(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<f64> {
+    let fading = 1.0 - SLOW / rate;
+    let mut last = 0.0;
+    let integrated = |sample: &f64| {
+        last = last * fading + sample / rate;
+        last
+    };
+    match quantity {
+        Quantity::Acceleration => samples.iter().map(integrated).collect(),
+        Quantity::Displacement => samples.windows(2).map(|two| (two[1] - two[0]) * rate).collect(),
+        Quantity::Velocity | Quantity::Force => samples.to_vec(),
+    }
+}
+
+/// Places between samples where the signal goes through zero, from one swing to the next. What is small is noise and no swing.
+fn zeros(velocity: &[f64]) -> Vec<f64> {
+    let square = velocity.iter().map(|value| value * value).sum::<f64>() / velocity.len().max(1) as f64;
+    let swing = SWING * square.sqrt();
+    let (mut zeros, mut zero, mut side) = (Vec::new(), 0.0, 0.0);
+    for (at, two) in velocity.windows(2).enumerate() {
+        if (two[0] < 0.0) != (two[1] < 0.0) {
+            zero = at as f64 + two[0] / (two[0] - two[1]);
+        }
+        if two[1].abs() > swing && two[1].signum() != side {
+            side = two[1].signum();
+            zeros.push(zero);
+        }
+    }
+    zeros
+}
+
+/// The nearest value of the fewest digits.
+fn rounded(value: f64) -> f64 {
+    let with = |digits: usize| format!("{value:.digits$e}").parse().unwrap_or(value);
+    (0..3)
+        .map(with)
+        .find(|rounded: &f64| (rounded / value - 1.0).abs() < ROUNDING)
+        .unwrap_or(value)
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::TAU;
+
+    use qcar_runtime::campaign::Quantity;
+
+    use super::swept;
+
+    /// Accelerations of a sweep of 25 mm/s from 0.5 to 30 Hz in 40 s.
+    fn sweep(logarithmic: bool) -> Vec<f64> {
+        let growth = 60f64.ln() / 40.0;
+        let frequency = |t: f64| {
+            if logarithmic {
+                0.5 * (growth * t).exp()
+            } else {
+                0.5 + 29.5 * t / 40.0
+            }
+        };
+        let cycles = |t: f64| {
+            if logarithmic {
+                0.5 * ((growth * t).exp() - 1.0) / growth
+            } else {
+                0.5 * t + 29.5 * t * t / 80.0
+            }
+        };
+        let value = |t: f64| 0.025 * TAU * frequency(t) * (TAU * cycles(t)).cos();
+        (0..40_000).map(|k| value(f64::from(k) / 1000.0)).collect()
+    }
+
+    #[test]
+    fn what_a_sweep_does_is_found() {
+        for logarithmic in [true, false] {
+            let found = swept(&sweep(logarithmic), 1000.0, Quantity::Acceleration).unwrap();
+            assert_eq!(found.logarithmic, logarithmic);
+            assert_eq!(
+                (found.start, found.end, found.peak_velocity),
+                (0.5, 30.0, 0.025),
+                "{found:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_sine_and_a_square_are_no_sweep() {
+        let sine: Vec<f64> = (0..10_000).map(|k| (TAU * 5.0 * f64::from(k) / 1000.0).sin()).collect();
+        assert!(swept(&sine, 1000.0, Quantity::Acceleration).is_none());
+        assert!(swept(&[1.0; 1000], 1000.0, Quantity::Acceleration).is_none());
+    }
+}

@@ -1,0 +1,155 @@
+//! What is wrong with measured samples is said before any fit: flaws are put into the sweeps of a campaign and found.
+
+use std::fs;
+
+use crate::formats::{campaign, mapping, sweeps};
+use crate::writers::{Group, mdf4};
+use crate::{channel, folder, open, qcar};
+
+/// The notices of the campaign whose low sweep has been spoiled.
+fn notices(spoil: impl Fn(&mut Group)) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rig.toml"), mapping()).unwrap();
+    let own = folder.path().join("own");
+    fs::create_dir(&own).unwrap();
+    campaign(&own, "mf4", |sweep| mdf4::file(std::slice::from_ref(sweep)));
+    let mut low = sweeps().remove(0);
+    spoil(&mut low);
+    fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
+    open(&own).unwrap().notices
+}
+
+/// The samples of a channel.
+fn samples<'a>(group: &'a mut Group, name: &str) -> &'a mut Vec<f64> {
+    let channel = group.channels.iter_mut().find(|channel| channel.name == name);
+    &mut channel.unwrap().samples
+}
+
+fn only(notices: &[String], parts: &[&str]) {
+    assert_eq!(notices.len(), 1, "{notices:#?}");
+    for part in parts {
+        assert!(notices[0].contains(part), "no `{part}` in {}", notices[0]);
+    }
+}
+
+#[test]
+fn a_sound_campaign_says_nothing() {
+    assert_eq!(notices(|_| ()), [] as [&str; 0]);
+}
+
+#[test]
+fn flaws_come_with_run_channel_and_time() {
+    let clip = |sweep: &mut Group| {
+        samples(sweep, "FL_Body_Acc_Z")
+            .iter_mut()
+            .for_each(|value| *value = value.min(0.04))
+    };
+    only(
+        &notices(clip),
+        &[
+            "sweep_0.mf4, `body_left_z`",
+            "cut off at 0.392",
+            "m/s^2: the channel is clipped",
+        ],
+    );
+    let spike = |sweep: &mut Group| samples(sweep, "FL_Body_Acc_Z")[20_000] = 3.0;
+    only(
+        &notices(spike),
+        &["sweep_0.mf4, `body_left_z`, 20.000 s: a spike to 29.4"],
+    );
+    let drift = |sweep: &mut Group| {
+        samples(sweep, "FL_Body_Acc_Z")
+            .iter_mut()
+            .enumerate()
+            .for_each(|(k, value)| *value += 1e-6 * k as f64)
+    };
+    only(
+        &notices(drift),
+        &["sweep_0.mf4, `body_left_z`, 0.000 s to 43.250 s: the mean drifts by 0.42"],
+    );
+}
+
+#[test]
+fn a_sensor_that_hangs_upside_down_is_said() {
+    let turn = |sweep: &mut Group| {
+        samples(sweep, "FL_Hub_Acc_Z")
+            .iter_mut()
+            .for_each(|value| *value = -*value)
+    };
+    only(
+        &notices(turn),
+        &["sweep_0.mf4, `wheel_left_z`", "moves against `wheel_right_z`", "`sign`"],
+    );
+}
+
+#[test]
+fn sensors_that_were_swapped_are_said() {
+    let swap = |sweep: &mut Group| {
+        let hub = samples(sweep, "FL_Hub_Acc_Z").clone();
+        let body = std::mem::replace(samples(sweep, "FL_Body_Acc_Z"), hub);
+        *samples(sweep, "FL_Hub_Acc_Z") = body;
+    };
+    only(
+        &notices(swap),
+        &[
+            "`wheel_left_z`",
+            "resembles `body_right_z` more than `wheel_right_z`",
+            "`body_left_z`",
+            "look swapped",
+        ],
+    );
+}
+
+#[test]
+fn a_channel_that_one_run_lacks_is_said() {
+    let lose = |sweep: &mut Group| sweep.channels.retain(|channel| channel.name != "FL_Body_Acc_Z");
+    only(
+        &notices(lose),
+        &[
+            "sweep_0.mf4, channel `FL_Body_Acc_Z`",
+            "`body_left_z`",
+            "other runs of the kind have it",
+        ],
+    );
+}
+
+#[test]
+fn a_fit_and_a_search_say_it_too() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("rig.toml"), mapping()).unwrap();
+    let own = folder.path().join("own");
+    fs::create_dir(&own).unwrap();
+    campaign(&own, "mf4", |sweep| mdf4::file(std::slice::from_ref(sweep)));
+    let mut low = sweeps().remove(0);
+    samples(&mut low, "FL_Body_Acc_Z")[20_000] = 3.0;
+    fs::write(own.join("sweep_0.mf4"), mdf4::file(&[low])).unwrap();
+    for verb in ["fit own --starts 1", "discover own --format json"] {
+        let (status, said) = qcar(folder.path(), verb);
+        assert!(
+            status < 2 && said.contains("sweep_0.mf4, `body_left_z`, 20.000 s: a spike"),
+            "{verb}: {said}"
+        );
+    }
+}
+
+/// A campaign of plain tables is read as ever; only `check` looks at what its samples show.
+#[test]
+fn plain_tables_are_checked_too() {
+    let keys = "unit = \"m/s^2\"";
+    let sweep = "[[run]]\nkind = \"sweep\"\nfile = \"rig.csv\"\nrole = \"fit\"\npeak_velocity = 0.1\nstart_frequency = 1\n\
+                 end_frequency = 10\nspacing = \"linear\"\nsample_rate = 100\n";
+    let rows = (0..500).map(|k| format!("{:.2},{:.5},0.5\n", f64::from(k) / 100.0, (0.3 * f64::from(k)).sin()));
+    let table = "time,pad_left_z,body_left_z\n".to_string() + &rows.collect::<String>();
+    let folder = folder(
+        &(channel("pad", keys) + &channel("body", keys) + sweep),
+        ("rig.csv", table.as_bytes()),
+    );
+    assert_eq!(open(folder.path()).unwrap().notices, [] as [&str; 0]);
+    let (status, said) = qcar(folder.path(), "check .");
+    assert_eq!(status, 1, "{said}");
+    assert!(said.starts_with(".: not fit for a fit\n"), "{said}");
+    assert!(
+        said.contains("rig.csv, `body_left_z`, 0.000 s to 4.990 s: every sample is 0.5 m/s^2: the channel is dead"),
+        "{said}"
+    );
+}

@@ -1,0 +1,85 @@
+//! A campaign that `qcar import` begins with the files of a rig, filled in and fitted.
+
+use std::fs;
+use std::path::Path;
+
+use crate::formats::sweeps;
+use crate::writers::mdf4;
+use crate::{open, qcar};
+
+fn files(folder: &Path) {
+    for (sweep, name) in sweeps().iter().zip(["low.mf4", "middle.mf4", "high.mf4"]) {
+        fs::write(folder.join(name), mdf4::file(std::slice::from_ref(sweep))).unwrap();
+    }
+}
+
+#[test]
+fn an_imported_campaign_fits_once_it_is_filled_in() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    let (status, said) = qcar(
+        folder.path(),
+        "import low.mf4 middle.mf4 high.mf4 --out rig --model axle_a",
+    );
+    assert_eq!(status, 0, "{said}");
+    for part in [
+        "FL_Hub_Acc_Z",
+        "wheel_left_z",
+        "a sweep from 0.5 to 30 Hz, its frequency growing as a logarithm does, at 0.05 m/s",
+        "rig/campaign.toml written",
+    ] {
+        assert!(said.contains(part), "no `{part}` in\n{said}");
+    }
+    let manifest = folder.path().join("rig/campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    assert!(
+        text.contains("source = \"FR_Body_Acc_Z\"\n# in g, as the file says"),
+        "{text}"
+    );
+    assert!(text.contains("file = \"../low.mf4\""), "{text}");
+    // What the files cannot say, and the sensor that hangs upside down.
+    let known = [
+        ("m_corner", 490.9),
+        ("m_tm", 5.1),
+        ("m_half_vehicle", 1015.0),
+        ("m_wheel_other_axle", 36.4),
+    ];
+    let filled = known.iter().fold(text, |text, (name, value)| {
+        text.replace(&format!("# {name} ="), &format!("{name} = {value} #"))
+    });
+    let filled = filled.replace("source = \"FR_Hub_Acc_Z\"\n", "source = \"FR_Hub_Acc_Z\"\nsign = -1\n");
+    fs::write(&manifest, filled).unwrap();
+    let (status, said) = qcar(folder.path(), "check rig");
+    assert!(status == 0 && said.starts_with("rig: ok\n"), "{said}");
+    let (status, said) = qcar(folder.path(), "fit rig --starts 4");
+    assert!(status == 0 && said.contains("converged"), "{said}");
+}
+
+#[test]
+fn nothing_is_written_over_or_left_half_written() {
+    let folder = tempfile::tempdir().unwrap();
+    files(folder.path());
+    fs::create_dir(folder.path().join("rig")).unwrap();
+    let (status, said) = qcar(folder.path(), "import low.mf4 --out rig");
+    assert!(status == 2 && said.contains("there already"), "{said}");
+    assert_eq!(fs::read_dir(folder.path().join("rig")).unwrap().count(), 0);
+    fs::write(folder.path().join("cut.mf4"), b"MDF     4.10    ").unwrap();
+    let (status, said) = qcar(folder.path(), "import low.mf4 cut.mf4 --out other");
+    assert!(status == 2 && said.contains("cut.mf4"), "{said}");
+    assert!(!folder.path().join("other").exists());
+}
+
+#[test]
+fn a_workbook_of_a_kinematics_rig_becomes_a_curve() {
+    let folder = tempfile::tempdir().unwrap();
+    let sample = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples/table/kc_bounce.xlsx");
+    let (status, said) = qcar(folder.path(), &format!("import {} --out kc", sample.display()));
+    assert!(
+        status == 0 && said.contains("taken for a K&C curve, `Vertical force` over `Wheel travel`"),
+        "{said}"
+    );
+    let campaign = open(&folder.path().join("kc")).unwrap();
+    let curve = campaign.curve(&campaign.runs[0]).unwrap();
+    assert_eq!((curve.displacement.len(), curve.displacement[0]), (81, -0.08));
+    assert!(curve.force.iter().all(|force| (1632.0..7295.0).contains(force)));
+}
