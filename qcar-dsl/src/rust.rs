@@ -6,12 +6,9 @@
 
 mod about;
 mod function;
-mod labels;
 mod names;
 mod parameters;
-mod pieces;
 mod seam;
-mod straight;
 mod typed;
 
 use crate::schedule::Compiled;
@@ -32,7 +29,7 @@ pub fn module(compiled: &Compiled) -> String {
         typed::functions(compiled),
         seam::implementation(compiled) + &seam::blocks(&compiled.about),
         about::about(&compiled.about),
-        format!("{STRAIGHT}{}}}\n", indent(&straight::functions(compiled).join("\n"))),
+        format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
     ];
     let body = sections.join("\n");
     let fingerprint = format!(

@@ -1,45 +1,73 @@
 //! A straight-line program as Rust: one operation a line, a result stored where it is computed.
 
 use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::expr::{Curve, Function};
-use crate::program::{Op, Program, Value};
+use crate::expr::{self, Curve};
+use crate::program::{Op, Value};
+use crate::schedule::Compiled;
+use crate::straight::{FREQUENCIES, Function, Leaf, Local, Locals, Pieces, Straight, op, operations};
 
-use super::names::Names;
-use super::pieces::{Leaf, Pieces, op, operations};
+use super::names::names;
 
-/// How a program becomes a function.
-pub struct Signature<'a> {
-    /// The name of the function.
-    pub name: String,
-    /// Its doc comment, line by line; the operation count is added.
-    pub doc: Vec<String>,
-    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
-    pub arguments: Vec<(&'static str, String)>,
-    /// What each result is, for a comment.
-    pub results: Vec<String>,
-    /// Where a leaf is read, and what a reviewer calls it.
-    pub leaf: &'a dyn Fn(Leaf) -> Local,
-    /// What a reviewer calls a value of the program, where the model has a name for it.
-    pub labels: BTreeMap<Value, String>,
-    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
-    pub lines: bool,
+/// All straight-line functions of a model.
+pub fn functions(compiled: &Compiled) -> Vec<String> {
+    let straight = Straight::new(compiled);
+    let functions = straight.functions("a block of lines");
+    let written = functions.iter().map(|function| {
+        let signature = Signature {
+            function,
+            doc: function.doc.lines().map(String::from).collect(),
+            arguments: function
+                .arguments
+                .iter()
+                .map(|&argument| (argument, kind(argument)))
+                .collect(),
+            leaf: &|leaf| local(&straight, leaf, function.arguments),
+            lines: function.is_response(),
+        };
+        self::function(&signature)
+    });
+    written.collect()
 }
 
-/// A leaf as the function reads it.
-pub struct Local {
-    /// The argument, `p`.
-    pub argument: &'static str,
-    /// What of it, `[3]`.
-    pub place: String,
-    /// What a reviewer calls it, `k_tire`.
-    pub name: String,
+fn kind(argument: &str) -> &'static str {
+    match argument {
+        "p" => "&[f64; PARAMETERS]",
+        "constants" => "&[f64; CONSTANTS]",
+        "x" => "&[f64; STATES]",
+        "u" => "&[f64; INPUTS]",
+        "contact" => "&seam::Contact",
+        FREQUENCIES => "&[f64; LINES]",
+        _ => "f64",
+    }
+}
+
+/// Where a leaf is read; a frequency is that of a line.
+fn local(straight: &Straight, leaf: Leaf, arguments: &[&str]) -> Local {
+    let mut local = straight.local(leaf, arguments);
+    if local.argument == FREQUENCIES {
+        local.place = "[line]".into();
+    }
+    local
+}
+
+/// How a program becomes a function.
+struct Signature<'a> {
+    function: &'a Function<'a>,
+    /// Its doc comment, line by line; the operation count is added.
+    doc: Vec<String>,
+    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
+    arguments: Vec<(&'static str, &'static str)>,
+    /// Where a leaf is read, and what a reviewer calls it.
+    leaf: &'a dyn Fn(Leaf) -> Local,
+    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
+    lines: bool,
 }
 
 /// The Rust text of a program: one function, or one that calls several in turn.
-pub fn function(signature: &Signature, program: &Program) -> String {
-    let cut = Pieces::cut(program);
+fn function(signature: &Signature) -> String {
+    let cut = Pieces::cut(signature.function.program);
     let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(signature, &cut, piece).function());
     match cut.pieces.len() {
         1 => pieces.collect(),
@@ -61,12 +89,17 @@ fn caller(signature: &Signature, cut: &Pieces) -> String {
         .iter()
         .map(|(name, kind)| format!("{name}: {kind}"))
         .collect();
-    text += &heading(&signature.name, arguments, signature.lines, cut.program.outputs.len());
+    text += &heading(
+        &signature.function.name,
+        arguments,
+        signature.lines,
+        cut.program.outputs.len(),
+    );
     text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
         text += &format!(
             "    {}_{piece}({}, &mut kept, out);\n",
-            signature.name,
+            signature.function.name,
             names.join(", ")
         );
     }
@@ -93,7 +126,7 @@ fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) 
 fn inline(signature: &Signature, whole: bool) -> &'static str {
     match (signature.lines, whole) {
         (true, _) => "#[inline(always)]\n",
-        (false, true) if signature.name == "rolling_derivative" => "#[inline]\n",
+        (false, true) if signature.function.name == "rolling_derivative" => "#[inline]\n",
         (false, true) => "",
         (false, false) => "#[inline(never)]\n",
     }
@@ -108,38 +141,22 @@ struct Printer<'a> {
     signature: &'a Signature<'a>,
     cut: &'a Pieces<'a>,
     piece: usize,
-    /// The local variable of each value that the piece reads, takes or computes; empty for the others.
-    locals: Vec<String>,
-    /// The results to which each value goes.
-    results: BTreeMap<Value, Vec<usize>>,
+    locals: Locals,
 }
 
 impl<'a> Printer<'a> {
     fn new(signature: &'a Signature<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
-        let mut names = Names::beside(signature.arguments.iter().map(|(argument, _)| *argument));
-        let mut locals = vec![String::new(); cut.program.ops.len()];
-        for (leaf, value) in cut.read(piece) {
-            locals[value.0 as usize] = names.take(&(signature.leaf)(leaf).name);
-        }
-        for value in cut.taken(piece).into_iter().chain(cut.pieces[piece].iter().copied()) {
-            let label = signature.labels.get(&value).cloned();
-            locals[value.0 as usize] = names.take(&label.unwrap_or_else(|| format!("v{}", value.0)));
-        }
-        let mut results: BTreeMap<Value, Vec<usize>> = BTreeMap::new();
-        for (place, &value) in cut.program.outputs.iter().enumerate() {
-            results.entry(value).or_default().push(place);
-        }
+        let free = names(signature.function.arguments);
         Printer {
             signature,
             cut,
             piece,
-            locals,
-            results,
+            locals: Locals::new(signature.function, cut, piece, free, signature.leaf),
         }
     }
 
     fn function(&self) -> String {
-        let Signature { name, lines, .. } = self.signature;
+        let (name, lines) = (&self.signature.function.name, &self.signature.lines);
         let count = self.cut.pieces[self.piece].len();
         let results = self.cut.program.outputs.len();
         if self.cut.pieces.len() == 1 {
@@ -226,13 +243,18 @@ impl<'a> Printer<'a> {
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
         }
-        let results = self.results.get(&value).into_iter().flatten();
-        statements.extend(results.map(|&place| self.store(place, value)));
+        let results = self.locals.results(value);
+        statements.extend(results.map(|place| self.store(place, value)));
         statements
     }
 
     fn store(&self, place: usize, value: Value) -> String {
-        let comment = self.signature.results.get(place).map(|result| format!(" // {result}"));
+        let comment = self
+            .signature
+            .function
+            .results
+            .get(place)
+            .map(|result| format!(" // {result}"));
         format!(
             "out[{place}]{} = {};{}",
             self.line(),
@@ -249,7 +271,7 @@ impl<'a> Printer<'a> {
     }
 
     fn local(&self, value: Value) -> &str {
-        &self.locals[value.0 as usize]
+        self.locals.name(value)
     }
 
     fn operation(&self, value: Value) -> String {
@@ -292,9 +314,6 @@ const ENTRIES: usize = 8;
 /// What interpolates at run time.
 const TABLE: &str = "::qcar_runtime::generated::table";
 
-/// The argument of a frequency response that has a value for each line.
-pub const FREQUENCIES: &str = "frequencies";
-
 fn indent(statements: &[String], depth: usize) -> String {
     let margin = "    ".repeat(depth);
     let lines = statements.iter().flat_map(|statement| statement.lines());
@@ -314,17 +333,17 @@ fn literal(number: f64) -> String {
     }
 }
 
-fn function_path(f: Function) -> &'static str {
+fn function_path(f: expr::Function) -> &'static str {
     match f {
-        Function::Abs => "f64::abs",
-        Function::Sign => "sign",
-        Function::Sqrt => "f64::sqrt",
-        Function::Exp => "f64::exp",
-        Function::Ln => "f64::ln",
-        Function::Sin => "f64::sin",
-        Function::Cos => "f64::cos",
-        Function::Tan => "f64::tan",
-        Function::Atan => "f64::atan",
-        Function::Tanh => "f64::tanh",
+        expr::Function::Abs => "f64::abs",
+        expr::Function::Sign => "sign",
+        expr::Function::Sqrt => "f64::sqrt",
+        expr::Function::Exp => "f64::exp",
+        expr::Function::Ln => "f64::ln",
+        expr::Function::Sin => "f64::sin",
+        expr::Function::Cos => "f64::cos",
+        expr::Function::Tan => "f64::tan",
+        expr::Function::Atan => "f64::atan",
+        expr::Function::Tanh => "f64::tanh",
     }
 }

@@ -1,4 +1,16 @@
-//! The straight-line functions of a model: which programs, over which arguments, under which doc comments.
+//! The straight-line functions of a model, in no language yet: which programs, over which arguments, and what a reviewer
+//! calls what they read, compute and give.
+
+// Names of the results.
+mod results;
+// Names of the values.
+mod labels;
+// A long program in pieces.
+mod pieces;
+// Names of the local variables.
+mod locals;
+// Where a law bends.
+mod kinks;
 
 use std::collections::BTreeMap;
 
@@ -6,71 +18,64 @@ use crate::about::{About, Source};
 use crate::equations::Sheet;
 use crate::expr::Symbol;
 use crate::notation::Notation;
-use crate::program::Program;
+use crate::program::{Program, Value};
 use crate::schedule::Compiled;
 
-use super::about::{entry_name, parameter_jacobian_names, sensitivity_names};
-use super::function::{FREQUENCIES, Local, Signature, function};
-use super::labels::{labels, of_constants};
-use super::pieces::Leaf;
+pub use kinks::kinks;
+pub use locals::{Locals, Names};
+pub use pieces::{Leaf, Pieces, op, operations};
+pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};
 
-/// All straight-line functions.
-pub fn functions(compiled: &Compiled) -> Vec<String> {
-    let printer = Straight {
-        compiled,
-        constants: of_constants(compiled),
-    };
-    let (programs, about) = (&compiled.programs, &compiled.about);
-    let rates: Vec<String> = about
-        .states
-        .iter()
-        .map(|state| format!("d/dt {}", state.name))
-        .collect();
-    let seen: Vec<String> = about.outputs.iter().map(|output| output.name.clone()).collect();
-    let entries: Vec<String> = about.matrices.iter().map(|entry| entry_name(about, entry)).collect();
-    let mut functions = vec![
-        printer.print("prepare", PREPARE, &["p"], printer.constants.clone(), &programs.prepare),
-        printer.print(
-            "derivative",
-            &printer.equations(),
-            STATE,
-            rates.clone(),
-            &programs.derivative,
-        ),
-        printer.print("outputs", OUTPUTS, STATE, seen.clone(), &programs.outputs),
-        printer.print("matrices", MATRICES, POINT, entries, &programs.matrices),
-        printer.print(
-            "sensitivities",
-            SENSITIVITIES,
-            POINT,
-            sensitivity_names(about),
-            &programs.sensitivities,
-        ),
-        printer.print(
-            "parameter_jacobian",
-            PARAMETER_JACOBIAN,
-            POINT,
-            parameter_jacobian_names(about),
-            &programs.parameter_jacobian,
-        ),
-    ];
-    for (place, response) in programs.responses.iter().enumerate() {
-        functions.push(printer.response(place, "", &response.value));
-        functions.push(printer.response(place, "_jacobian", &response.with_jacobian));
+use labels::{labels, of_constants};
+
+/// A function that is to be written in a language.
+pub struct Function<'a> {
+    /// Its name.
+    pub name: String,
+    /// What it gives, and from where; several lines.
+    pub doc: String,
+    /// The names of the arguments that it may read.
+    pub arguments: &'static [&'static str],
+    /// What each result is, for a comment.
+    pub results: Vec<String>,
+    /// What it computes.
+    pub program: &'a Program,
+    /// What a reviewer calls a value of the program, where the model has a name for it.
+    pub labels: BTreeMap<Value, String>,
+}
+
+impl Function<'_> {
+    /// True for a frequency response.
+    pub fn is_response(&self) -> bool {
+        self.arguments.contains(&FREQUENCIES)
     }
-    if let Some(rolling) = &programs.rolling {
-        let force = vec!["force".to_string()];
-        functions.push(printer.print("contact_force", &printer.tyre(), CONTACT, force, &rolling.contact_force));
-        functions.push(printer.print("rolling_derivative", ROLLING, ROLLS, rates, &rolling.derivative));
-        functions.push(printer.print("rolling_outputs", ROLLING_OUTPUTS, ROLLS, seen, &rolling.outputs));
-    }
-    functions
+}
+
+/// A leaf as a function reads it.
+pub struct Local {
+    /// The argument, `p`.
+    pub argument: &'static str,
+    /// What of it, `[3]`.
+    pub place: String,
+    /// What a reviewer calls it, `k_tire`.
+    pub name: String,
+}
+
+/// The argument of a frequency response.
+pub const FREQUENCIES: &str = "frequencies";
+
+/// The functions of one model.
+pub struct Straight<'a> {
+    compiled: &'a Compiled,
+    /// What a reviewer calls each prepared constant.
+    constants: Vec<String>,
 }
 
 const STATE: &[&str] = &["constants", "x", "u"];
 const POINT: &[&str] = &["p", "x", "u"];
 const CONTACT: &[&str] = &["constants", "x", "s", "v"];
 const ROLLS: &[&str] = &["constants", "x", "u", "contact"];
+const RESPONDS: &[&str] = &["constants", FREQUENCIES];
 
 const PREPARE: &str = "What depends on the parameters alone, once for a parameter set.";
 const OUTPUTS: &str = "The outputs `y = h(x, u)`, see [`derivative`].";
@@ -81,58 +86,91 @@ const ROLLING: &str =
     "The equations of motion while the tyre rolls over a profile: the forces of `contact` act on the wheel, and
 the inner states of the tyre follow its stretch and rate.";
 const ROLLING_OUTPUTS: &str = "The outputs while the tyre rolls over a profile.";
+const KINKS: &str = "What changes its sign where a law of the equations of motion bends or jumps.";
 
-/// Prints the programs of one model.
-struct Straight<'a> {
-    compiled: &'a Compiled,
-    /// What a reviewer calls each prepared constant.
-    constants: Vec<String>,
-}
+impl<'a> Straight<'a> {
+    /// Names what the programs of a model read.
+    pub fn new(compiled: &'a Compiled) -> Self {
+        let constants = of_constants(compiled);
+        Straight { compiled, constants }
+    }
 
-impl Straight<'_> {
-    fn print(
+    /// All functions; a frequency response is one `at` what the language says.
+    pub fn functions(&self, at: &str) -> Vec<Function<'a>> {
+        let (programs, about) = (&self.compiled.programs, &self.compiled.about);
+        let rates: Vec<String> = about
+            .states
+            .iter()
+            .map(|state| format!("d/dt {}", state.name))
+            .collect();
+        let seen: Vec<String> = about.outputs.iter().map(|output| output.name.clone()).collect();
+        let motion = self.equations();
+        let mut functions = vec![
+            self.function("prepare", PREPARE, &["p"], self.constants.clone(), &programs.prepare),
+            self.function("derivative", &motion, STATE, rates.clone(), &programs.derivative),
+            self.function("outputs", OUTPUTS, STATE, seen.clone(), &programs.outputs),
+            self.matrices(),
+            self.function(
+                "sensitivities",
+                SENSITIVITIES,
+                POINT,
+                sensitivity_names(about),
+                &programs.sensitivities,
+            ),
+            self.function(
+                "parameter_jacobian",
+                PARAMETER_JACOBIAN,
+                POINT,
+                parameter_jacobian_names(about),
+                &programs.parameter_jacobian,
+            ),
+        ];
+        for (place, response) in programs.responses.iter().enumerate() {
+            functions.push(self.response(place, "", &response.value, at));
+            functions.push(self.response(place, "_jacobian", &response.with_jacobian, at));
+        }
+        if let Some(rolling) = &programs.rolling {
+            let force = vec!["force".to_string()];
+            functions.push(self.function("contact_force", &self.tyre(), CONTACT, force, &rolling.contact_force));
+            functions.push(self.function("rolling_derivative", ROLLING, ROLLS, rates, &rolling.derivative));
+            functions.push(self.function("rolling_outputs", ROLLING_OUTPUTS, ROLLS, seen, &rolling.outputs));
+        }
+        functions
+    }
+
+    /// The nonzeros of A, B, C and D.
+    pub fn matrices(&self) -> Function<'a> {
+        let about = &self.compiled.about;
+        let entries = about.matrices.iter().map(|entry| entry_name(about, entry)).collect();
+        self.function("matrices", MATRICES, POINT, entries, &self.compiled.programs.matrices)
+    }
+
+    /// What [`kinks`] of the equations of motion gives.
+    pub fn kinks<'p>(&self, program: &'p Program) -> Function<'p> {
+        let nameless = vec![String::new(); program.outputs.len()];
+        self.function("kinks", KINKS, STATE, nameless, program)
+    }
+
+    fn function<'p>(
         &self,
         name: &str,
         doc: &str,
-        arguments: &[&'static str],
+        arguments: &'static [&'static str],
         results: Vec<String>,
-        program: &Program,
-    ) -> String {
-        let lines = arguments.contains(&FREQUENCIES);
-        let signature = Signature {
+        program: &'p Program,
+    ) -> Function<'p> {
+        Function {
             name: name.into(),
-            doc: doc.lines().map(String::from).collect(),
-            arguments: arguments
-                .iter()
-                .map(|&argument| (argument, self.kind(argument)))
-                .collect(),
+            doc: doc.into(),
+            arguments,
             results,
-            leaf: &|leaf| self.local(leaf, arguments),
-            // A response is complex throughout: beside its leaves nothing in it has a name.
-            labels: if lines {
-                BTreeMap::new()
-            } else {
-                labels(self.compiled, program)
-            },
-            lines,
-        };
-        function(&signature, program)
-    }
-
-    fn kind(&self, argument: &str) -> String {
-        match argument {
-            "p" => "&[f64; PARAMETERS]".into(),
-            "constants" => "&[f64; CONSTANTS]".into(),
-            "x" => "&[f64; STATES]".into(),
-            "u" => "&[f64; INPUTS]".into(),
-            "contact" => "&seam::Contact".into(),
-            FREQUENCIES => "&[f64; LINES]".into(),
-            _ => "f64".into(),
+            program,
+            labels: labels(self.compiled, program),
         }
     }
 
     /// Where a leaf is read.
-    fn local(&self, leaf: Leaf, arguments: &[&'static str]) -> Local {
+    pub fn local(&self, leaf: Leaf, arguments: &[&str]) -> Local {
         let at = |argument, place: usize, name: &str| Local {
             argument,
             place: format!("[{place}]"),
@@ -162,11 +200,7 @@ impl Straight<'_> {
         let rolls = arguments.contains(&"contact");
         match symbol {
             Symbol::Parameter(place) => at("p", place as usize, &about.parameters[place as usize].name),
-            Symbol::Frequency => Local {
-                argument: FREQUENCIES,
-                place: "[line]".into(),
-                name: "omega".into(),
-            },
+            Symbol::Frequency => whole(FREQUENCIES, "omega"),
             Symbol::Stretch(_) if rolls => of_contact(".s", "s_contact"),
             Symbol::Rate(_) if rolls => of_contact(".v", "v_contact"),
             Symbol::ContactForce(axis) => of_contact(&format!(".force[{axis}]"), &format!("f_contact_{axis}")),
@@ -177,7 +211,7 @@ impl Straight<'_> {
     }
 
     /// The response to an excitation, alone or with its parameter Jacobian.
-    fn response(&self, place: usize, suffix: &str, program: &Program) -> String {
+    fn response<'p>(&self, place: usize, suffix: &str, program: &'p Program, at: &str) -> Function<'p> {
         let about = &self.compiled.about;
         let excitation = &about.excitations[place];
         let layout = &about.responses[place];
@@ -192,7 +226,7 @@ impl Straight<'_> {
             rows.extend(complex(layout.jacobian.iter().map(derivative)));
         }
         let doc = format!(
-            "The response per {} of `{}` at a block of lines{}: `Z(ω) = K + jωC - ω²M`, eliminated without fill.\n
+            "The response per {} of `{}` at {at}{}: `Z(ω) = K + jωC - ω²M`, eliminated without fill.\n
 Real parts of all rows, then imaginary parts{}.",
             if matches!(excitation.source, Source::Force(_)) {
                 "N"
@@ -211,13 +245,17 @@ Real parts of all rows, then imaginary parts{}.",
                 "; the same of the Jacobian"
             },
         );
-        self.print(
-            &response_name(about, place, suffix),
-            &doc,
-            &["constants", FREQUENCIES],
-            rows,
+        // A response is complex throughout: beside its leaves nothing in it has a name.
+        let labels = BTreeMap::new();
+        let name = response_name(about, place, suffix);
+        Function {
+            name,
+            doc,
+            arguments: RESPONDS,
+            results: rows,
             program,
-        )
+            labels,
+        }
     }
 
     /// The equations and the lines of the model that say so.

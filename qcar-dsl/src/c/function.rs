@@ -1,0 +1,355 @@
+//! A straight-line program as C: one operation a line, a result stored where it is computed.
+
+use std::borrow::Cow;
+use std::collections::BTreeSet;
+
+use crate::expr::{self, Curve};
+use crate::program::{Op, Value};
+use crate::schedule::Compiled;
+use crate::straight::{FREQUENCIES, Function, Leaf, Local, Locals, Names, Pieces, Straight, op};
+
+use super::support::{BEHIND, LARGER, SIGN, SMALLER, TABLE};
+use super::text::{comment, number, remark};
+
+/// The functions of a model, printed.
+pub struct Functions {
+    /// For the header.
+    pub declarations: String,
+    /// For the source.
+    pub definitions: String,
+}
+
+impl Functions {
+    /// Prints all of them.
+    pub fn print(functions: &[Function], compiled: &Compiled) -> Functions {
+        let straight = Straight::new(compiled);
+        let mut printed = Functions {
+            declarations: String::new(),
+            definitions: String::new(),
+        };
+        for function in functions {
+            let signature = Signature::new(function, &compiled.about.name);
+            let declared = signature.heading("", &[]);
+            printed.declarations += &format!("{}{declared};\n\n", comment(&function.doc));
+            printed.definitions += &signature.definitions(&straight);
+        }
+        printed
+    }
+}
+
+/// How a function is called.
+struct Signature<'a> {
+    function: &'a Function<'a>,
+    /// The name of the model, before that of the function.
+    model: &'a str,
+}
+
+impl<'a> Signature<'a> {
+    fn new(function: &'a Function<'a>, model: &'a str) -> Self {
+        Signature { function, model }
+    }
+
+    fn name(&self) -> String {
+        format!("{}_{}", self.model, self.function.name)
+    }
+
+    /// `void axle_a_derivative(const double *constants, …, double *out)`
+    fn heading(&self, suffix: &str, more: &[&str]) -> String {
+        let arguments = self.function.arguments.iter().map(|argument| self.argument(argument));
+        let more = more.iter().map(|argument| argument.to_string());
+        let all: Vec<String> = arguments.chain(more).chain(["double *out".into()]).collect();
+        format!("void {}{suffix}({})", self.name(), all.join(", "))
+    }
+
+    fn argument(&self, argument: &str) -> String {
+        match argument {
+            "contact" => format!("{}_contact contact", self.model),
+            FREQUENCIES => "double omega".into(),
+            "s" | "v" => format!("double {argument}"),
+            _ => format!("const double *{argument}"),
+        }
+    }
+
+    fn definitions(&self, straight: &Straight) -> String {
+        let cut = Pieces::cut(self.function.program);
+        let count = cut.pieces.len();
+        let pieces = (0..count).map(|piece| Printer::new(self, straight, &cut, piece).definition());
+        let pieces: String = pieces.collect();
+        if count == 1 {
+            pieces
+        } else {
+            pieces + &self.caller(&cut)
+        }
+    }
+
+    /// The function that hands its arguments to the pieces.
+    fn caller(&self, cut: &Pieces) -> String {
+        let arguments = self.function.arguments.iter().map(|&argument| passed(argument));
+        let arguments = arguments.collect::<Vec<_>>().join(", ");
+        let calls =
+            (1..=cut.pieces.len()).map(|piece| format!("    {}_{piece}({arguments}, kept, out);\n", self.name()));
+        let kept = format!("    double kept[{}];\n", cut.kept.len().max(1));
+        format!(
+            "{}\n{{\n{kept}{}}}\n\n",
+            self.heading("", &[]),
+            calls.collect::<String>()
+        )
+    }
+}
+
+/// What an argument is called inside of a function.
+fn passed(argument: &'static str) -> &'static str {
+    if argument == FREQUENCIES { "omega" } else { argument }
+}
+
+/// Prints one piece of a program, which may be all of it.
+struct Printer<'a> {
+    signature: &'a Signature<'a>,
+    straight: &'a Straight<'a>,
+    cut: &'a Pieces<'a>,
+    piece: usize,
+    locals: Locals,
+}
+
+impl<'a> Printer<'a> {
+    fn new(signature: &'a Signature<'a>, straight: &'a Straight<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
+        let function = signature.function;
+        let arguments = function.arguments.iter().map(|&argument| passed(argument));
+        let free = Names::beside(RESERVED.iter().copied().chain(arguments));
+        let read = |leaf: Leaf| straight.local(leaf, function.arguments);
+        Printer {
+            signature,
+            straight,
+            cut,
+            piece,
+            locals: Locals::new(function, cut, piece, free, &read),
+        }
+    }
+
+    fn definition(&self) -> String {
+        let heading = match self.cut.pieces.len() {
+            1 => self.signature.heading("", &[]),
+            _ => {
+                let suffix = format!("_{}", self.piece + 1);
+                format!("static {}", self.signature.heading(&suffix, &["double *kept"]))
+            }
+        };
+        let lines = self.body().into_iter().map(|statement| format!("    {statement}\n"));
+        format!("{heading}\n{{\n{}}}\n\n", lines.collect::<String>())
+    }
+
+    fn body(&self) -> Vec<String> {
+        let cut = self.cut;
+        let leaves: Vec<(Local, Value)> = cut
+            .read(self.piece)
+            .into_iter()
+            .map(|(leaf, value)| (self.straight.local(leaf, self.signature.function.arguments), value))
+            .collect();
+        // What the caller gives by its name alone needs no variable.
+        let reads = leaves.iter().map(|(local, value)| {
+            let (name, place) = (self.locals.name(*value), &local.place);
+            format!("const double {name} = {}{place};", passed(local.argument))
+        });
+        let taken = cut.taken(self.piece).into_iter();
+        let taken =
+            taken.map(|value| format!("const double {} = kept[{}];", self.locals.name(value), cut.kept[&value]));
+        let stored = cut
+            .stored(self.piece)
+            .into_iter()
+            .map(|(place, value)| self.store(place, value));
+        let computed = cut.pieces[self.piece].iter().flat_map(|&value| self.compute(value));
+        let unused = self.unused(leaves.iter().map(|(local, _)| local.argument).collect());
+        let taken: Vec<String> = taken.collect();
+        let nothing_taken = taken.is_empty();
+        let statements: Vec<String> = reads.chain(taken).chain(computed).chain(stored).collect();
+        let mut voids = unused;
+        let keeps = statements.iter().any(|statement| statement.starts_with("kept["));
+        if cut.pieces.len() > 1 && nothing_taken && !keeps {
+            voids.push("(void)kept;".into());
+        }
+        if !statements.iter().any(|statement| statement.starts_with("out[")) {
+            voids.push("(void)out;".into());
+        }
+        // Declarations come first in every style of C.
+        statements.into_iter().chain(voids).collect()
+    }
+
+    /// Says that an argument is not read on purpose.
+    fn unused(&self, read: BTreeSet<&str>) -> Vec<String> {
+        let arguments = self.signature.function.arguments.iter();
+        let unread = arguments.filter(|argument| !read.contains(**argument));
+        unread.map(|argument| format!("(void){};", passed(argument))).collect()
+    }
+
+    /// The statements that compute a value, and those that put it where it is wanted.
+    fn compute(&self, value: Value) -> Vec<String> {
+        let name = self.locals.name(value);
+        let mut statements = match op(self.cut.program, value) {
+            Op::Table(order, x, curve) => self.table(name, order, x, &self.cut.program.curves[curve as usize]),
+            _ => vec![format!("const double {name} = {};", self.operation(value))],
+        };
+        if let Some(place) = self.cut.kept.get(&value) {
+            statements.push(format!("kept[{place}] = {name};"));
+        }
+        let results = self.locals.results(value);
+        statements.extend(results.map(|place| self.store(place, value)));
+        statements
+    }
+
+    fn store(&self, place: usize, value: Value) -> String {
+        let result = self.signature.function.results.get(place).map_or("", |result| result);
+        format!("out[{place}] = {};{}", self.operand(value), remark(result))
+    }
+
+    fn operand(&self, value: Value) -> Cow<'_, str> {
+        match op(self.cut.program, value) {
+            Op::Constant(constant) => number(constant).into(),
+            _ => self.locals.name(value).into(),
+        }
+    }
+
+    fn operation(&self, value: Value) -> String {
+        let at = |v: Value| self.operand(v);
+        match op(self.cut.program, value) {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) | Op::Table(..) => at(value).into_owned(),
+            Op::Neg(a) => format!("-{}", at(a)),
+            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
+            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
+            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
+            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Pow(a, b) => format!("pow({}, {})", at(a), at(b)),
+            Op::Min(a, b) => format!("{SMALLER}({}, {})", at(a), at(b)),
+            Op::Max(a, b) => format!("{LARGER}({}, {})", at(a), at(b)),
+            Op::Call(f, a) => format!("{}({})", called(f), at(a)),
+            Op::Select(test, a, b) => format!("{} > 0.0 ? {} : {}", at(test), at(a), at(b)),
+        }
+    }
+
+    /// Abscissae, ordinates and slopes as arrays of their own, then the value.
+    fn table(&self, name: &str, order: u8, x: Value, curve: &Curve<Value>) -> Vec<String> {
+        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
+        let rows: [(&str, Vec<String>); 3] = [
+            ("knots", curve.knots().map(number).collect()),
+            ("values", entries(&curve.values)),
+            ("slopes", entries(&curve.slopes)),
+        ];
+        let count = curve.values.len();
+        let array = |(what, entries): (&str, Vec<String>)| {
+            // An initialiser of values that are no constants of C is not pedantic C90, but C99.
+            format!(
+                "const double {name}{BEHIND}{what}[{count}] = {{{}}};",
+                entries.join(", ")
+            )
+        };
+        let mut statements: Vec<String> = rows.map(array).into();
+        let arrays = ["knots", "values", "slopes"].map(|what| format!("{name}{BEHIND}{what}"));
+        let x = self.operand(x);
+        statements.push(format!(
+            "const double {name} = {TABLE}({order}, {x}, {count}, {});",
+            arrays.join(", ")
+        ));
+        statements
+    }
+}
+
+fn called(function: expr::Function) -> &'static str {
+    match function {
+        expr::Function::Abs => "fabs",
+        expr::Function::Sign => SIGN,
+        expr::Function::Sqrt => "sqrt",
+        expr::Function::Exp => "exp",
+        expr::Function::Ln => "log",
+        expr::Function::Sin => "sin",
+        expr::Function::Cos => "cos",
+        expr::Function::Tan => "tan",
+        expr::Function::Atan => "atan",
+        expr::Function::Tanh => "tanh",
+    }
+}
+
+/// Keywords of C and C++, and what a function refers to beside its own variables.
+const RESERVED: &[&str] = &[
+    "NAN",
+    "INFINITY",
+    "_",
+    "alignas",
+    "alignof",
+    "and",
+    "asm",
+    "atan",
+    "auto",
+    "bool",
+    "break",
+    "case",
+    "catch",
+    "char",
+    "class",
+    "const",
+    "continue",
+    "cos",
+    "default",
+    "delete",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "exp",
+    "explicit",
+    "export",
+    "extern",
+    "fabs",
+    "false",
+    "float",
+    "for",
+    "friend",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "kept",
+    "log",
+    "long",
+    "mutable",
+    "namespace",
+    "new",
+    "not",
+    "operator",
+    "or",
+    "out",
+    "pow",
+    "private",
+    "protected",
+    "public",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sin",
+    "sizeof",
+    "sqrt",
+    "static",
+    "struct",
+    "switch",
+    "tan",
+    "tanh",
+    "template",
+    "this",
+    "throw",
+    "true",
+    "try",
+    "typedef",
+    "typename",
+    "union",
+    "unsigned",
+    "using",
+    "virtual",
+    "void",
+    "volatile",
+    "while",
+    "xor",
+    SIGN,
+    SMALLER,
+    LARGER,
+    TABLE,
+];
