@@ -12,6 +12,7 @@ pub mod completions;
 pub mod diff;
 pub mod discover;
 pub mod effects;
+pub mod export;
 pub mod fit;
 pub mod frf;
 pub mod inspect;

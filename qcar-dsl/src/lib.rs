@@ -65,6 +65,8 @@ pub mod straight;
 pub mod rust;
 // Printed as C.
 pub mod c;
+// The matrices as a function of MATLAB.
+pub mod matlab;
 // For people: equations, matrices, LaTeX, dot.
 pub mod show;
 // The whole compiler in one function.

@@ -13,6 +13,7 @@ mod locals;
 mod kinks;
 
 use std::collections::BTreeMap;
+use std::fmt;
 
 use crate::about::{About, Source};
 use crate::equations::Sheet;
@@ -55,10 +56,32 @@ impl Function<'_> {
 pub struct Local {
     /// The argument, `p`.
     pub argument: &'static str,
-    /// What of it, `[3]`.
-    pub place: String,
+    /// What of it.
+    pub at: At,
     /// What a reviewer calls it, `k_tire`.
     pub name: String,
+}
+
+/// What of an argument is read.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum At {
+    /// All of it.
+    Whole,
+    /// An entry, counted from 0.
+    Entry(usize),
+    /// A member of a struct, or an entry of one.
+    Member(&'static str),
+}
+
+impl fmt::Display for At {
+    /// As Rust and C write it behind the argument.
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            At::Whole => Ok(()),
+            At::Entry(entry) => write!(out, "[{entry}]"),
+            At::Member(member) => write!(out, ".{member}"),
+        }
+    }
 }
 
 /// The argument of a frequency response.
@@ -171,41 +194,33 @@ impl<'a> Straight<'a> {
 
     /// Where a leaf is read.
     pub fn local(&self, leaf: Leaf, arguments: &[&str]) -> Local {
-        let at = |argument, place: usize, name: &str| Local {
+        let local = |argument, at, name: &str| Local {
             argument,
-            place: format!("[{place}]"),
+            at,
             name: name.into(),
         };
+        let entry = |argument, place: usize, name: &str| local(argument, At::Entry(place), name);
         let symbol = match leaf {
-            Leaf::Prepared(place) => return at("constants", place as usize, &self.constants[place as usize]),
+            Leaf::Prepared(place) => return entry("constants", place as usize, &self.constants[place as usize]),
             Leaf::Symbol(symbol) => symbol,
         };
         let about = &self.compiled.about;
         if let Some(place) = about.states.iter().position(|state| state.symbol == symbol) {
-            return at("x", place, &about.states[place].name);
+            return entry("x", place, &about.states[place].name);
         }
         if let Some(place) = about.inputs.iter().position(|input| input.symbol == symbol) {
-            return at("u", place, &about.inputs[place].name);
+            return entry("u", place, &about.inputs[place].name);
         }
-        let whole = |argument, name: &str| Local {
-            argument,
-            place: String::new(),
-            name: name.into(),
-        };
-        let of_contact = |place: &str, name: &str| Local {
-            argument: "contact",
-            place: place.into(),
-            name: name.into(),
-        };
         let rolls = arguments.contains(&"contact");
         match symbol {
-            Symbol::Parameter(place) => at("p", place as usize, &about.parameters[place as usize].name),
-            Symbol::Frequency => whole(FREQUENCIES, "omega"),
-            Symbol::Stretch(_) if rolls => of_contact(".s", "s_contact"),
-            Symbol::Rate(_) if rolls => of_contact(".v", "v_contact"),
-            Symbol::ContactForce(axis) => of_contact(&format!(".force[{axis}]"), &format!("f_contact_{axis}")),
-            Symbol::Stretch(_) => whole("s", "s_contact"),
-            Symbol::Rate(_) => whole("v", "v_contact"),
+            Symbol::Parameter(place) => entry("p", place as usize, &about.parameters[place as usize].name),
+            Symbol::Frequency => local(FREQUENCIES, At::Whole, "omega"),
+            Symbol::Stretch(_) if rolls => local("contact", At::Member("s"), "s_contact"),
+            Symbol::Rate(_) if rolls => local("contact", At::Member("v"), "v_contact"),
+            Symbol::ContactForce(0) => local("contact", At::Member("force[0]"), "f_contact_0"),
+            Symbol::ContactForce(_) => local("contact", At::Member("force[1]"), "f_contact_1"),
+            Symbol::Stretch(_) => local("s", At::Whole, "s_contact"),
+            Symbol::Rate(_) => local("v", At::Whole, "v_contact"),
             other => unreachable!("a program reads parameters, states, inputs and a contact, not {other:?}"),
         }
     }

@@ -138,47 +138,47 @@ impl<'a> Printer<'a> {
         format!("{heading}\n{{\n{}}}\n\n", lines.collect::<String>())
     }
 
+    /// What it reads and takes, what it computes, and what it does not need of its arguments.
     fn body(&self) -> Vec<String> {
-        let cut = self.cut;
-        let leaves: Vec<(Local, Value)> = cut
-            .read(self.piece)
-            .into_iter()
-            .map(|(leaf, value)| (self.straight.local(leaf, self.signature.function.arguments), value))
+        let (cut, piece) = (self.cut, self.piece);
+        let arguments = self.signature.function.arguments;
+        let leaves = cut.read(piece).into_iter();
+        let leaves: Vec<(Local, Value)> = leaves
+            .map(|(leaf, value)| (self.straight.local(leaf, arguments), value))
             .collect();
-        // What the caller gives by its name alone needs no variable.
-        let reads = leaves.iter().map(|(local, value)| {
-            let (name, place) = (self.locals.name(*value), &local.place);
-            format!("const double {name} = {}{place};", passed(local.argument))
-        });
-        let taken = cut.taken(self.piece).into_iter();
-        let taken =
-            taken.map(|value| format!("const double {} = kept[{}];", self.locals.name(value), cut.kept[&value]));
-        let stored = cut
-            .stored(self.piece)
-            .into_iter()
-            .map(|(place, value)| self.store(place, value));
-        let computed = cut.pieces[self.piece].iter().flat_map(|&value| self.compute(value));
-        let unused = self.unused(leaves.iter().map(|(local, _)| local.argument).collect());
-        let taken: Vec<String> = taken.collect();
-        let nothing_taken = taken.is_empty();
-        let statements: Vec<String> = reads.chain(taken).chain(computed).chain(stored).collect();
-        let mut voids = unused;
-        let keeps = statements.iter().any(|statement| statement.starts_with("kept["));
-        if cut.pieces.len() > 1 && nothing_taken && !keeps {
-            voids.push("(void)kept;".into());
-        }
-        if !statements.iter().any(|statement| statement.starts_with("out[")) {
-            voids.push("(void)out;".into());
-        }
-        // Declarations come first in every style of C.
-        statements.into_iter().chain(voids).collect()
+        let declare = |value: Value, from: String| format!("const double {} = {from};", self.locals.name(value));
+        let read = leaves
+            .iter()
+            .map(|(local, value)| declare(*value, format!("{}{}", passed(local.argument), local.at)));
+        let taken = cut.taken(piece).into_iter();
+        let taken = taken.map(|value| declare(value, format!("kept[{}]", cut.kept[&value])));
+        let computed = cut.pieces[piece].iter().flat_map(|&value| self.compute(value));
+        let stored = cut.stored(piece).into_iter();
+        let stored = stored.map(|(place, value)| self.store(place, value));
+        let needed = leaves.iter().map(|(local, _)| local.argument).collect();
+        let unused = self.unused(needed);
+        let unused = unused.iter().map(|argument| format!("(void){argument};"));
+        read.chain(taken).chain(computed).chain(stored).chain(unused).collect()
     }
 
-    /// Says that an argument is not read on purpose.
-    fn unused(&self, read: BTreeSet<&str>) -> Vec<String> {
-        let arguments = self.signature.function.arguments.iter();
-        let unread = arguments.filter(|argument| !read.contains(**argument));
-        unread.map(|argument| format!("(void){};", passed(argument))).collect()
+    /// The arguments that the piece does not need.
+    fn unused(&self, read: BTreeSet<&str>) -> Vec<&'static str> {
+        let (cut, piece) = (self.cut, self.piece);
+        let computed = &cut.pieces[piece];
+        let keeps = !cut.taken(piece).is_empty() || computed.iter().any(|value| cut.kept.contains_key(value));
+        let writes = !cut.stored(piece).is_empty() || computed.iter().any(|&v| self.locals.results(v).next().is_some());
+        let arguments = self.signature.function.arguments.iter().copied();
+        let mut unused: Vec<&str> = arguments
+            .filter(|argument| !read.contains(argument))
+            .map(passed)
+            .collect();
+        if cut.pieces.len() > 1 && !keeps {
+            unused.push("kept");
+        }
+        if !writes {
+            unused.push("out");
+        }
+        unused
     }
 
     /// The statements that compute a value, and those that put it where it is wanted.

@@ -23,7 +23,7 @@ pub fn functions(compiled: &Compiled) -> Vec<String> {
                 .iter()
                 .map(|&argument| (argument, kind(argument)))
                 .collect(),
-            leaf: &|leaf| local(&straight, leaf, function.arguments),
+            leaf: &|leaf| straight.local(leaf, function.arguments),
             lines: function.is_response(),
         };
         self::function(&signature)
@@ -41,15 +41,6 @@ fn kind(argument: &str) -> &'static str {
         FREQUENCIES => "&[f64; LINES]",
         _ => "f64",
     }
-}
-
-/// Where a leaf is read; a frequency is that of a line.
-fn local(straight: &Straight, leaf: Leaf, arguments: &[&str]) -> Local {
-    let mut local = straight.local(leaf, arguments);
-    if local.argument == FREQUENCIES {
-        local.place = "[line]".into();
-    }
-    local
 }
 
 /// How a program becomes a function.
@@ -196,7 +187,8 @@ impl<'a> Printer<'a> {
             .into_iter()
             .partition(|(local, _)| local.argument == FREQUENCIES);
         let read = |(local, value): &(Local, Value)| {
-            format!("let {} = {}{};", self.local(*value), local.argument, local.place)
+            let line = if local.argument == FREQUENCIES { self.line() } else { "" };
+            format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
         };
         let once: Vec<String> = once.iter().map(read).collect();
         let kept = self.cut.taken(self.piece).into_iter().map(|value| {

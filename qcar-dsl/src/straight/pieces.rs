@@ -1,4 +1,4 @@
-//! A long program in pieces: rustc's optimiser is superlinear in the length of a function.
+//! A long program in pieces: the optimisers of compilers are superlinear in the length of a function.
 //!
 //! What a later piece needs of an earlier one goes through an array, `kept`.
 
@@ -47,6 +47,15 @@ impl<'a> Pieces<'a> {
         let crossing: BTreeSet<Value> = (0..cut.pieces.len()).flat_map(|piece| cut.taken(piece)).collect();
         cut.kept = crossing.into_iter().zip(0..).collect();
         cut
+    }
+
+    /// The whole program as one piece, where no optimiser is in the way.
+    pub fn whole(program: &'a Program) -> Pieces<'a> {
+        Pieces {
+            program,
+            pieces: vec![computed(program).collect()],
+            kept: BTreeMap::new(),
+        }
     }
 
     /// The values that a piece takes from an earlier one.
