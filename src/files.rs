@@ -43,7 +43,7 @@ static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 ///
 /// # Errors
 /// A folder that cannot be made or written to.
-pub fn put(folder: &Path, name: &str, content: impl AsRef<[u8]>) -> Result<(), InputError> {
+pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), InputError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
     let mut written = close();
     let put = fs::create_dir_all(folder)

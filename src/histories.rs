@@ -38,9 +38,9 @@ impl History {
     /// A folder that cannot be written to.
     pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
         match kind {
-            Kind::Csv => put(folder, &format!("{}.csv", self.name), self.csv()),
-            Kind::Mat => put(folder, &format!("{}.mat", self.name), self.mat()),
-            Kind::Mdf => put(folder, &format!("{}.mf4", self.name), self.mdf()),
+            Kind::Csv => put(folder, &format!("{}.csv", self.name), &self.csv()),
+            Kind::Mat => put(folder, &format!("{}.mat", self.name), &self.mat()),
+            Kind::Mdf => put(folder, &format!("{}.mf4", self.name), &self.mdf()),
         }
     }
 

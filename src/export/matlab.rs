@@ -1,7 +1,7 @@
 //! MATLAB: a function that computes the matrices, and a file that holds them.
 
 use qcar_dsl::matlab::{function, is_name};
-use qcar_runtime::error::Problem;
+use qcar_runtime::error::InputError;
 use qcar_signals::mat::write::{Array, v5};
 
 use super::{File, Subject};
@@ -12,11 +12,11 @@ use crate::state_space::StateSpace;
 ///
 /// # Errors
 /// A name that MATLAB cannot call.
-pub fn program(subject: Subject, stem: &str) -> Result<File, Problem> {
+pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
     if !is_name(stem) {
         let expected = "letters, digits and `_`, a letter first, no keyword, at most 63";
         let remedy = format!("write a name such as --out {}.m", subject.compiled.about.name);
-        return Err(flag("--out", format!("`{stem}.m`"), expected, &remedy));
+        return Err(flag("--out", format!("`{stem}.m`"), expected, &remedy).into());
     }
     Ok(File {
         name: format!("{stem}.m"),

@@ -8,11 +8,12 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 15] = [
+const VERBS: [&str; 16] = [
     "new",
     "check",
     "show",
     "matrices",
+    "export",
     "frf",
     "fit",
     "kc",

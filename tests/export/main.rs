@@ -1,5 +1,6 @@
 //! Exported models against other programs: FMPy, SciPy, GNU Octave.
 
 mod fmu;
+mod histories;
 mod matlab;
 mod programs;

@@ -37,7 +37,8 @@ pub fn python_with(package: &str, unchecked: &str) -> Option<PathBuf> {
 
 /// Past the capture of the test's output.
 pub fn say(word: &str) {
-    writeln!(std::io::stderr(), "{word}").unwrap();
+    let mut out = std::io::stderr();
+    writeln!(out, "{word}").unwrap();
 }
 
 /// Runs a program, which must succeed.

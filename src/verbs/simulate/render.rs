@@ -213,7 +213,7 @@ pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::
     for record in of {
         let history = beside(record);
         history.put(folder, kind)?;
-        put(folder, &format!("{}.svg", history.name), figure::record(record).svg())?;
+        put(folder, &format!("{}.svg", history.name), &figure::record(record).svg())?;
     }
     Ok(())
 }
