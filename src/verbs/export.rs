@@ -30,9 +30,9 @@ pub struct Arguments {
     /// For what
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kind: Kind,
-    /// The version of the Functional Mock-up Interface
-    #[arg(long, value_enum, default_value_t = Fmi::Two)]
-    fmi: Fmi,
+    /// The version of the Functional Mock-up Interface of an FMU; 2 unless given
+    #[arg(long, value_enum, value_name = "VERSION")]
+    fmi: Option<Fmi>,
     /// The file to write; it ends as the kind says
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -94,6 +94,7 @@ impl Kind {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let stem = stem(&arguments.out, arguments.kind.extension())?;
+    let version = version(arguments)?;
     let ModelArguments { model, params, set } = &arguments.model;
     let compiled = catalogue::compiled(model)?;
     let loaded = catalogue::load(model)?;
@@ -103,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         compiled: &compiled,
         values: values.as_slice(),
     };
-    let (files, note) = files(arguments, subject, &loaded, &values, &stem)?;
+    let (files, note) = files((arguments.kind, version), subject, (&loaded, &values), &stem)?;
     let folder = arguments.out.parent().unwrap_or("".as_ref());
     let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
     paths.iter().try_for_each(|path| must_be_free(path))?;
@@ -116,6 +117,18 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         compiled.about.name,
         paths.join(" and ")
     ))
+}
+
+/// The version of the interface, which only an FMU has.
+fn version(arguments: &Arguments) -> Result<fmu::Version, Failure> {
+    match (arguments.kind, arguments.fmi) {
+        (Kind::Fmu, version) => Ok(version.unwrap_or(Fmi::Two).into()),
+        (_, None) => Ok(fmu::Version::Two),
+        (_, Some(_)) => {
+            let remedy = "leave it out, or write --as fmu";
+            Err(flag("--fmi", "a version of FMI", "it with `--as fmu` alone", remedy).into())
+        }
+    }
 }
 
 /// The name of a file without its folder and extension.
@@ -147,13 +160,11 @@ fn must_be_free(path: &Path) -> Result<(), Failure> {
 
 /// What is to be written, and what to say of it beside.
 fn files(
-    arguments: &Arguments,
+    (kind, version): (Kind, fmu::Version),
     subject: Subject,
-    model: &Loaded,
-    values: &Values,
+    (model, values): (&Loaded, &Values),
     stem: &str,
 ) -> Result<(Vec<File>, String), Failure> {
-    let kind = arguments.kind;
     let own = |content: Vec<u8>| File {
         name: format!("{stem}.{}", kind.extension()),
         content,
@@ -162,7 +173,7 @@ fn files(
     Ok(match kind {
         Kind::C => (c::files(subject, stem), String::new()),
         Kind::Fmu => {
-            let unit = fmu::pack(subject, arguments.fmi.into()).map_err(|message| cannot_compile(&message))?;
+            let unit = fmu::pack(subject, version).map_err(|message| cannot_compile(&message))?;
             (vec![own(unit.archive)], library(&unit.library))
         }
         Kind::Matlab => (vec![matlab::program(subject, stem)?], String::new()),

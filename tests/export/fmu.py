@@ -1,4 +1,4 @@
-"""What FMPy makes of a unit: python fmu.py UNIT INPUT.csv RESULT.json
+"""What FMPy makes of a unit: python fmu.py UNIT INPUT.csv RESULT.json [PARAMETER VALUE]
 
 INPUT.csv has a column `time` and one for each input, at even times. The result has the problems that validation finds, the
 outputs at these times, and the Jacobian by each state, input and parameter at a state that is not rest.
@@ -16,12 +16,14 @@ from ctypes import c_double, c_int, c_uint32
 
 import numpy as np
 from fmpy import extract, read_model_description, simulate_fmu
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model, FMU2Slave
-from fmpy.fmi3 import FMU3Model
+from fmpy.fmi3 import FMU3Model, FMU3Slave
 from fmpy.validation import validate_fmu
 from scipy.integrate import solve_ivp
 
 unit, inputs, result = sys.argv[1:4]
+changed = {sys.argv[4]: float(sys.argv[5])} if len(sys.argv) > 4 else {}
 
 with open(inputs) as file:
     rows = list(csv.reader(file))
@@ -39,7 +41,7 @@ outputs = [v.name for v in description.modelVariables if v.causality == "output"
 def simulate(kind, **options):
     found = simulate_fmu(
         unit, fmi_type=kind, start_time=0.0, stop_time=times[-1], output_interval=times[1] - times[0],
-        input=signals, output=outputs, record_events=False, **options)
+        input=signals, output=outputs, record_events=False, start_values=changed, **options)
     assert np.allclose(found["time"], times, rtol=0, atol=1e-9), f"{kind}: other times than asked for"
     return {name: found[name].tolist() for name in outputs}
 
@@ -47,7 +49,7 @@ def simulate(kind, **options):
 def instance(kind, folder):
     """A unit that is initialised, the references of its inputs, and how to set and get reals."""
     of = description.modelExchange if kind.endswith("Model") else description.coSimulation
-    model = {"FMU2Model": FMU2Model, "FMU2Slave": FMU2Slave, "FMU3Model": FMU3Model}[kind](
+    model = {"FMU2Model": FMU2Model, "FMU2Slave": FMU2Slave, "FMU3Model": FMU3Model, "FMU3Slave": FMU3Slave}[kind](
         guid=description.guid, unzipDirectory=folder, instanceName=kind, modelIdentifier=of.modelIdentifier)
     model.instantiate()
     if is_fmi3:
@@ -57,6 +59,8 @@ def instance(kind, folder):
         model.setupExperiment(startTime=0.0)
         model.enterInitializationMode()
         put, get = model.setReal, model.getReal
+    for name, value in changed.items():
+        put([references[name]], [value])
     return model, put, get
 
 
@@ -125,6 +129,41 @@ def co_simulation(folder):
     return columns(rows)
 
 
+def returns(folder):
+    """Whether a unit goes on alike from a state that was saved, and from one that was serialised too."""
+    model, put, get = instance("FMU3Slave" if is_fmi3 else "FMU2Slave", folder)
+    model.exitInitializationMode()
+    step = times[1] - times[0]
+    put(inputs, table[10, 1:].tolist())
+    model.doStep(0.0, step)
+    save, restore = ((model.getFMUState, model.setFMUState) if is_fmi3 else (model.getFMUstate, model.setFMUstate))
+    saved = save()
+    bytes_of = (model.serializeFMUState if is_fmi3 else model.serializeFMUstate)(saved)
+    seen = []
+    for state in [None, saved, (model.deserializeFMUState if is_fmi3 else model.deSerializeFMUstate)(bytes_of)]:
+        if state is not None:
+            restore(state)
+        put(inputs, table[20, 1:].tolist())
+        model.doStep(step, step)
+        seen.append(list(get(wanted)))
+    model.terminate()
+    model.freeInstance()
+    return seen[0] == seen[1] == seen[2] and any(seen[0])
+
+
+def refuses(folder):
+    """Whether a unit refuses what cannot be set, with a status that FMPy takes for a failure."""
+    model, put, _ = instance("FMU3Model" if is_fmi3 else "FMU2Model", folder)
+    refused = 0
+    for reference, value in [(wanted[0], 1.0), (10 ** 6, 1.0), (inputs[0], float("nan"))]:
+        try:
+            put([reference], [value])
+        except FMICallException:
+            refused += 1
+    model.freeInstance()
+    return refused == 3
+
+
 def jacobian(folder):
     """The directional derivative by each variable that is known, at a point."""
     model, put, _ = instance("FMU3Model" if is_fmi3 else "FMU2Model", folder)
@@ -146,7 +185,7 @@ answer = {
     "problems": [str(problem) for problem in validate_fmu(unit)],
     "variables": {v.name: [v.causality, v.unit, v.start] for v in description.modelVariables},
     "held": {
-        "model_exchange": simulate("ModelExchange", solver="CVode", relative_tolerance=1e-10),
+        "model_exchange": simulate("ModelExchange", solver="CVode", relative_tolerance=2e-11),
         "co_simulation": simulate("CoSimulation"),
     },
     "straight": {
@@ -154,6 +193,8 @@ answer = {
         "co_simulation": None if is_fmi3 else co_simulation(folder),
     },
     "jacobian": jacobian(folder),
+    "returns": returns(folder),
+    "refuses": refuses(folder),
 }
 shutil.rmtree(folder)
 with open(result, "w") as file:

@@ -21,8 +21,68 @@ const TOLERANCE: f64 = 1e-6;
 
 #[test]
 fn a_linear_axle_moves_in_fmpy_as_here() {
-    compare("axle_d", Some("tests/data/axle_d.toml"));
+    compare("axle_d", Some("tests/data/axle_d.toml"), None);
 }
+
+#[test]
+fn a_parameter_that_is_changed_in_fmpy_is_that_of_the_model() {
+    compare("axle_d", Some("tests/data/axle_d.toml"), Some(("k_tire", 230e3)));
+}
+
+/// A block that slides and stops: v0 m/F after v0² m/(2 F), and there it stays.
+#[test]
+fn a_law_that_jumps_holds_the_motion_in_co_simulation() {
+    let Some(python) = python_with("fmpy", "a law that jumps") else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    fs::write(path("block.axle"), BLOCK).unwrap();
+    qcar(&[
+        "export",
+        &path("block.axle"),
+        "--as",
+        "fmu",
+        "--out",
+        &path("block.fmu"),
+    ]);
+    let program = "
+from fmpy import simulate_fmu
+found = simulate_fmu('block.fmu', fmi_type='CoSimulation', stop_time=0.4, output_interval=0.1,
+                     start_values={'vx_block': 0.5}, output=['x_block', 'vx_block'])
+print(*[value for row in found for value in row])";
+    let out = run(&python, &["-c", program], folder.path());
+    let numbers: Vec<f64> = out.split_whitespace().map(|word| word.parse().unwrap()).collect();
+    let rows: Vec<&[f64]> = numbers.chunks(3).collect();
+    assert_eq!(rows.len(), 5, "{out}");
+    let deceleration = 20.0 / 10.0;
+    for row in rows {
+        let t = row[0].min(0.5 / deceleration);
+        let (x, v) = (0.5 * t - deceleration * t * t / 2.0, 0.5 - deceleration * t);
+        // What the block does in a step of a microsecond at the jump.
+        assert!(
+            (row[1] - x).abs() < 1e-8 && (row[2] - v).abs() < 4e-6,
+            "{row:?}, expected {x} and {v}"
+        );
+    }
+}
+
+const BLOCK: &str = r#"
+axle block {
+    "A block on dry ground"
+
+    param m: kg = 10 "Mass";
+    param f: N = 20 "Friction";
+
+    direction x {
+        motion ground;
+        mass block = m;
+        link friction: block - ground { force = f * sign(v); }
+        output block.position;
+        output block.velocity;
+    }
+}
+"#;
 
 #[test]
 fn an_axle_with_friction_moves_in_fmpy_as_here() {
@@ -41,7 +101,7 @@ fn an_axle_with_friction_moves_in_fmpy_as_here() {
         "--out",
         patched,
     ]);
-    compare(patched, Some(params));
+    compare(patched, Some(params), None);
 }
 
 #[test]
@@ -49,7 +109,7 @@ fn laws_that_bend_move_in_fmpy_as_here() {
     let folder = tempfile::tempdir().unwrap();
     let model = folder.path().join("bends.axle");
     fs::write(&model, BENDS).unwrap();
-    compare(model.to_str().unwrap(), None);
+    compare(model.to_str().unwrap(), None, None);
 }
 
 /// Bends of every kind, none of which jumps, and curves through points.
@@ -91,16 +151,16 @@ axle bends {
 "#;
 
 /// Exports a model for both versions of the interface and holds it against what the workbench makes of it.
-fn compare(model: &str, params: Option<&str>) {
+fn compare(model: &str, params: Option<&str>, changed: Option<(&str, f64)>) {
     let Some(python) = python_with("fmpy", "exported units") else {
         return;
     };
     for version in ["2", "3"] {
-        compare_version(&python, model, params, version);
+        compare_version(&python, model, params, changed, version);
     }
 }
 
-fn compare_version(python: &Path, model: &str, params: Option<&str>, version: &str) {
+fn compare_version(python: &Path, model: &str, params: Option<&str>, changed: Option<(&str, f64)>, version: &str) {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
     let (unit, input, result) = (path("model.fmu"), path("input.csv"), path("result.json"));
@@ -113,12 +173,16 @@ fn compare_version(python: &Path, model: &str, params: Option<&str>, version: &s
         .concat(),
     );
     assert!(said.contains("compiled by"), "{said}");
-    let subject = Subject::new(model, params);
+    let subject = Subject::new(model, params, changed);
     fs::write(&input, subject.input_file()).unwrap();
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/export/fmu.py");
-    run(python, &[script, &unit, &input, &result], folder.path());
+    let changed = changed.map(|(name, value)| [name.to_string(), value.to_string()]);
+    let changed = changed.iter().flatten().map(String::as_str);
+    let arguments: Vec<&str> = [script, &unit, &input, &result].into_iter().chain(changed).collect();
+    run(python, &arguments, folder.path());
     let answer: Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
     assert_eq!(answer["problems"], serde_json::json!([]));
+    assert_eq!((&answer["returns"], &answer["refuses"]), (&true.into(), &true.into()));
     subject.check_variables(&answer["variables"]);
     let check = |between, way: &str, kind: &str| {
         let (own, other) = (subject.ride(between), &answer[way][kind]);
@@ -136,19 +200,27 @@ fn compare_version(python: &Path, model: &str, params: Option<&str>, version: &s
 /// A model behind the seam of the workbench.
 struct Subject {
     model: Loaded,
+    /// What parameters have in the unit at first, and what they are given.
+    exported: Values,
     values: Values,
     constants: Vec<f64>,
 }
 
 impl Subject {
-    fn new(model: &str, params: Option<&str>) -> Subject {
+    fn new(model: &str, params: Option<&str>, changed: Option<(&str, f64)>) -> Subject {
         let model = catalogue::load(model).unwrap();
         let params = params.map(PathBuf::from);
-        let values = parameters::resolve(model.about(), params.as_deref(), &[]).unwrap();
+        let mut values = parameters::resolve(model.about(), params.as_deref(), &[]).unwrap();
+        let exported = values.clone();
+        if let Some((name, value)) = changed {
+            let names = &mut model.about().parameters.iter();
+            values.set(names.position(|own| own.name == name).unwrap(), value);
+        }
         let mut constants = vec![0.0; model.about().constants];
         model.prepare(values.as_slice(), &mut constants);
         Subject {
             model,
+            exported,
             values,
             constants,
         }
@@ -247,7 +319,7 @@ impl Subject {
 
     fn check_variables(&self, variables: &Value) {
         let about = self.model.about();
-        for (parameter, value) in about.parameters.iter().zip(self.values.as_slice()) {
+        for (parameter, value) in about.parameters.iter().zip(self.exported.as_slice()) {
             let own = &variables[&*parameter.name];
             assert_eq!(
                 (own[0].as_str(), own[1].as_str()),

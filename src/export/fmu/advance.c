@@ -1,15 +1,15 @@
 /* The integrator of Co-Simulation: the explicit pair of order 5(4) of Dormand and Prince (1980, RK5(4)7M) with error control.
  *
  * It needs no event handling for laws that bend: a step over a bend fails and is shortened. A law that jumps and holds the
- * motion at its jump would shorten steps without end; below SHORTEST_OVER_A_KINK a step that crosses a kink stands, so that
- * the motion stays at the jump but for what it does in that time. */
+ * motion at its jump would shorten steps without end; so a step of SHORTEST_OVER_A_KINK that crosses a kink stands, and the
+ * motion stays at the jump but for what it does in that time. */
 #include "core.h"
 
 #include <math.h>
 #include <string.h>
 
 #define STAGES 7
-#define SHORTEST_OVER_A_KINK 1e-7
+#define SHORTEST_OVER_A_KINK 1e-6
 #define SHORTEST 1e-12
 #define FIRST_STEP 1e-4
 
@@ -107,6 +107,13 @@ static int is_finite(const double *values, int count)
     return 1;
 }
 
+/* The length of the step after one that has failed. */
+static double shorter(double h, double factor)
+{
+    const int passes = h > SHORTEST_OVER_A_KINK && factor * h < SHORTEST_OVER_A_KINK;
+    return passes ? SHORTEST_OVER_A_KINK : factor * h;
+}
+
 /* Takes one step, at most to the end. */
 static int step(Integration *of, double end)
 {
@@ -117,24 +124,21 @@ static int step(Integration *of, double end)
         const int last = now->step >= left;
         const double h = last ? left : now->step > left / 2 ? left / 2 : now->step;
         const double error = attempt(of, h);
-        const double longer = fmin(5.0, fmax(0.2, 0.9 * pow(error, -0.2)));
-        const int stands = error <= 1.0 || (h < SHORTEST_OVER_A_KINK && error < HUGE_VAL && crosses_a_kink(of, h));
-        if (stands) {
+        const double factor = error < HUGE_VAL ? fmin(5.0, fmax(0.2, 0.9 * pow(error, -0.2))) : 0.2;
+        if (error <= 1.0 || (error < HUGE_VAL && h <= SHORTEST_OVER_A_KINK && crosses_a_kink(of, h))) {
             if (!is_finite(of->x, STATES))
                 return NOT_FINITE;
             memcpy(now->x, of->x, sizeof now->x);
             memcpy(of->k[0], of->k[STAGES - 1], sizeof of->k[0]);
             now->time = last ? end : now->time + h;
-            /* A step that the end cut short says little of the next one. */
-            if (longer * h > now->step || error > 1.0)
-                now->step = error > 1.0 ? h : longer * h;
-            else if (!last)
-                now->step = longer * h;
+            /* A step that the end cut short says little of the next one, unless that may be longer still. */
+            if (error <= 1.0 && (!last || factor * h > now->step))
+                now->step = factor * h;
             return OK;
         }
         if (h < SHORTEST)
             return error < HUGE_VAL ? TOO_STIFF : NOT_FINITE;
-        now->step = (error < HUGE_VAL ? longer : 0.2) * h;
+        now->step = shorter(h, factor);
     }
 }
 
