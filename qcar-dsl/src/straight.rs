@@ -9,6 +9,8 @@ mod labels;
 mod pieces;
 // Names of the local variables.
 mod locals;
+// An operation as text.
+mod language;
 // Where a law bends.
 mod kinks;
 
@@ -23,6 +25,7 @@ use crate::program::{Program, Value};
 use crate::schedule::Compiled;
 
 pub use kinks::kinks;
+pub use language::{Language, Written};
 pub use locals::{Locals, Names};
 pub use pieces::{Leaf, Pieces, op, operations};
 pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};

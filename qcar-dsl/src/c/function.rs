@@ -1,15 +1,14 @@
 //! A straight-line program as C: one operation a line, a result stored where it is computed.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use crate::expr::{self, Curve};
-use crate::program::{Op, Value};
+use crate::expr;
+use crate::program::Value;
 use crate::schedule::Compiled;
-use crate::straight::{FREQUENCIES, Function, Leaf, Local, Locals, Names, Pieces, Straight, op};
+use crate::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written};
 
-use super::support::{BEHIND, LARGER, SIGN, SMALLER, TABLE};
-use super::text::{comment, number, remark};
+use super::support::{LARGER, SIGN, SMALLER, TABLE};
+use super::text::{self, comment, remark};
 
 /// The functions of a model, printed.
 pub struct Functions {
@@ -184,10 +183,7 @@ impl<'a> Printer<'a> {
     /// The statements that compute a value, and those that put it where it is wanted.
     fn compute(&self, value: Value) -> Vec<String> {
         let name = self.locals.name(value);
-        let mut statements = match op(self.cut.program, value) {
-            Op::Table(order, x, curve) => self.table(name, order, x, &self.cut.program.curves[curve as usize]),
-            _ => vec![format!("const double {name} = {};", self.operation(value))],
-        };
+        let mut statements = vec![format!("const double {name} = {};", self.written().operation(value))];
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}] = {name};"));
         }
@@ -198,72 +194,62 @@ impl<'a> Printer<'a> {
 
     fn store(&self, place: usize, value: Value) -> String {
         let result = self.signature.function.results.get(place).map_or("", |result| result);
-        format!("out[{place}] = {};{}", self.operand(value), remark(result))
+        format!("out[{place}] = {};{}", self.written().operand(value), remark(result))
     }
 
-    fn operand(&self, value: Value) -> Cow<'_, str> {
-        match op(self.cut.program, value) {
-            Op::Constant(constant) => number(constant).into(),
-            _ => self.locals.name(value).into(),
+    fn written(&self) -> Written<'_> {
+        Written {
+            language: &C,
+            program: self.cut.program,
+            locals: &self.locals,
         }
-    }
-
-    fn operation(&self, value: Value) -> String {
-        let at = |v: Value| self.operand(v);
-        match op(self.cut.program, value) {
-            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) | Op::Table(..) => at(value).into_owned(),
-            Op::Neg(a) => format!("-{}", at(a)),
-            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
-            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
-            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
-            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
-            Op::Pow(a, b) => format!("pow({}, {})", at(a), at(b)),
-            Op::Min(a, b) => format!("{SMALLER}({}, {})", at(a), at(b)),
-            Op::Max(a, b) => format!("{LARGER}({}, {})", at(a), at(b)),
-            Op::Call(f, a) => format!("{}({})", called(f), at(a)),
-            Op::Select(test, a, b) => format!("{} > 0.0 ? {} : {}", at(test), at(a), at(b)),
-        }
-    }
-
-    /// Abscissae, ordinates and slopes as arrays of their own, then the value.
-    fn table(&self, name: &str, order: u8, x: Value, curve: &Curve<Value>) -> Vec<String> {
-        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
-        let rows: [(&str, Vec<String>); 3] = [
-            ("knots", curve.knots().map(number).collect()),
-            ("values", entries(&curve.values)),
-            ("slopes", entries(&curve.slopes)),
-        ];
-        let count = curve.values.len();
-        let array = |(what, entries): (&str, Vec<String>)| {
-            // An initialiser of values that are no constants of C is not pedantic C90, but C99.
-            format!(
-                "const double {name}{BEHIND}{what}[{count}] = {{{}}};",
-                entries.join(", ")
-            )
-        };
-        let mut statements: Vec<String> = rows.map(array).into();
-        let arrays = ["knots", "values", "slopes"].map(|what| format!("{name}{BEHIND}{what}"));
-        let x = self.operand(x);
-        statements.push(format!(
-            "const double {name} = {TABLE}({order}, {x}, {count}, {});",
-            arrays.join(", ")
-        ));
-        statements
     }
 }
 
-fn called(function: expr::Function) -> &'static str {
-    match function {
-        expr::Function::Abs => "fabs",
-        expr::Function::Sign => SIGN,
-        expr::Function::Sqrt => "sqrt",
-        expr::Function::Exp => "exp",
-        expr::Function::Ln => "log",
-        expr::Function::Sin => "sin",
-        expr::Function::Cos => "cos",
-        expr::Function::Tan => "tan",
-        expr::Function::Atan => "atan",
-        expr::Function::Tanh => "tanh",
+/// How C writes.
+struct C;
+
+impl Language for C {
+    fn number(&self, number: f64) -> String {
+        text::number(number)
+    }
+
+    fn call(&self, function: expr::Function, a: &str) -> String {
+        let name = match function {
+            expr::Function::Abs => "fabs",
+            expr::Function::Sign => SIGN,
+            expr::Function::Sqrt => "sqrt",
+            expr::Function::Exp => "exp",
+            expr::Function::Ln => "log",
+            expr::Function::Sin => "sin",
+            expr::Function::Cos => "cos",
+            expr::Function::Tan => "tan",
+            expr::Function::Atan => "atan",
+            expr::Function::Tanh => "tanh",
+        };
+        format!("{name}({a})")
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("pow({a}, {b})")
+    }
+
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("{SMALLER}({a}, {b})")
+    }
+
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("{LARGER}({a}, {b})")
+    }
+
+    fn choice(&self, test: &str, a: &str, b: &str) -> String {
+        format!("{test} > 0.0 ? {a} : {b}")
+    }
+
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
+        let count = rows[0].len();
+        let rows = rows.map(|entries| format!("(const double[]){{{}}}", entries.join(", ")));
+        format!("{TABLE}({order}, {x}, {count}, {})", rows.join(", "))
     }
 }
 

@@ -11,9 +11,6 @@ pub const SMALLER: &str = "smaller_of";
 pub const LARGER: &str = "larger_of";
 /// A curve through points.
 pub const TABLE: &str = "curve_at";
-/// Between the name of a table's value and what its arrays hold.
-pub const BEHIND: &str = "__";
-
 /// The functions that any of these programs uses.
 pub fn used<'a>(programs: impl Iterator<Item = &'a Program> + Clone) -> String {
     let any = |is: fn(&Op) -> bool| programs.clone().any(|program| program.ops.iter().any(is));

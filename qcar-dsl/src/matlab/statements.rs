@@ -1,10 +1,8 @@
 //! A straight-line program as statements of MATLAB, and what they stand on.
 
-use std::borrow::Cow;
-
-use crate::expr::{self, Curve};
+use crate::expr::Function;
 use crate::program::{Op, Program, Value};
-use crate::straight::{Leaf, Locals, Pieces, op};
+use crate::straight::{Language, Leaf, Locals, Pieces, Written};
 
 /// A program in one piece, with the names of its values.
 pub struct Statements<'a> {
@@ -19,11 +17,11 @@ impl Statements<'_> {
         let leaves = leaves.map(|(leaf, value)| format!("{} = {};", self.locals.name(value), read(leaf)));
         let store = |place: usize, value: Value| {
             let (to, what) = target(place);
-            format!("{to} = {}; % {what}", self.operand(value))
+            format!("{to} = {}; % {what}", self.written().operand(value))
         };
         let stored = self.cut.stored(0).into_iter().map(|(place, value)| store(place, value));
         let computed = self.cut.pieces[0].iter().flat_map(|&value| {
-            let computed = format!("{} = {};", self.locals.name(value), self.operation(value));
+            let computed = format!("{} = {};", self.locals.name(value), self.written().operation(value));
             let stored = self.locals.results(value).map(move |place| store(place, value));
             [computed].into_iter().chain(stored)
         });
@@ -31,65 +29,65 @@ impl Statements<'_> {
         lines.map(|statement| format!("    {statement}\n")).collect()
     }
 
-    fn operand(&self, value: Value) -> Cow<'_, str> {
-        match op(self.cut.program, value) {
-            Op::Constant(constant) => number(constant).into(),
-            _ => self.locals.name(value).into(),
+    fn written(&self) -> Written<'_> {
+        Written {
+            language: &Matlab,
+            program: self.cut.program,
+            locals: self.locals,
         }
-    }
-
-    fn operation(&self, value: Value) -> String {
-        let at = |v: Value| self.operand(v);
-        match op(self.cut.program, value) {
-            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => at(value).into_owned(),
-            Op::Neg(a) => format!("-{}", at(a)),
-            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
-            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
-            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
-            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
-            Op::Pow(a, b) => format!("{} ^ {}", at(a), at(b)),
-            Op::Min(a, b) => format!("min({}, {})", at(a), at(b)),
-            Op::Max(a, b) => format!("max({}, {})", at(a), at(b)),
-            Op::Call(f, a) => format!("{}({})", called(f), at(a)),
-            Op::Select(test, a, b) => format!("choose({}, {}, {})", at(test), at(a), at(b)),
-            Op::Table(order, x, curve) => self.table(order, x, &self.cut.program.curves[curve as usize]),
-        }
-    }
-
-    fn table(&self, order: u8, x: Value, curve: &Curve<Value>) -> String {
-        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
-        let rows: [Vec<String>; 3] = [
-            curve.knots().map(number).collect(),
-            entries(&curve.values),
-            entries(&curve.slopes),
-        ];
-        let rows = rows.map(|entries| format!("[{}]", entries.join(", "))).join(", ");
-        format!("curve_at({order}, {}, {rows})", self.operand(x))
     }
 }
 
-fn called(function: expr::Function) -> &'static str {
-    match function {
-        expr::Function::Abs => "abs",
-        expr::Function::Sign => "sign",
-        expr::Function::Sqrt => "sqrt",
-        expr::Function::Exp => "exp",
-        expr::Function::Ln => "log",
-        expr::Function::Sin => "sin",
-        expr::Function::Cos => "cos",
-        expr::Function::Tan => "tan",
-        expr::Function::Atan => "atan",
-        expr::Function::Tanh => "tanh",
-    }
-}
+/// How MATLAB writes.
+struct Matlab;
 
-/// A number, to every digit; a negative one in parentheses, since `^` binds more tightly than `-`.
-fn number(number: f64) -> String {
-    match number {
-        _ if number.is_nan() => "NaN".into(),
-        _ if number.is_infinite() => if number > 0.0 { "Inf" } else { "(-Inf)" }.into(),
-        _ if number.is_sign_negative() => format!("({number:?})"),
-        _ => format!("{number:?}"),
+impl Language for Matlab {
+    /// A negative number in parentheses, since `^` binds more tightly than `-`.
+    fn number(&self, number: f64) -> String {
+        match number {
+            _ if number.is_nan() => "NaN".into(),
+            _ if number == f64::INFINITY => "Inf".into(),
+            _ if number == f64::NEG_INFINITY => "(-Inf)".into(),
+            _ if number.is_sign_negative() => format!("({number:?})"),
+            _ => format!("{number:?}"),
+        }
+    }
+
+    fn call(&self, function: Function, a: &str) -> String {
+        let name = match function {
+            Function::Abs => "abs",
+            Function::Sign => "sign",
+            Function::Sqrt => "sqrt",
+            Function::Exp => "exp",
+            Function::Ln => "log",
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Atan => "atan",
+            Function::Tanh => "tanh",
+        };
+        format!("{name}({a})")
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("{a} ^ {b}")
+    }
+
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("min({a}, {b})")
+    }
+
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("max({a}, {b})")
+    }
+
+    fn choice(&self, test: &str, a: &str, b: &str) -> String {
+        format!("choose({test}, {a}, {b})")
+    }
+
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
+        let rows = rows.map(|entries| format!("[{}]", entries.join(", ")));
+        format!("curve_at({order}, {x}, {})", rows.join(", "))
     }
 }
 

@@ -1,12 +1,11 @@
 //! A straight-line program as Rust: one operation a line, a result stored where it is computed.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 
-use crate::expr::{self, Curve};
-use crate::program::{Op, Value};
+use crate::expr;
+use crate::program::Value;
 use crate::schedule::Compiled;
-use crate::straight::{FREQUENCIES, Function, Leaf, Local, Locals, Pieces, Straight, op, operations};
+use crate::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, operations};
 
 use super::names::names;
 
@@ -231,7 +230,11 @@ impl<'a> Printer<'a> {
 
     /// The statement that computes a value, and those that put it where it is wanted.
     fn compute(&self, value: Value) -> Vec<String> {
-        let mut statements = vec![format!("let {} = {};", self.local(value), self.operation(value))];
+        let mut statements = vec![format!(
+            "let {} = {};",
+            self.local(value),
+            self.written().operation(value)
+        )];
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
         }
@@ -250,48 +253,59 @@ impl<'a> Printer<'a> {
         format!(
             "out[{place}]{} = {};{}",
             self.line(),
-            self.operand(value),
+            self.written().operand(value),
             comment.unwrap_or_default()
         )
-    }
-
-    fn operand(&self, value: Value) -> Cow<'_, str> {
-        match op(self.cut.program, value) {
-            Op::Constant(number) => literal(number).into(),
-            _ => self.local(value).into(),
-        }
     }
 
     fn local(&self, value: Value) -> &str {
         self.locals.name(value)
     }
 
-    fn operation(&self, value: Value) -> String {
-        let at = |v: Value| self.operand(v);
-        match op(self.cut.program, value) {
-            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self.operand(value).into_owned(),
-            Op::Neg(a) => format!("-{}", at(a)),
-            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
-            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
-            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
-            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
-            Op::Pow(a, b) => format!("f64::powf({}, {})", at(a), at(b)),
-            Op::Min(a, b) => format!("f64::min({}, {})", at(a), at(b)),
-            Op::Max(a, b) => format!("f64::max({}, {})", at(a), at(b)),
-            Op::Call(f, a) => format!("{}({})", function_path(f), at(a)),
-            Op::Select(test, a, b) => format!("if {} > 0.0 {{ {} }} else {{ {} }}", at(test), at(a), at(b)),
-            Op::Table(order, x, curve) => self.table(order, &at(x), &self.cut.program.curves[curve as usize]),
+    fn written(&self) -> Written<'_> {
+        Written {
+            language: &Rust,
+            program: self.cut.program,
+            locals: &self.locals,
+        }
+    }
+}
+
+/// How Rust writes.
+struct Rust;
+
+impl Language for Rust {
+    fn number(&self, number: f64) -> String {
+        match number {
+            _ if number.is_nan() => "f64::NAN".into(),
+            _ if number == f64::INFINITY => "f64::INFINITY".into(),
+            _ if number == f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
+            _ => format!("{number:?}"),
         }
     }
 
-    /// Abscissae, ordinates and slopes, each from a line of its own on.
-    fn table(&self, order: u8, x: &str, curve: &Curve<Value>) -> String {
-        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
-        let rows: [Vec<String>; 3] = [
-            curve.knots().map(literal).collect(),
-            entries(&curve.values),
-            entries(&curve.slopes),
-        ];
+    fn call(&self, function: expr::Function, a: &str) -> String {
+        format!("{}({a})", function_path(function))
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("f64::powf({a}, {b})")
+    }
+
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("f64::min({a}, {b})")
+    }
+
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("f64::max({a}, {b})")
+    }
+
+    fn choice(&self, test: &str, a: &str, b: &str) -> String {
+        format!("if {test} > 0.0 {{ {a} }} else {{ {b} }}")
+    }
+
+    /// Each row from a line of its own on.
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
         let row = |entries: Vec<String>| {
             let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
             format!("    &[{}]", lines.join(",\n      "))
@@ -310,19 +324,6 @@ fn indent(statements: &[String], depth: usize) -> String {
     let margin = "    ".repeat(depth);
     let lines = statements.iter().flat_map(|statement| statement.lines());
     lines.flat_map(|line| [margin.as_str(), line, "\n"]).collect()
-}
-
-fn literal(number: f64) -> String {
-    match number {
-        _ if number.is_nan() => "f64::NAN".into(),
-        _ if number.is_infinite() => if number > 0.0 {
-            "f64::INFINITY"
-        } else {
-            "f64::NEG_INFINITY"
-        }
-        .into(),
-        _ => format!("{number:?}"),
-    }
 }
 
 fn function_path(f: expr::Function) -> &'static str {

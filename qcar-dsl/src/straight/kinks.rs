@@ -37,3 +37,35 @@ fn difference(program: &mut Program, a: Value, b: Value) -> Value {
     });
     Value(place as u32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::expr::Symbol;
+
+    /// |a| where a = k x, min(a, x), a choice by x, and tanh(x), which bends nowhere.
+    #[test]
+    fn a_kink_is_where_a_law_bends() {
+        let [k, x, a, size, least, chosen, smooth] = [0, 1, 2, 3, 4, 5, 6].map(Value);
+        let program = Program {
+            ops: vec![
+                Op::Prepared(0),
+                Op::Input(Symbol::Frequency),
+                Op::Mul(k, x),
+                Op::Call(Function::Abs, a),
+                Op::Min(a, x),
+                Op::Select(x, size, least),
+                Op::Call(Function::Tanh, x),
+            ],
+            outputs: vec![chosen, smooth],
+            ..Program::default()
+        };
+        let kinks = kinks(&program);
+        let difference = Value(3);
+        assert_eq!(
+            kinks.ops,
+            [program.ops[0], program.ops[1], program.ops[2], Op::Sub(a, x)]
+        );
+        assert_eq!(kinks.outputs, [a, difference, x]);
+    }
+}
