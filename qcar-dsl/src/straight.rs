@@ -27,7 +27,7 @@ use crate::schedule::Compiled;
 pub use kinks::kinks;
 pub use language::{Language, Written};
 pub use locals::{Locals, Names};
-pub use pieces::{Leaf, Pieces, op, operations};
+pub use pieces::{Leaf, Pieces, computed};
 pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};
 
 use labels::{labels, of_constants};
@@ -177,6 +177,11 @@ impl<'a> Straight<'a> {
         self.function("kinks", KINKS, STATE, nameless, program)
     }
 
+    /// What a reviewer calls the values of a program.
+    pub fn labels(&self, program: &Program) -> BTreeMap<Value, String> {
+        labels(self.compiled, program)
+    }
+
     fn function<'p>(
         &self,
         name: &str,
@@ -191,7 +196,7 @@ impl<'a> Straight<'a> {
             arguments,
             results,
             program,
-            labels: labels(self.compiled, program),
+            labels: self.labels(program),
         }
     }
 

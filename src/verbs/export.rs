@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
+use qcar_dsl::modelica;
 use qcar_dsl::show::{Stage, show};
 use qcar_runtime::response::parameters::Values;
 
@@ -16,7 +17,7 @@ use crate::json;
 use crate::parameters;
 use crate::state_space::{StateSpace, state_space};
 
-/// Write a model with its values for other tools: C99, FMU, MATLAB, tables
+/// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, tables
 ///
 /// Every parameter starts with the value that is given, and stays changeable where the tool can change it. Files that are
 /// there already stay as they are.
@@ -49,6 +50,8 @@ enum Kind {
     Matlab,
     /// FILE.mat: A, B, C, D, names, units and values, MAT version 5
     Mat,
+    /// FILE.mo: a flat model of Modelica
+    Modelica,
     /// FILE.json: A, B, C, D and their derivatives, as `qcar matrices` prints them
     Json,
     /// FILE.csv: A, B, C and D, an entry a line
@@ -84,6 +87,7 @@ impl Kind {
             Kind::Fmu => "fmu",
             Kind::Matlab => "m",
             Kind::Mat => "mat",
+            Kind::Modelica => "mo",
             Kind::Json => "json",
             Kind::Csv => "csv",
             Kind::Latex => "tex",
@@ -181,6 +185,7 @@ fn files(
             vec![own(matlab::data(subject, &matrices(model, values)?))],
             String::new(),
         ),
+        Kind::Modelica => text(modelica::model(subject.compiled, subject.values)),
         Kind::Json => text(json::line(&matrices(model, values)?)),
         Kind::Csv => text(entries(&matrices(model, values)?)),
         Kind::Latex => text(show(subject.compiled, Stage::Latex)),

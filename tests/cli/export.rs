@@ -7,11 +7,12 @@ use crate::common::{Ran, qcar, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 
 /// Every kind, with the end of its file.
-const KINDS: [(&str, &str); 7] = [
+const KINDS: [(&str, &str); 8] = [
     ("c", "c"),
     ("fmu", "fmu"),
     ("matlab", "m"),
     ("mat", "mat"),
+    ("modelica", "mo"),
     ("json", "json"),
     ("csv", "csv"),
     ("latex", "tex"),

@@ -113,7 +113,7 @@ fn laws_that_bend_move_in_fmpy_as_here() {
 }
 
 /// Bends of every kind, none of which jumps, and curves through points.
-const BENDS: &str = r#"
+pub const BENDS: &str = r#"
 axle bends {
     "A wheel and a body with a stop, a digressive damper and a spring by points"
 

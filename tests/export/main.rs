@@ -3,4 +3,5 @@
 mod fmu;
 mod histories;
 mod matlab;
+mod modelica;
 mod programs;

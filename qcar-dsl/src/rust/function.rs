@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use crate::expr;
 use crate::program::Value;
 use crate::schedule::Compiled;
-use crate::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, operations};
+use crate::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, computed};
 
 use super::names::names;
 
@@ -73,7 +73,7 @@ fn function(signature: &Signature) -> String {
 fn caller(signature: &Signature, cut: &Pieces) -> String {
     let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
     let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, operations(cut.program), signature.lines) + inline(signature, true);
+    let mut text = doc(&signature.doc, computed(cut.program).count(), signature.lines) + inline(signature, true);
     let arguments = signature
         .arguments
         .iter()

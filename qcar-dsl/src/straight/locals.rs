@@ -52,6 +52,17 @@ impl Locals {
         Locals { names, results }
     }
 
+    /// No variables yet; none will be a result.
+    pub fn none() -> Self {
+        let (names, results) = (Vec::new(), BTreeMap::new());
+        Locals { names, results }
+    }
+
+    /// What the next value is called.
+    pub fn push(&mut self, name: String) {
+        self.names.push(name);
+    }
+
     /// The variable of a value.
     pub fn name(&self, value: Value) -> &str {
         &self.names[value.0 as usize]

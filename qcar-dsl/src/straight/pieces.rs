@@ -88,18 +88,13 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// How many operations of a program compute something.
-pub fn operations(program: &Program) -> usize {
-    computed(program).count()
-}
-
 /// What a value is.
-pub fn op(program: &Program, value: Value) -> Op {
+fn op(program: &Program, value: Value) -> Op {
     program.ops[value.0 as usize]
 }
 
 /// What a value reads, where it reads something.
-pub fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
+fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
     match op(program, value) {
         Op::Input(symbol) => Some(Leaf::Symbol(symbol)),
         Op::Prepared(place) => Some(Leaf::Prepared(place)),
@@ -107,7 +102,8 @@ pub fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
     }
 }
 
-fn computed(program: &Program) -> impl Iterator<Item = Value> {
+/// The values of a program that are results of operations, in order.
+pub fn computed(program: &Program) -> impl Iterator<Item = Value> {
     (0..program.ops.len() as u32)
         .map(Value)
         .filter(|&value| is_computed(program, value))
