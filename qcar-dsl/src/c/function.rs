@@ -29,10 +29,20 @@ impl Functions {
         for function in functions {
             let signature = Signature::new(function, &compiled.about.name);
             let declared = signature.heading("", &[]);
-            printed.declarations += &format!("{}{declared};\n\n", comment(&function.doc));
+            let doc = format!("{}{}", function.doc, rows(function));
+            printed.declarations += &format!("{}{declared};\n\n", comment(&doc));
             printed.definitions += &signature.definitions(&straight);
         }
         printed
+    }
+}
+
+/// What stands in the results of a frequency response; those of other functions are places of vectors or nonzeros.
+fn rows(function: &Function) -> String {
+    match (function.is_response(), function.name.ends_with("_jacobian")) {
+        (true, false) => format!("\nIn out: {}.", function.results.join(", ")),
+        (true, true) => "\nIn out: the rows of the response, then those of its Jacobian; the source names each.".into(),
+        (false, _) => String::new(),
     }
 }
 
