@@ -4,8 +4,8 @@ use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
 use crate::verbs::{
-    check, compare, completions, diff, discover, effects, fit, frf, import, inspect, kc, matrices, new, patch, score,
-    show, simulate, study,
+    check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
+    score, show, simulate, study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -40,6 +40,7 @@ enum Verb {
     Effects(effects::Arguments),
     Patch(patch::Arguments),
     Diff(diff::Arguments),
+    Export(export::Arguments),
     Completions(completions::Arguments),
 }
 
@@ -64,6 +65,7 @@ impl Cli {
             Verb::Effects(arguments) => effects::run(&arguments),
             Verb::Patch(arguments) => patch::run(&arguments),
             Verb::Diff(arguments) => diff::run(&arguments),
+            Verb::Export(arguments) => export::run(&arguments),
             Verb::Completions(arguments) => Ok(completions::run(&arguments, Cli::command())),
         }
     }

@@ -1,4 +1,4 @@
-//! Text files to read and to write.
+//! Files to read and to write.
 
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -43,7 +43,7 @@ static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 ///
 /// # Errors
 /// A folder that cannot be made or written to.
-pub fn put(folder: &Path, name: &str, content: &str) -> Result<(), InputError> {
+pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> Result<(), InputError> {
     let (path, unfinished) = (folder.join(name), folder.join(format!("{name}.part")));
     let mut written = close();
     let put = fs::create_dir_all(folder)

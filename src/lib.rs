@@ -11,6 +11,8 @@ pub mod table;
 pub mod json;
 // And drawn.
 pub mod figure;
+// Simulated time histories.
+pub mod histories;
 // And all of it on one page.
 pub mod report;
 // Signs of life meanwhile.
@@ -33,6 +35,8 @@ pub mod scales;
 pub mod workshop;
 // Dense and named matrices.
 pub mod state_space;
+// Models for other tools.
+pub mod export;
 // What the user can ask for.
 pub mod verbs;
 // The list of it.

@@ -22,8 +22,10 @@ pub mod effects;
 pub mod patch;
 // What a model says: its matrices
 pub mod matrices;
-// and its frequency response.
+// its frequency response,
 pub mod frf;
+// and all of it for other tools.
+pub mod export;
 // What was measured: the channels of a file
 pub mod inspect;
 // and the campaign that they make,

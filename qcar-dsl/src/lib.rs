@@ -59,8 +59,16 @@ pub mod notation;
 pub mod equations;
 // Two models side by side.
 pub mod difference;
-// Programs printed as Rust.
+// Programs as functions, in no language yet.
+pub mod straight;
+// Printed as Rust.
 pub mod rust;
+// Printed as C.
+pub mod c;
+// The matrices as a function of MATLAB.
+pub mod matlab;
+// A flat model of Modelica.
+pub mod modelica;
 // For people: equations, matrices, LaTeX, dot.
 pub mod show;
 // The whole compiler in one function.

@@ -34,6 +34,39 @@ pub enum Op {
 }
 
 impl Program {
+    /// What the outputs need, and nothing else.
+    pub fn pruned(&self) -> Program {
+        let needed = self.needed(&self.outputs);
+        let mut places = vec![Value(0); self.ops.len()];
+        let mut ops = Vec::new();
+        for (place, op) in self.ops.iter().enumerate().filter(|(place, _)| needed[*place]) {
+            places[place] = Value(ops.len() as u32);
+            ops.push(op.renumbered(|value| places[value.0 as usize]));
+        }
+        let new = |value: &Value| places[value.0 as usize];
+        Program {
+            ops,
+            outputs: self.outputs.iter().map(new).collect(),
+            curves: self.curves.iter().map(|curve| curve.map(new)).collect(),
+        }
+    }
+
+    /// For each value, whether one of these needs it.
+    pub fn needed(&self, by: &[Value]) -> Vec<bool> {
+        let mut needed = vec![false; self.ops.len()];
+        for value in by {
+            needed[value.0 as usize] = true;
+        }
+        for place in (0..self.ops.len()).rev() {
+            if needed[place] {
+                for value in self.arguments(self.ops[place]) {
+                    needed[value.0 as usize] = true;
+                }
+            }
+        }
+        needed
+    }
+
     /// The values that an operation is computed from, in order; none for a leaf.
     pub fn arguments(&self, op: Op) -> impl Iterator<Item = Value> {
         let three = match op {

@@ -8,18 +8,12 @@
 mod about;
 // Identifiers.
 mod names;
-// What each result is, in words.
-mod labels;
 // The parameters as a type.
 mod parameters;
-// A long program in pieces.
-mod pieces;
 // A piece as a function.
 mod function;
 // Sizes and functions over typed vectors.
 mod typed;
-// The functions over arrays.
-mod straight;
 // The trait.
 mod seam;
 
@@ -41,7 +35,7 @@ pub fn module(compiled: &Compiled) -> String {
         typed::functions(compiled),
         seam::implementation(compiled) + &seam::blocks(&compiled.about),
         about::about(&compiled.about),
-        format!("{STRAIGHT}{}}}\n", indent(&straight::functions(compiled).join("\n"))),
+        format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
     ];
     let body = sections.join("\n");
     let fingerprint = format!(

@@ -25,7 +25,7 @@ mod table;
 // One module a format.
 mod csv;
 // Of ASAM.
-mod mdf;
+pub mod mdf;
 // Of SDRC.
 mod uff;
 // Of MTS.
@@ -33,7 +33,7 @@ mod rpc;
 // Of LabVIEW.
 mod tdms;
 // Of MATLAB.
-mod mat;
+pub mod mat;
 // Of Excel.
 mod excel;
 // The door: which format it is, and its channels.

@@ -6,6 +6,8 @@ mod value;
 mod v5;
 // Version 7.3.
 mod hdf5;
+// Version 5, written.
+pub mod write;
 // Channels, from the shapes in which programs store them.
 mod layout;
 

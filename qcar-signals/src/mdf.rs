@@ -13,6 +13,8 @@ mod packed;
 mod v4;
 // Version 3.
 mod v3;
+// Version 4, written.
+pub mod write;
 
 use std::collections::HashSet;
 

@@ -12,6 +12,7 @@ use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, V
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::files::folder_for_results;
+use crate::histories::Kind;
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
 use crate::verbs::TableFormat;
@@ -36,7 +37,7 @@ use compared::Compared;
 /// square, after both records are aligned at the peak of the wheel.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays"
+    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays\n  qcar simulate models/campaigns/axle_a_rig --out viewer --as mdf"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
@@ -53,9 +54,12 @@ pub struct Arguments {
     /// How much of the model is simulated over cleats
     #[arg(long, value_enum, default_value_t = VariantName::Complete)]
     variant: VariantName,
-    /// Write the time histories into this folder, a CSV for each run; of a sweep or time history measured beside simulated, and an SVG
+    /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
+    /// What kind of files
+    #[arg(long = "as", value_enum, value_name = "KIND", default_value_t = Kind::Csv, requires = "out")]
+    kind: Kind,
     /// How to print
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     format: TableFormat,
@@ -85,7 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         return Err(nothing_to_simulate(&campaign, expected).into());
     }
     if let Some(folder) = &arguments.out {
-        render::records(&records, folder)?;
+        render::records(&records, folder, arguments.kind)?;
     }
     let result = render::Result {
         campaign: &campaign.name,
@@ -114,7 +118,7 @@ fn over_cleats(
     let cleats = cleats(campaign)?;
     let driven = drive(campaign, model, values, &cleats, arguments.variant.into())?;
     if let Some(folder) = &arguments.out {
-        render::histories(model.about(), &cleats, &driven.rides, folder)?;
+        render::histories(model.about(), &cleats, &driven.rides, folder, arguments.kind)?;
     }
     Ok(Some(driven.compared))
 }

@@ -8,12 +8,13 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 16] = [
+const VERBS: [&str; 17] = [
     "new",
     "import",
     "check",
     "show",
     "matrices",
+    "export",
     "frf",
     "fit",
     "kc",

@@ -1,45 +1,63 @@
 //! A straight-line program as Rust: one operation a line, a result stored where it is computed.
 
-use std::borrow::Cow;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
-use crate::expr::{Curve, Function};
-use crate::program::{Op, Program, Value};
+use crate::expr;
+use crate::program::Value;
+use crate::schedule::Compiled;
+use crate::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Pieces, Straight, Written, computed};
 
-use super::names::Names;
-use super::pieces::{Leaf, Pieces, op, operations};
+use super::names::names;
 
-/// How a program becomes a function.
-pub struct Signature<'a> {
-    /// The name of the function.
-    pub name: String,
-    /// Its doc comment, line by line; the operation count is added.
-    pub doc: Vec<String>,
-    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
-    pub arguments: Vec<(&'static str, String)>,
-    /// What each result is, for a comment.
-    pub results: Vec<String>,
-    /// Where a leaf is read, and what a reviewer calls it.
-    pub leaf: &'a dyn Fn(Leaf) -> Local,
-    /// What a reviewer calls a value of the program, where the model has a name for it.
-    pub labels: BTreeMap<Value, String>,
-    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
-    pub lines: bool,
+/// All straight-line functions of a model.
+pub fn functions(compiled: &Compiled) -> Vec<String> {
+    let straight = Straight::new(compiled);
+    let functions = straight.functions("a block of lines");
+    let written = functions.iter().map(|function| {
+        let signature = Signature {
+            function,
+            doc: function.doc.lines().map(String::from).collect(),
+            arguments: function
+                .arguments
+                .iter()
+                .map(|&argument| (argument, kind(argument)))
+                .collect(),
+            leaf: &|leaf| straight.local(leaf, function.arguments),
+            lines: function.is_response(),
+        };
+        self::function(&signature)
+    });
+    written.collect()
 }
 
-/// A leaf as the function reads it.
-pub struct Local {
-    /// The argument, `p`.
-    pub argument: &'static str,
-    /// What of it, `[3]`.
-    pub place: String,
-    /// What a reviewer calls it, `k_tire`.
-    pub name: String,
+fn kind(argument: &str) -> &'static str {
+    match argument {
+        "p" => "&[f64; PARAMETERS]",
+        "constants" => "&[f64; CONSTANTS]",
+        "x" => "&[f64; STATES]",
+        "u" => "&[f64; INPUTS]",
+        "contact" => "&seam::Contact",
+        FREQUENCIES => "&[f64; LINES]",
+        _ => "f64",
+    }
+}
+
+/// How a program becomes a function.
+struct Signature<'a> {
+    function: &'a Function<'a>,
+    /// Its doc comment, line by line; the operation count is added.
+    doc: Vec<String>,
+    /// Names and types of the arguments that it may read, `("p", "&[f64; 19]")`.
+    arguments: Vec<(&'static str, &'static str)>,
+    /// Where a leaf is read, and what a reviewer calls it.
+    leaf: &'a dyn Fn(Leaf) -> Local,
+    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
+    lines: bool,
 }
 
 /// The Rust text of a program: one function, or one that calls several in turn.
-pub fn function(signature: &Signature, program: &Program) -> String {
-    let cut = Pieces::cut(program);
+fn function(signature: &Signature) -> String {
+    let cut = Pieces::cut(signature.function.program);
     let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(signature, &cut, piece).function());
     match cut.pieces.len() {
         1 => pieces.collect(),
@@ -55,18 +73,23 @@ pub fn function(signature: &Signature, program: &Program) -> String {
 fn caller(signature: &Signature, cut: &Pieces) -> String {
     let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
     let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, operations(cut.program), signature.lines) + inline(signature, true);
+    let mut text = doc(&signature.doc, computed(cut.program).count(), signature.lines) + inline(signature, true);
     let arguments = signature
         .arguments
         .iter()
         .map(|(name, kind)| format!("{name}: {kind}"))
         .collect();
-    text += &heading(&signature.name, arguments, signature.lines, cut.program.outputs.len());
+    text += &heading(
+        &signature.function.name,
+        arguments,
+        signature.lines,
+        cut.program.outputs.len(),
+    );
     text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
         text += &format!(
             "    {}_{piece}({}, &mut kept, out);\n",
-            signature.name,
+            signature.function.name,
             names.join(", ")
         );
     }
@@ -93,7 +116,7 @@ fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) 
 fn inline(signature: &Signature, whole: bool) -> &'static str {
     match (signature.lines, whole) {
         (true, _) => "#[inline(always)]\n",
-        (false, true) if signature.name == "rolling_derivative" => "#[inline]\n",
+        (false, true) if signature.function.name == "rolling_derivative" => "#[inline]\n",
         (false, true) => "",
         (false, false) => "#[inline(never)]\n",
     }
@@ -108,38 +131,22 @@ struct Printer<'a> {
     signature: &'a Signature<'a>,
     cut: &'a Pieces<'a>,
     piece: usize,
-    /// The local variable of each value that the piece reads, takes or computes; empty for the others.
-    locals: Vec<String>,
-    /// The results to which each value goes.
-    results: BTreeMap<Value, Vec<usize>>,
+    locals: Locals,
 }
 
 impl<'a> Printer<'a> {
     fn new(signature: &'a Signature<'a>, cut: &'a Pieces<'a>, piece: usize) -> Self {
-        let mut names = Names::beside(signature.arguments.iter().map(|(argument, _)| *argument));
-        let mut locals = vec![String::new(); cut.program.ops.len()];
-        for (leaf, value) in cut.read(piece) {
-            locals[value.0 as usize] = names.take(&(signature.leaf)(leaf).name);
-        }
-        for value in cut.taken(piece).into_iter().chain(cut.pieces[piece].iter().copied()) {
-            let label = signature.labels.get(&value).cloned();
-            locals[value.0 as usize] = names.take(&label.unwrap_or_else(|| format!("v{}", value.0)));
-        }
-        let mut results: BTreeMap<Value, Vec<usize>> = BTreeMap::new();
-        for (place, &value) in cut.program.outputs.iter().enumerate() {
-            results.entry(value).or_default().push(place);
-        }
+        let free = names(signature.function.arguments);
         Printer {
             signature,
             cut,
             piece,
-            locals,
-            results,
+            locals: Locals::new(signature.function, cut, piece, free, signature.leaf),
         }
     }
 
     fn function(&self) -> String {
-        let Signature { name, lines, .. } = self.signature;
+        let (name, lines) = (&self.signature.function.name, &self.signature.lines);
         let count = self.cut.pieces[self.piece].len();
         let results = self.cut.program.outputs.len();
         if self.cut.pieces.len() == 1 {
@@ -179,7 +186,8 @@ impl<'a> Printer<'a> {
             .into_iter()
             .partition(|(local, _)| local.argument == FREQUENCIES);
         let read = |(local, value): &(Local, Value)| {
-            format!("let {} = {}{};", self.local(*value), local.argument, local.place)
+            let line = if local.argument == FREQUENCIES { self.line() } else { "" };
+            format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
         };
         let once: Vec<String> = once.iter().map(read).collect();
         let kept = self.cut.taken(self.piece).into_iter().map(|value| {
@@ -222,62 +230,82 @@ impl<'a> Printer<'a> {
 
     /// The statement that computes a value, and those that put it where it is wanted.
     fn compute(&self, value: Value) -> Vec<String> {
-        let mut statements = vec![format!("let {} = {};", self.local(value), self.operation(value))];
+        let mut statements = vec![format!(
+            "let {} = {};",
+            self.local(value),
+            self.written().operation(value)
+        )];
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
         }
-        let results = self.results.get(&value).into_iter().flatten();
-        statements.extend(results.map(|&place| self.store(place, value)));
+        let results = self.locals.results(value);
+        statements.extend(results.map(|place| self.store(place, value)));
         statements
     }
 
     fn store(&self, place: usize, value: Value) -> String {
-        let comment = self.signature.results.get(place).map(|result| format!(" // {result}"));
+        let comment = self
+            .signature
+            .function
+            .results
+            .get(place)
+            .map(|result| format!(" // {result}"));
         format!(
             "out[{place}]{} = {};{}",
             self.line(),
-            self.operand(value),
+            self.written().operand(value),
             comment.unwrap_or_default()
         )
     }
 
-    fn operand(&self, value: Value) -> Cow<'_, str> {
-        match op(self.cut.program, value) {
-            Op::Constant(number) => literal(number).into(),
-            _ => self.local(value).into(),
-        }
-    }
-
     fn local(&self, value: Value) -> &str {
-        &self.locals[value.0 as usize]
+        self.locals.name(value)
     }
 
-    fn operation(&self, value: Value) -> String {
-        let at = |v: Value| self.operand(v);
-        match op(self.cut.program, value) {
-            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => self.operand(value).into_owned(),
-            Op::Neg(a) => format!("-{}", at(a)),
-            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
-            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
-            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
-            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
-            Op::Pow(a, b) => format!("f64::powf({}, {})", at(a), at(b)),
-            Op::Min(a, b) => format!("f64::min({}, {})", at(a), at(b)),
-            Op::Max(a, b) => format!("f64::max({}, {})", at(a), at(b)),
-            Op::Call(f, a) => format!("{}({})", function_path(f), at(a)),
-            Op::Select(test, a, b) => format!("if {} > 0.0 {{ {} }} else {{ {} }}", at(test), at(a), at(b)),
-            Op::Table(order, x, curve) => self.table(order, &at(x), &self.cut.program.curves[curve as usize]),
+    fn written(&self) -> Written<'_> {
+        Written {
+            language: &Rust,
+            program: self.cut.program,
+            locals: &self.locals,
+        }
+    }
+}
+
+/// How Rust writes.
+struct Rust;
+
+impl Language for Rust {
+    fn number(&self, number: f64) -> String {
+        match number {
+            _ if number.is_nan() => "f64::NAN".into(),
+            _ if number == f64::INFINITY => "f64::INFINITY".into(),
+            _ if number == f64::NEG_INFINITY => "f64::NEG_INFINITY".into(),
+            _ => format!("{number:?}"),
         }
     }
 
-    /// Abscissae, ordinates and slopes, each from a line of its own on.
-    fn table(&self, order: u8, x: &str, curve: &Curve<Value>) -> String {
-        let entries = |values: &[Value]| values.iter().map(|&entry| self.operand(entry).into()).collect();
-        let rows: [Vec<String>; 3] = [
-            curve.knots().map(literal).collect(),
-            entries(&curve.values),
-            entries(&curve.slopes),
-        ];
+    fn call(&self, function: expr::Function, a: &str) -> String {
+        format!("{}({a})", function_path(function))
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("f64::powf({a}, {b})")
+    }
+
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("f64::min({a}, {b})")
+    }
+
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("f64::max({a}, {b})")
+    }
+
+    fn choice(&self, test: &str, a: &str, b: &str) -> String {
+        format!("if {test} > 0.0 {{ {a} }} else {{ {b} }}")
+    }
+
+    /// Each row from a line of its own on.
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
         let row = |entries: Vec<String>| {
             let lines: Vec<String> = entries.chunks(ENTRIES).map(|line| line.join(", ")).collect();
             format!("    &[{}]", lines.join(",\n      "))
@@ -292,39 +320,23 @@ const ENTRIES: usize = 8;
 /// What interpolates at run time.
 const TABLE: &str = "::qcar_runtime::generated::table";
 
-/// The argument of a frequency response that has a value for each line.
-pub const FREQUENCIES: &str = "frequencies";
-
 fn indent(statements: &[String], depth: usize) -> String {
     let margin = "    ".repeat(depth);
     let lines = statements.iter().flat_map(|statement| statement.lines());
     lines.flat_map(|line| [margin.as_str(), line, "\n"]).collect()
 }
 
-fn literal(number: f64) -> String {
-    match number {
-        _ if number.is_nan() => "f64::NAN".into(),
-        _ if number.is_infinite() => if number > 0.0 {
-            "f64::INFINITY"
-        } else {
-            "f64::NEG_INFINITY"
-        }
-        .into(),
-        _ => format!("{number:?}"),
-    }
-}
-
-fn function_path(f: Function) -> &'static str {
+fn function_path(f: expr::Function) -> &'static str {
     match f {
-        Function::Abs => "f64::abs",
-        Function::Sign => "sign",
-        Function::Sqrt => "f64::sqrt",
-        Function::Exp => "f64::exp",
-        Function::Ln => "f64::ln",
-        Function::Sin => "f64::sin",
-        Function::Cos => "f64::cos",
-        Function::Tan => "f64::tan",
-        Function::Atan => "f64::atan",
-        Function::Tanh => "f64::tanh",
+        expr::Function::Abs => "f64::abs",
+        expr::Function::Sign => "sign",
+        expr::Function::Sqrt => "f64::sqrt",
+        expr::Function::Exp => "f64::exp",
+        expr::Function::Ln => "f64::ln",
+        expr::Function::Sin => "f64::sin",
+        expr::Function::Cos => "f64::cos",
+        expr::Function::Tan => "f64::tan",
+        expr::Function::Atan => "f64::atan",
+        expr::Function::Tanh => "f64::tanh",
     }
 }

@@ -1,9 +1,6 @@
-//! Names of local variables: each free of Rust's keywords and of the others.
+//! Names that are free of Rust's keywords.
 
-use crate::hash::HashSet;
-
-/// The names that are taken in a function.
-pub struct Names(HashSet<String>);
+use crate::straight::Names;
 
 /// What a function refers to beside its own variables.
 const RESERVED: &[&str] = &[
@@ -20,21 +17,10 @@ const RESERVED: &[&str] = &[
     "sign",
 ];
 
-impl Names {
-    /// Names beside those of the arguments.
-    pub fn beside(arguments: impl Iterator<Item = &'static str>) -> Names {
-        Names(RESERVED.iter().copied().chain(arguments).map(String::from).collect())
-    }
-
-    /// The wished name, with as many `_` behind it as make it free. The state of an element has a dot in its name.
-    pub fn take(&mut self, wish: &str) -> String {
-        let mut name = wish.replace('.', "_");
-        while is_keyword(&name) || self.0.contains(&name) {
-            name.push('_');
-        }
-        self.0.insert(name.clone());
-        name
-    }
+/// The names of local variables beside these arguments.
+pub fn names(arguments: &[&'static str]) -> Names {
+    let taken = KEYWORDS.iter().chain(RESERVED).chain(arguments);
+    Names::beside(taken.copied())
 }
 
 /// A name that can stand where Rust expects an identifier of ours, such as a field.

@@ -2,9 +2,9 @@
 
 use crate::about::About;
 use crate::schedule::Compiled;
+use crate::straight::response_name;
 
 use super::names::camel;
-use super::straight::response_name;
 
 /// The model's type and its implementation of the seam.
 pub fn implementation(compiled: &Compiled) -> String {

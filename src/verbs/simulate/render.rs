@@ -1,13 +1,13 @@
 //! What was simulated as text, JSON and CSV.
 
 use std::collections::BTreeMap;
-use std::fmt::Write;
 use std::path::Path;
 
 use qcar_runtime::compare::Summary;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 use qcar_runtime::simulate::Ride;
+use qcar_signals::mdf::write::Channel;
 use serde::Serialize;
 
 use super::Cleat;
@@ -15,6 +15,7 @@ use super::compared::{Compared, Difference, Sizes};
 use super::figure;
 use super::records::{Record, RecordError};
 use crate::files::put;
+use crate::histories::{History, Kind};
 use crate::json;
 use crate::table::{Table, number};
 
@@ -204,35 +205,40 @@ pub(crate) fn csv(of: &Compared) -> String {
     head.to_string() + &of.runs.iter().map(row).collect::<String>()
 }
 
-/// For each sweep or time history a CSV of what was measured beside what was simulated, and a figure of it.
+/// For each sweep or time history a file of what was measured beside what was simulated, and a figure of it.
 ///
 /// # Errors
 /// A folder that cannot be written to.
-pub(super) fn records(of: &[Record], folder: &Path) -> std::result::Result<(), InputError> {
+pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::Result<(), InputError> {
     for record in of {
-        let stem = stem(&record.run);
-        put(folder, &format!("{stem}.csv"), &beside(record))?;
-        put(folder, &format!("{stem}.svg"), &figure::record(record).svg())?;
+        let history = beside(record);
+        history.put(folder, kind)?;
+        put(folder, &format!("{}.svg", history.name), &figure::record(record).svg())?;
     }
     Ok(())
 }
 
-fn beside(record: &Record) -> String {
-    let mut out = String::from("time");
-    for error in &record.errors {
-        let (channel, quantity) = (&error.channel, error.quantity);
-        let _ = write!(out, ",{channel}_{quantity}_measured,{channel}_{quantity}_simulated");
-    }
-    out.push('\n');
+fn beside(record: &Record) -> History {
     let samples = record.signals.first().map_or(0, |(_, [measured, _])| measured.len());
-    for sample in 0..samples {
-        let _ = write!(out, "{}", record.start + sample as f64 / record.rate);
-        for (_, [measured, simulated]) in &record.signals {
-            let _ = write!(out, ",{},{}", measured[sample], simulated[sample]);
-        }
-        out.push('\n');
+    let channels = record
+        .signals
+        .iter()
+        .zip(&record.errors)
+        .flat_map(|((_, signals), error)| {
+            let channel = |(what, samples): (&str, &Vec<f64>)| Channel {
+                name: format!("{}_{}_{what}", error.channel, error.quantity),
+                unit: error.unit.into(),
+                samples: samples.clone(),
+            };
+            ["measured", "simulated"].into_iter().zip(signals).map(channel)
+        });
+    History {
+        name: stem(&record.run).into(),
+        time: (0..samples)
+            .map(|sample| record.start + sample as f64 / record.rate)
+            .collect(),
+        channels: channels.collect(),
     }
-    out
 }
 
 /// A file's name without its folder and endings.
@@ -244,7 +250,7 @@ fn stem(file: &str) -> &str {
     name.trim_end_matches(".gz").trim_end_matches(".csv")
 }
 
-/// A CSV for each run: time, the outputs of the model, the tyre's forces and contact area.
+/// A file for each run: time, the outputs of the model, the tyre's forces and contact area.
 ///
 /// # Errors
 /// A folder that cannot be written to.
@@ -253,21 +259,30 @@ pub(crate) fn histories(
     cleats: &[Cleat],
     rides: &[Ride],
     folder: &Path,
+    kind: Kind,
 ) -> std::result::Result<(), InputError> {
     for (cleat, ride) in cleats.iter().zip(rides) {
-        let stem = stem(&cleat.run.name);
-        put(folder, &format!("{stem}.csv"), &history(about, ride))?;
+        history(about, stem(&cleat.run.name), ride).put(folder, kind)?;
     }
     Ok(())
 }
 
-fn history(about: &About, ride: &Ride) -> String {
-    let names: String = about.outputs.iter().map(|output| format!(",{}", output.name)).collect();
-    let mut out = format!("time{names},tire_force_z,tire_force_x,contact_area\n");
-    for (at, time) in ride.time.iter().enumerate() {
-        let outputs: String = ride.outputs.iter().map(|output| format!(",{}", output[at])).collect();
-        let [force_z, force_x] = [ride.force[0][at], ride.force[1][at]];
-        let _ = writeln!(out, "{time}{outputs},{force_z},{force_x},{}", ride.area[at]);
+fn history(about: &About, name: &str, ride: &Ride) -> History {
+    let channel = |name: &str, unit: &str, samples: &Vec<f64>| Channel {
+        name: name.into(),
+        unit: unit.into(),
+        samples: samples.clone(),
+    };
+    let outputs = about.outputs.iter().zip(&ride.outputs);
+    let outputs = outputs.map(|(output, samples)| channel(&output.name, &output.unit, samples));
+    let tyre = [
+        channel("tire_force_z", "N", &ride.force[0]),
+        channel("tire_force_x", "N", &ride.force[1]),
+        channel("contact_area", "m^2", &ride.area),
+    ];
+    History {
+        name: name.into(),
+        time: ride.time.clone(),
+        channels: outputs.chain(tyre).collect(),
     }
-    out
 }

@@ -14,6 +14,7 @@ use qcar_runtime::simulate::{Cleat, Variant};
 use crate::catalogue::{self, Loaded};
 use crate::failure::Failure;
 use crate::files::put;
+use crate::histories::Kind;
 use crate::json;
 use crate::verbs::discover::{self, Answer};
 use crate::verbs::fit::{self, Choices, Fitted};
@@ -138,7 +139,7 @@ fn track(fitted: &Fitted, after: Option<&After>, out: &Path) -> Result<Option<Tr
     };
     let (about, driven) = (best.0.about(), track.after.as_ref().unwrap_or(&track.before));
     let folder = out.join("cleat");
-    simulate::render::histories(about, &track.cleats, &driven.rides, &folder)?;
+    simulate::render::histories(about, &track.cleats, &driven.rides, &folder, Kind::Csv)?;
     put(&folder, "errors.csv", &simulate::render::csv(&driven.compared))?;
     Ok(Some(track))
 }

@@ -1,4 +1,4 @@
-//! A long program in pieces: rustc's optimiser is superlinear in the length of a function.
+//! A long program in pieces: the optimisers of compilers are superlinear in the length of a function.
 //!
 //! What a later piece needs of an earlier one goes through an array, `kept`.
 
@@ -49,6 +49,15 @@ impl<'a> Pieces<'a> {
         cut
     }
 
+    /// The whole program as one piece, where no optimiser is in the way.
+    pub fn whole(program: &'a Program) -> Pieces<'a> {
+        Pieces {
+            program,
+            pieces: vec![computed(program).collect()],
+            kept: BTreeMap::new(),
+        }
+    }
+
     /// The values that a piece takes from an earlier one.
     pub fn taken(&self, piece: usize) -> BTreeSet<Value> {
         let values = &self.pieces[piece];
@@ -79,18 +88,13 @@ impl<'a> Pieces<'a> {
     }
 }
 
-/// How many operations of a program compute something.
-pub fn operations(program: &Program) -> usize {
-    computed(program).count()
-}
-
 /// What a value is.
-pub fn op(program: &Program, value: Value) -> Op {
+fn op(program: &Program, value: Value) -> Op {
     program.ops[value.0 as usize]
 }
 
 /// What a value reads, where it reads something.
-pub fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
+fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
     match op(program, value) {
         Op::Input(symbol) => Some(Leaf::Symbol(symbol)),
         Op::Prepared(place) => Some(Leaf::Prepared(place)),
@@ -98,7 +102,8 @@ pub fn as_leaf(program: &Program, value: Value) -> Option<Leaf> {
     }
 }
 
-fn computed(program: &Program) -> impl Iterator<Item = Value> {
+/// The values of a program that are results of operations, in order.
+pub fn computed(program: &Program) -> impl Iterator<Item = Value> {
     (0..program.ops.len() as u32)
         .map(Value)
         .filter(|&value| is_computed(program, value))

@@ -1,0 +1,70 @@
+//! An operation as text: what all languages write alike, and what each has of its own.
+
+use std::borrow::Cow;
+
+use super::Locals;
+use crate::expr::Function;
+use crate::program::{Op, Program, Value};
+
+/// What a language writes in its own way.
+pub trait Language {
+    /// A number, to every digit.
+    fn number(&self, number: f64) -> String;
+    /// A function of a value.
+    fn call(&self, function: Function, a: &str) -> String;
+    /// `a` to the power of `b`.
+    fn power(&self, a: &str, b: &str) -> String;
+    /// The smaller of two.
+    fn smaller(&self, a: &str, b: &str) -> String;
+    /// The larger of two.
+    fn larger(&self, a: &str, b: &str) -> String;
+    /// `a` where the test is above zero, else `b`.
+    fn choice(&self, test: &str, a: &str, b: &str) -> String;
+    /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String;
+}
+
+/// A program whose values have names, in a language.
+pub struct Written<'a> {
+    /// How it writes.
+    pub language: &'a dyn Language,
+    /// What is written.
+    pub program: &'a Program,
+    /// What values are called.
+    pub locals: &'a Locals,
+}
+
+impl Written<'_> {
+    /// A value where it is used: a number, or the variable that holds it.
+    pub fn operand(&self, value: Value) -> Cow<'_, str> {
+        match self.program.ops[value.0 as usize] {
+            Op::Constant(number) => self.language.number(number).into(),
+            _ => self.locals.name(value).into(),
+        }
+    }
+
+    /// What computes a value.
+    pub fn operation(&self, value: Value) -> String {
+        let at = |v: Value| self.operand(v);
+        match self.program.ops[value.0 as usize] {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => at(value).into_owned(),
+            Op::Neg(a) => format!("-{}", at(a)),
+            Op::Add(a, b) => format!("{} + {}", at(a), at(b)),
+            Op::Sub(a, b) => format!("{} - {}", at(a), at(b)),
+            Op::Mul(a, b) => format!("{} * {}", at(a), at(b)),
+            Op::Div(a, b) => format!("{} / {}", at(a), at(b)),
+            Op::Pow(a, b) => self.language.power(&at(a), &at(b)),
+            Op::Min(a, b) => self.language.smaller(&at(a), &at(b)),
+            Op::Max(a, b) => self.language.larger(&at(a), &at(b)),
+            Op::Call(function, a) => self.language.call(function, &at(a)),
+            Op::Select(test, a, b) => self.language.choice(&at(test), &at(a), &at(b)),
+            Op::Table(order, x, curve) => {
+                let curve = &self.program.curves[curve as usize];
+                let entries = |values: &[Value]| values.iter().map(|&entry| at(entry).into()).collect();
+                let knots = curve.knots().map(|knot| self.language.number(knot)).collect();
+                let rows = [knots, entries(&curve.values), entries(&curve.slopes)];
+                self.language.table(order, &at(x), rows)
+            }
+        }
+    }
+}

@@ -1,0 +1,139 @@
+//! MAT-files of version 5, written: what MATLAB, Octave and SciPy load. Nothing is packed.
+//!
+//! Source: "MAT-File Format" of The MathWorks.
+
+use super::{HEADER, VERSION};
+
+const INT8: u32 = 1;
+const UINT16: u32 = 4;
+const INT32: u32 = 5;
+const UINT32: u32 = 6;
+const DOUBLE: u32 = 9;
+const MATRIX: u32 = 14;
+
+/// The longest name of a variable or field, in bytes.
+pub const LONGEST_NAME: usize = 63;
+
+/// What is written of a variable.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Array {
+    /// Rows and columns, and as many numbers, column by column.
+    Numbers([usize; 2], Vec<f64>),
+    /// A text.
+    Text(String),
+    /// A cell array, one row.
+    Cells(Vec<Array>),
+    /// A structure array, one row: the names of the fields, and for each element its fields.
+    Structs(Vec<String>, Vec<Vec<Array>>),
+}
+
+impl Array {
+    /// A number.
+    pub fn number(number: f64) -> Array {
+        Array::column(vec![number])
+    }
+
+    /// A column of numbers.
+    pub fn column(numbers: Vec<f64>) -> Array {
+        Array::Numbers([numbers.len(), 1], numbers)
+    }
+
+    /// Rows of so many numbers.
+    pub fn rows(rows: &[Vec<f64>], columns: usize) -> Array {
+        let numbers = (0..columns).flat_map(|column| rows.iter().map(move |row| row[column]));
+        Array::Numbers([rows.len(), columns], numbers.collect())
+    }
+
+    /// Texts as a cell array.
+    pub fn texts<'a>(texts: impl IntoIterator<Item = &'a str>) -> Array {
+        Array::Cells(texts.into_iter().map(|text| Array::Text(text.into())).collect())
+    }
+
+    /// One structure.
+    pub fn fields(fields: Vec<(String, Array)>) -> Array {
+        let (names, values) = fields.into_iter().unzip();
+        Array::Structs(names, vec![values])
+    }
+
+    /// The number of the class, and the dimensions.
+    fn shape(&self) -> (u32, [usize; 2]) {
+        match self {
+            Array::Cells(cells) => (1, [usize::from(!cells.is_empty()), cells.len()]),
+            Array::Structs(_, elements) => (2, [1, elements.len()]),
+            Array::Text(text) => (4, [usize::from(!text.is_empty()), text.encode_utf16().count()]),
+            Array::Numbers(size, _) => (6, *size),
+        }
+    }
+}
+
+/// A file with these variables; `description` is what it says of itself in a line of 116 letters at most.
+///
+/// A name that is longer than [`LONGEST_NAME`] is cut off there.
+pub fn v5(description: &str, variables: &[(String, Array)]) -> Vec<u8> {
+    let mut file = vec![b' '; VERSION];
+    for (to, from) in file
+        .iter_mut()
+        .zip(format!("MATLAB 5.0 MAT-file, {description}").bytes().take(116))
+    {
+        *to = if from.is_ascii_graphic() { from } else { b' ' };
+    }
+    // No data of a subsystem.
+    file[116..].fill(0);
+    file.extend([0x00, 0x01, b'I', b'M']);
+    debug_assert_eq!(file.len(), HEADER);
+    for (name, array) in variables {
+        file.extend(matrix(name, array));
+    }
+    file
+}
+
+fn matrix(name: &str, array: &Array) -> Vec<u8> {
+    let (class, dimensions) = array.shape();
+    let mut content = element(UINT32, &bytes(&[class, 0], |number| number.to_le_bytes()));
+    content.extend(element(INT32, &bytes(&dimensions, |&size| (size as i32).to_le_bytes())));
+    content.extend(element(INT8, &name.as_bytes()[..name.len().min(LONGEST_NAME)]));
+    match array {
+        Array::Numbers(_, numbers) => content.extend(element(DOUBLE, &bytes(numbers, |number| number.to_le_bytes()))),
+        Array::Text(text) => {
+            let letters: Vec<u16> = text.encode_utf16().collect();
+            content.extend(element(UINT16, &bytes(&letters, |letter| letter.to_le_bytes())));
+        }
+        Array::Cells(cells) => content.extend(cells.iter().flat_map(|cell| matrix("", cell))),
+        Array::Structs(names, elements) => {
+            content.extend(element(INT32, &(LONGEST_NAME as i32 + 1).to_le_bytes()));
+            content.extend(element(INT8, &field_names(names)));
+            content.extend(elements.iter().flatten().flat_map(|field| matrix("", field)));
+        }
+    }
+    let mut all = bytes(&[MATRIX, content.len() as u32], |number| number.to_le_bytes());
+    all.extend(content);
+    all
+}
+
+/// Each name filled up with zeros, one of which ends it.
+fn field_names(names: &[String]) -> Vec<u8> {
+    let fixed = |name: &String| {
+        let mut fixed = [0; LONGEST_NAME + 1];
+        let length = name.len().min(LONGEST_NAME);
+        fixed[..length].copy_from_slice(&name.as_bytes()[..length]);
+        fixed
+    };
+    names.iter().flat_map(fixed).collect()
+}
+
+/// A tag and data that fill up eight bytes; up to four bytes stand in the tag.
+fn element(kind: u32, data: &[u8]) -> Vec<u8> {
+    let length = data.len() as u32;
+    let small = !data.is_empty() && data.len() <= 4;
+    let mut element = match small {
+        true => bytes(&[kind | length << 16], |number| number.to_le_bytes()),
+        false => bytes(&[kind, length], |number| number.to_le_bytes()),
+    };
+    element.extend(data);
+    element.resize(element.len().next_multiple_of(8), 0);
+    element
+}
+
+fn bytes<T, const N: usize>(numbers: &[T], of: impl Fn(&T) -> [u8; N]) -> Vec<u8> {
+    numbers.iter().flat_map(of).collect()
+}

@@ -1,0 +1,184 @@
+//! A Functional Mock-up Unit: the model's C99 behind the functions of the interface, and the description of both.
+//!
+//! The same model and values give the same bytes, but for the library, which is the compiler's.
+
+// Text and attributes of XML.
+mod xml;
+// What the variables are.
+mod variables;
+// Which of them the results depend on.
+mod dependencies;
+// modelDescription.xml.
+mod description;
+// The library, where there is a C compiler.
+mod library;
+
+use std::io::{Cursor, Write};
+
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
+
+use super::{File, Subject, c};
+use description::{fmi2, fmi3};
+use variables::{Variable, Variables};
+
+pub use library::Library;
+
+/// The relative tolerance to which Co-Simulation integrates.
+const TOLERANCE: f64 = 1e-9;
+
+/// What is the same in every unit, but for what stands before it all.
+const SOURCES: [(&str, &str); 3] = [
+    ("core.h", include_str!("fmu/core.h")),
+    ("core.c", include_str!("fmu/core.c")),
+    ("advance.c", include_str!("fmu/advance.c")),
+];
+
+/// The version of the interface.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Version {
+    /// 2.0
+    Two,
+    /// 3.0
+    Three,
+}
+
+impl Version {
+    /// The functions of the interface.
+    fn source(self) -> (&'static str, &'static str) {
+        match self {
+            Version::Two => ("fmi2.c", include_str!("fmu/fmi2.c")),
+            Version::Three => ("fmi3.c", include_str!("fmu/fmi3.c")),
+        }
+    }
+}
+
+/// A unit, and whether it has a library for this machine.
+pub struct Unit {
+    /// The bytes of the `.fmu` file.
+    pub archive: Vec<u8>,
+    /// What became of the library.
+    pub library: Library,
+}
+
+/// Packs a model.
+///
+/// # Errors
+/// Where a C compiler is there and cannot compile the model, its message.
+pub fn pack(subject: Subject, version: Version) -> Result<Unit, String> {
+    let name = &subject.compiled.about.name;
+    let variables = Variables::of(subject);
+    let mut sources = sources(subject, &variables, version);
+    let compiled: Vec<String> = names(&sources)
+        .filter(|name| name.ends_with(".c"))
+        .map(String::from)
+        .collect();
+    let token = token(&sources);
+    let definition = format!("\n#define TOKEN \"{token}\"\n\n#endif\n");
+    if let Some(own) = sources.iter_mut().find(|file| file.name == MODEL_HEADER) {
+        own.content.extend(definition.bytes());
+    }
+    let library = library::compile(name, &sources, &compiled, version)?;
+    let description = match version {
+        Version::Two => fmi2::description(subject, &variables, &token, &compiled),
+        Version::Three => fmi3::description(subject, &variables, &token),
+    };
+    let mut entries = vec![("modelDescription.xml".to_string(), description.into_bytes())];
+    entries.extend(
+        sources
+            .into_iter()
+            .map(|file| (format!("sources/{}", file.name), file.content)),
+    );
+    if version == Version::Three {
+        let build = fmi3::build_description(name, &compiled).into_bytes();
+        entries.push(("sources/buildDescription.xml".into(), build));
+    }
+    entries.push((format!("resources/{name}.axle"), subject.compiled.model.text().into()));
+    if let Library::Compiled { place, bytes, .. } = &library {
+        entries.push((place.clone(), bytes.clone()));
+    }
+    Ok(Unit {
+        archive: archive(&entries),
+        library,
+    })
+}
+
+/// What `core.h` reads of the model.
+const MODEL_HEADER: &str = "fmu_model.h";
+
+fn sources(subject: Subject, variables: &Variables, version: Version) -> Vec<File> {
+    let fixed = SOURCES.into_iter().chain([version.source()]).map(|(name, text)| File {
+        name: name.into(),
+        content: text.into(),
+    });
+    let own = File {
+        name: MODEL_HEADER.into(),
+        content: model_header(subject, variables).into_bytes(),
+    };
+    let model = c::files(subject, &subject.compiled.about.name);
+    fixed.chain([own]).chain(model).collect()
+}
+
+fn names(files: &[File]) -> impl Iterator<Item = &str> {
+    files.iter().map(|file| file.name.as_str())
+}
+
+/// Sizes and names without the name of the model in them; the token and the end come when the rest is known.
+fn model_header(subject: Subject, variables: &Variables) -> String {
+    let about = &subject.compiled.about;
+    let upper = about.name.to_uppercase();
+    let sizes = [
+        "PARAMETERS",
+        "INPUTS",
+        "STATES",
+        "OUTPUTS",
+        "CONSTANTS",
+        "MATRICES",
+        "PARAMETER_JACOBIAN",
+        "KINKS",
+    ];
+    let sizes = sizes.map(|size| format!("#define {size} {upper}_{size}\n")).concat();
+    let nominals = variables.all.iter().filter_map(Variable::nominal).chain([1.0]);
+    let nominals: Vec<String> = nominals.map(|nominal| format!("{nominal:?}")).collect();
+    format!(
+        "/* What the unit is made of. */\n#ifndef FMU_MODEL_H\n#define FMU_MODEL_H\n\n#include \"{name}.h\"\n\n\
+         #define MODEL(name) {name}_##name\n{sizes}#define TOLERANCE {TOLERANCE:?}\n#define NOMINALS {{{nominals}}}",
+        name = about.name,
+        nominals = nominals.join(", "),
+    )
+}
+
+/// A name for what the sources say: two hashes of 64 bits, as 8-4-4-4-12 digits.
+fn token(sources: &[File]) -> String {
+    let bytes = || {
+        sources
+            .iter()
+            .flat_map(|file| file.name.bytes().chain(file.content.iter().copied()))
+    };
+    let digits = format!("{:016x}{:016x}", fnv1a(bytes()), fnv1a(bytes().chain(*b"second half")));
+    let parts = [0..8, 8..12, 12..16, 16..20, 20..32].map(|part| &digits[part]);
+    format!("{{{}}}", parts.join("-"))
+}
+
+/// The 64-bit FNV-1a hash (Fowler, Noll and Vo).
+fn fnv1a(bytes: impl Iterator<Item = u8>) -> u64 {
+    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
+        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+    })
+}
+
+/// A zip file whose entries bear no date.
+fn archive(entries: &[(String, Vec<u8>)]) -> Vec<u8> {
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    let options = SimpleFileOptions::default()
+        .compression_method(CompressionMethod::Deflated)
+        .unix_permissions(0o644);
+    for (name, content) in entries {
+        let written = writer
+            .start_file(name.as_str(), options)
+            .and_then(|()| Ok(writer.write_all(content)?));
+        written.expect("memory takes what is written to it");
+    }
+    let finished = writer.finish().expect("memory takes what is written to it");
+    finished.into_inner()
+}

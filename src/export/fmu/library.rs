@@ -1,0 +1,125 @@
+//! The library of a unit for the machine on which it is packed, by the C compiler that is found there.
+
+use std::env::consts::{ARCH, OS};
+use std::path::Path;
+use std::process::{Command, Output};
+use std::{env, fs, io};
+
+use super::Version;
+use crate::export::File;
+
+/// What became of the library.
+pub enum Library {
+    /// It is in the unit.
+    Compiled {
+        /// Its path in the unit.
+        place: String,
+        /// What the compiler is called.
+        compiler: String,
+        /// The library.
+        bytes: Vec<u8>,
+    },
+    /// The unit has sources alone, and why.
+    Absent(String),
+}
+
+/// Folder and extension of this machine's libraries.
+fn platform(version: Version) -> Option<(String, &'static str)> {
+    let (old, new, extension) = match OS {
+        "linux" => ("linux", "linux", "so"),
+        "macos" => ("darwin", "darwin", "dylib"),
+        "windows" => ("win", "windows", "dll"),
+        _ => return None,
+    };
+    match (version, ARCH) {
+        (Version::Two, "x86_64") => Some((format!("{old}64"), extension)),
+        (Version::Three, "x86_64" | "aarch64") => Some((format!("{ARCH}-{new}"), extension)),
+        _ => None,
+    }
+}
+
+/// Compiles the sources of a unit.
+///
+/// # Errors
+/// What the compiler says, where it is there and fails, and what the system says of its files.
+pub fn compile(model: &str, sources: &[File], compiled: &[String], version: Version) -> Result<Library, String> {
+    let Some((folder, extension)) = platform(version) else {
+        let why = format!("this version of FMI has no name for libraries of {OS} on {ARCH}");
+        return Ok(Library::Absent(why));
+    };
+    let Some(compiler) = compiler() else {
+        return Ok(Library::Absent(
+            "no C compiler was found (cc, gcc or clang; CC names another)".into(),
+        ));
+    };
+    let work = Folder::new().map_err(|error| format!("no folder to compile in: {error}"))?;
+    let name = format!("{model}.{extension}");
+    let built = build(&compiler, &work.0, sources, compiled, &name);
+    let bytes = built.map_err(|error| format!("{compiler} could not be run: {error}"))?;
+    Ok(Library::Compiled {
+        place: format!("binaries/{folder}/{name}"),
+        bytes: bytes.map_err(|message| format!("{compiler} could not compile the model: {message}"))?,
+        compiler,
+    })
+}
+
+fn build(
+    compiler: &str,
+    folder: &Path,
+    sources: &[File],
+    compiled: &[String],
+    name: &str,
+) -> io::Result<Result<Vec<u8>, String>> {
+    for source in sources {
+        fs::write(folder.join(&source.name), &source.content)?;
+    }
+    let Output { status, stderr, .. } = Command::new(compiler)
+        .args(FLAGS)
+        .args(compiled)
+        .args(["-o", name, "-lm"])
+        .current_dir(folder)
+        .output()?;
+    match status.success() {
+        true => fs::read(folder.join(name)).map(Ok),
+        false => Ok(Err(String::from_utf8_lossy(&stderr).into_owned())),
+    }
+}
+
+/// As fast as the bits of the evaluator allow.
+const FLAGS: [&str; 6] = [
+    "-std=c99",
+    "-O2",
+    "-ffp-contract=off",
+    "-fPIC",
+    "-fvisibility=hidden",
+    "-shared",
+];
+
+fn compiler() -> Option<String> {
+    let wished = env::var("CC").ok().filter(|name| !name.is_empty());
+    let candidates = wished.into_iter().chain(["cc", "gcc", "clang"].map(String::from));
+    let answers = |name: &String| {
+        Command::new(name)
+            .arg("--version")
+            .output()
+            .is_ok_and(|ran| ran.status.success())
+    };
+    candidates.into_iter().find(answers)
+}
+
+/// A folder that is gone when it is left.
+struct Folder(std::path::PathBuf);
+
+impl Folder {
+    fn new() -> io::Result<Folder> {
+        let folder = env::temp_dir().join(format!("qcar-fmu-{}", std::process::id()));
+        fs::create_dir_all(&folder).map(|()| Folder(folder))
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        // What stays of it is a folder of temporary files.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}

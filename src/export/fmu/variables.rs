@@ -1,0 +1,220 @@
+//! The variables of a unit: parameters, inputs, states, their derivatives, outputs, kinks and time, in the order of the
+//! value references.
+
+use std::collections::HashSet;
+
+use qcar_dsl::about::{About, InputKind};
+use qcar_dsl::c::motion_kinks;
+use qcar_dsl::model::Quantity;
+use qcar_dsl::units::Unit;
+
+use crate::export::Subject;
+
+/// What a variable is to its unit.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Role {
+    Parameter,
+    Input,
+    State,
+    /// Of the state of this place.
+    Derivative(usize),
+    Output,
+    /// A value whose sign says on which side of its bend a law is.
+    Kink,
+    Time,
+}
+
+/// A variable.
+pub struct Variable {
+    pub name: String,
+    pub role: Role,
+    pub description: String,
+    /// What its unit is called, and what it is.
+    pub unit: (String, Unit),
+    /// Where it has one.
+    pub start: Option<f64>,
+}
+
+impl Variable {
+    /// How large a state is in a rough ride: what the tolerance is relative to where it is small.
+    pub fn nominal(&self) -> Option<f64> {
+        (self.role == Role::State).then(|| nominal(self.unit.1))
+    }
+}
+
+/// All variables; the place of one is its value reference.
+pub struct Variables {
+    pub all: Vec<Variable>,
+    parameters: usize,
+    inputs: usize,
+    states: usize,
+    outputs: usize,
+    /// How many kinks there are.
+    pub kinks: usize,
+}
+
+impl Variables {
+    /// Those of a model.
+    pub fn of(subject: Subject) -> Self {
+        let about = &subject.compiled.about;
+        let kinks = motion_kinks(subject.compiled).outputs.len();
+        let mut all: Vec<Variable> = parameters(subject).chain(inputs(about)).chain(states(about)).collect();
+        all.extend(
+            derivatives(about)
+                .chain(outputs(about))
+                .chain((1..=kinks).map(kink))
+                .chain([time()]),
+        );
+        make_distinct(&mut all);
+        Variables {
+            all,
+            parameters: about.parameters.len(),
+            inputs: about.inputs.len(),
+            states: about.states.len(),
+            outputs: about.outputs.len(),
+            kinks,
+        }
+    }
+
+    /// The value reference of the first input.
+    pub fn first_input(&self) -> usize {
+        self.parameters
+    }
+
+    /// The value reference of the first state.
+    pub fn first_state(&self) -> usize {
+        self.first_input() + self.inputs
+    }
+
+    /// The value reference of the first derivative.
+    pub fn first_derivative(&self) -> usize {
+        self.first_state() + self.states
+    }
+
+    /// The value reference of the first output.
+    pub fn first_output(&self) -> usize {
+        self.first_derivative() + self.states
+    }
+
+    /// The value reference of the first kink.
+    pub fn first_kink(&self) -> usize {
+        self.first_output() + self.outputs
+    }
+}
+
+/// A centimetre of travel, a decimetre a second, a hundred newtons.
+fn nominal(unit: Unit) -> f64 {
+    let speed = Unit::METER.per(Unit::SECOND);
+    match unit {
+        _ if unit == Unit::METER => 1e-2,
+        _ if unit == speed => 0.1,
+        _ if unit == Unit::NEWTON => 1e2,
+        _ => 1.0,
+    }
+}
+
+fn parameters(subject: Subject) -> impl Iterator<Item = Variable> {
+    let declared = &subject.compiled.model.parameters;
+    declared.iter().zip(subject.values).map(|(own, &value)| Variable {
+        name: own.name.clone(),
+        role: Role::Parameter,
+        description: own.doc.clone(),
+        unit: (own.unit_name.clone(), own.unit),
+        start: Some(value),
+    })
+}
+
+fn inputs(about: &About) -> impl Iterator<Item = Variable> {
+    about.inputs.iter().map(|input| Variable {
+        name: input.name.clone(),
+        role: Role::Input,
+        description: meaning(about, input.kind),
+        unit: (input.unit.to_string(), input.unit),
+        start: Some(0.0),
+    })
+}
+
+/// What an input is, for who connects it.
+fn meaning(about: &About, kind: InputKind) -> String {
+    let excitation = |place: u16| &about.excitations[usize::from(place)];
+    match kind {
+        InputKind::Gravity => "Acceleration of gravity; 0 since states count from rest under gravity".into(),
+        InputKind::Force(place) => format!("Force {}", excitation(place).name),
+        InputKind::Motion(place, quantity) => {
+            let (name, road) = (&excitation(place).name, excitation(place).road);
+            let what = if road {
+                "Effective road height under"
+            } else {
+                "Position of"
+            };
+            match quantity {
+                Quantity::Position => format!("{what} {name}"),
+                Quantity::Velocity => format!("First derivative of the position of {name} by time: connect both"),
+                Quantity::Acceleration => format!("Second derivative of the position of {name} by time: connect all"),
+            }
+        }
+    }
+}
+
+fn states(about: &About) -> impl Iterator<Item = Variable> {
+    about.states.iter().map(|state| Variable {
+        name: state.name.clone(),
+        role: Role::State,
+        description: format!("State of {} along {}", state.location, state.axis),
+        unit: (state.unit.to_string(), state.unit),
+        start: Some(0.0),
+    })
+}
+
+fn derivatives(about: &About) -> impl Iterator<Item = Variable> {
+    about.states.iter().enumerate().map(|(place, state)| {
+        let unit = state.unit.per(Unit::SECOND);
+        Variable {
+            name: format!("der_{}", state.name),
+            role: Role::Derivative(place),
+            description: format!("Derivative of {} by time", state.name),
+            unit: (unit.to_string(), unit),
+            start: None,
+        }
+    })
+}
+
+fn outputs(about: &About) -> impl Iterator<Item = Variable> {
+    about.outputs.iter().map(|output| Variable {
+        name: output.name.clone(),
+        role: Role::Output,
+        description: format!("Signal of {} along {}", output.signal.location, output.signal.axis),
+        unit: (output.unit.to_string(), output.unit),
+        start: None,
+    })
+}
+
+fn kink(number: usize) -> Variable {
+    Variable {
+        name: format!("kink_{number}"),
+        role: Role::Kink,
+        description: "Changes its sign where a law bends or jumps".into(),
+        unit: ("1".into(), Unit::ONE),
+        start: None,
+    }
+}
+
+fn time() -> Variable {
+    Variable {
+        name: "time".into(),
+        role: Role::Time,
+        description: "Time".into(),
+        unit: ("s".into(), Unit::SECOND),
+        start: None,
+    }
+}
+
+/// A name stands once in a unit: a later one of the same gets a `_` behind it.
+fn make_distinct(variables: &mut [Variable]) {
+    let mut taken = HashSet::new();
+    for variable in variables {
+        while !taken.insert(variable.name.clone()) {
+            variable.name.push('_');
+        }
+    }
+}

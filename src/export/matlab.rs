@@ -1,0 +1,64 @@
+//! MATLAB: a function that computes the matrices, and a file that holds them.
+
+use qcar_dsl::matlab::{function, is_name};
+use qcar_runtime::error::InputError;
+use qcar_signals::mat::write::{Array, v5};
+
+use super::{File, Subject};
+use crate::failure::flag;
+use crate::state_space::StateSpace;
+
+/// `stem.m`, which MATLAB calls by that name.
+///
+/// # Errors
+/// A name that MATLAB cannot call.
+pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
+    if !is_name(stem) {
+        let expected = "letters, digits and `_`, a letter first, no keyword, at most 63";
+        let remedy = format!("write a name such as --out {}.m", subject.compiled.about.name);
+        return Err(flag("--out", format!("`{stem}.m`"), expected, &remedy).into());
+    }
+    Ok(File {
+        name: format!("{stem}.m"),
+        content: function(subject.compiled, subject.values, stem).into_bytes(),
+    })
+}
+
+/// The matrices, the names and units of their rows and columns, and the values of the parameters: a MAT-file of version 5.
+pub fn data(subject: Subject, of: &StateSpace) -> Vec<u8> {
+    let parameters = &subject.compiled.about.parameters;
+    let value = parameters.iter().zip(subject.values);
+    let values = value.map(|(own, &value)| (own.name.clone(), Array::number(value)));
+    let matrix = |name: &str, columns: usize| (name.to_string(), Array::rows(&of.matrices[name], columns));
+    let (states, inputs) = (of.states.len(), of.inputs.len());
+    let variables = [
+        matrix("A", states),
+        matrix("B", inputs),
+        matrix("C", states),
+        matrix("D", inputs),
+        ("names".into(), names(subject, of)),
+        ("p".into(), Array::fields(values.collect())),
+        ("linear".into(), Array::number(f64::from(u8::from(of.linear)))),
+    ];
+    v5(&format!("{} by qcar", of.model), &variables)
+}
+
+/// As the function of [`program`] gives them.
+fn names(subject: Subject, of: &StateSpace) -> Array {
+    let parameters = &subject.compiled.about.parameters;
+    let lists: [(&str, Vec<&str>); 8] = [
+        ("states", of.states.iter().map(|own| &*own.name).collect()),
+        ("inputs", of.inputs.iter().map(|own| &*own.variable).collect()),
+        ("outputs", of.outputs.iter().map(|own| &*own.name).collect()),
+        ("parameters", parameters.iter().map(|own| &*own.name).collect()),
+        ("state_units", of.states.iter().map(|own| &*own.unit).collect()),
+        ("input_units", of.inputs.iter().map(|own| &*own.unit).collect()),
+        ("output_units", of.outputs.iter().map(|own| &*own.unit).collect()),
+        ("parameter_units", parameters.iter().map(|own| &*own.unit).collect()),
+    ];
+    Array::fields(
+        lists
+            .map(|(name, texts)| (name.to_string(), Array::texts(texts)))
+            .into(),
+    )
+}

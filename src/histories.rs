@@ -1,0 +1,108 @@
+//! Simulated time histories as files: CSV for tables, MAT and MDF for the viewers in which the measurement lies.
+
+use std::fmt::Write;
+use std::path::Path;
+
+use clap::ValueEnum;
+use qcar_runtime::error::InputError;
+use qcar_signals::mat::write::{Array, v5};
+use qcar_signals::mdf::write::{Channel, Group, v4};
+
+use crate::files::put;
+
+/// A kind of file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Kind {
+    /// A table: time, and a column for each channel
+    Csv,
+    /// MAT version 5: a structure with X (time) and Y, each with Name, Unit and Data
+    Mat,
+    /// MDF 4.10, not packed: one group with the time of the run
+    Mdf,
+}
+
+/// What was sampled in one run, SI.
+pub struct History {
+    /// The name of the run, and of its file.
+    pub name: String,
+    /// s
+    pub time: Vec<f64>,
+    /// Each with as many samples as there are times.
+    pub channels: Vec<Channel>,
+}
+
+impl History {
+    /// Writes it into a folder.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
+        match kind {
+            Kind::Csv => put(folder, &format!("{}.csv", self.name), &self.csv()),
+            Kind::Mat => put(folder, &format!("{}.mat", self.name), &self.mat()),
+            Kind::Mdf => put(folder, &format!("{}.mf4", self.name), &self.mdf()),
+        }
+    }
+
+    fn csv(&self) -> String {
+        let names: String = self
+            .channels
+            .iter()
+            .map(|channel| format!(",{}", channel.name))
+            .collect();
+        let mut out = format!("time{names}\n");
+        for (at, time) in self.time.iter().enumerate() {
+            let _ = write!(out, "{time}");
+            for channel in &self.channels {
+                let _ = write!(out, ",{}", channel.samples[at]);
+            }
+            out.push('\n');
+        }
+        out
+    }
+
+    /// A capture as dSPACE writes it: the variable that most viewers take for time histories with units.
+    fn mat(&self) -> Vec<u8> {
+        let fields = || ["Name", "Unit", "Data", "XIndex"].map(String::from).to_vec();
+        let element = |name: &str, unit: &str, samples: &[f64]| {
+            let data = Array::column(samples.to_vec());
+            vec![
+                Array::Text(name.into()),
+                Array::Text(unit.into()),
+                data,
+                Array::number(1.0),
+            ]
+        };
+        let channels = self.channels.iter();
+        let channels = channels
+            .map(|own| element(&own.name, &own.unit, &own.samples))
+            .collect();
+        let time = vec![element("time", "s", &self.time)];
+        let capture = Array::fields(vec![
+            ("X".into(), Array::Structs(fields(), time)),
+            ("Y".into(), Array::Structs(fields(), channels)),
+        ]);
+        v5("a run simulated by qcar", &[(variable(&self.name), capture)])
+    }
+
+    fn mdf(&self) -> Vec<u8> {
+        let group = Group {
+            name: self.name.clone(),
+            times: self.time.clone(),
+            channels: self.channels.clone(),
+        };
+        v4("qcar", &[group])
+    }
+}
+
+/// A name as MATLAB takes it for a variable.
+fn variable(name: &str) -> String {
+    let plain: String = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
+        .collect();
+    match plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        true => plain,
+        false => format!("run_{plain}"),
+    }
+}

@@ -1,0 +1,235 @@
+//! `qcar export`: a model with its values as files for other tools.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use qcar_dsl::modelica;
+use qcar_dsl::show::{Stage, show};
+use qcar_runtime::response::parameters::Values;
+
+use super::ModelArguments;
+use crate::catalogue::{self, Loaded};
+use crate::export::fmu::Library;
+use crate::export::{File, Subject, c, fmu, matlab};
+use crate::failure::{Failure, flag};
+use crate::files::put;
+use crate::json;
+use crate::parameters;
+use crate::state_space::{StateSpace, state_space};
+
+/// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, tables
+///
+/// Every parameter starts with the value that is given, and stays changeable where the tool can change it. Files that are
+/// there already stay as they are.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu"
+)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+    /// For what
+    #[arg(long = "as", value_enum, value_name = "KIND")]
+    kind: Kind,
+    /// The version of the Functional Mock-up Interface of an FMU; 2 unless given
+    #[arg(long, value_enum, value_name = "VERSION")]
+    fmi: Option<Fmi>,
+    /// The file to write; it ends as the kind says
+    #[arg(long, value_name = "FILE")]
+    out: PathBuf,
+}
+
+/// What is written.
+#[derive(Clone, Copy, ValueEnum)]
+enum Kind {
+    /// FILE.c, and a header beside it: equations, matrices, Jacobians, responses
+    C,
+    /// FILE.fmu: Model Exchange and Co-Simulation, with C99 sources
+    Fmu,
+    /// FILE.m: a function of MATLAB and Octave, [A, B, C, D, names] = FILE(p)
+    Matlab,
+    /// FILE.mat: A, B, C, D, names, units and values, MAT version 5
+    Mat,
+    /// FILE.mo: a flat model of Modelica
+    Modelica,
+    /// FILE.json: A, B, C, D and their derivatives, as `qcar matrices` prints them
+    Json,
+    /// FILE.csv: A, B, C and D, an entry a line
+    Csv,
+    /// FILE.tex: equations and matrices, as `qcar show` prints them
+    Latex,
+}
+
+/// A version of the Functional Mock-up Interface.
+#[derive(Clone, Copy, ValueEnum)]
+enum Fmi {
+    /// 2.0
+    #[value(name = "2")]
+    Two,
+    /// 3.0
+    #[value(name = "3")]
+    Three,
+}
+
+impl From<Fmi> for fmu::Version {
+    fn from(fmi: Fmi) -> Self {
+        match fmi {
+            Fmi::Two => fmu::Version::Two,
+            Fmi::Three => fmu::Version::Three,
+        }
+    }
+}
+
+impl Kind {
+    fn extension(self) -> &'static str {
+        match self {
+            Kind::C => "c",
+            Kind::Fmu => "fmu",
+            Kind::Matlab => "m",
+            Kind::Mat => "mat",
+            Kind::Modelica => "mo",
+            Kind::Json => "json",
+            Kind::Csv => "csv",
+            Kind::Latex => "tex",
+        }
+    }
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let stem = stem(&arguments.out, arguments.kind.extension())?;
+    let version = version(arguments)?;
+    let ModelArguments { model, params, set } = &arguments.model;
+    let compiled = catalogue::compiled(model)?;
+    let loaded = catalogue::load(model)?;
+    let values = parameters::resolve(loaded.about(), params.as_deref(), set)?;
+    loaded.check_inertias(values.as_slice())?;
+    let subject = Subject {
+        compiled: &compiled,
+        values: values.as_slice(),
+    };
+    let (files, note) = files((arguments.kind, version), subject, (&loaded, &values), &stem)?;
+    let folder = arguments.out.parent().unwrap_or("".as_ref());
+    let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
+    paths.iter().try_for_each(|path| must_be_free(path))?;
+    for file in &files {
+        put(folder, &file.name, &file.content)?;
+    }
+    let paths: Vec<String> = paths.iter().map(|path| path.display().to_string()).collect();
+    Ok(format!(
+        "{} written to {}\n{note}",
+        compiled.about.name,
+        paths.join(" and ")
+    ))
+}
+
+/// The version of the interface, which only an FMU has.
+fn version(arguments: &Arguments) -> Result<fmu::Version, Failure> {
+    match (arguments.kind, arguments.fmi) {
+        (Kind::Fmu, version) => Ok(version.unwrap_or(Fmi::Two).into()),
+        (_, None) => Ok(fmu::Version::Two),
+        (_, Some(_)) => {
+            let remedy = "leave it out, or write --as fmu";
+            Err(flag("--fmi", "a version of FMI", "it with `--as fmu` alone", remedy).into())
+        }
+    }
+}
+
+/// The name of a file without its folder and extension.
+fn stem(out: &Path, extension: &str) -> Result<String, Failure> {
+    let stem = out.file_stem().and_then(|stem| stem.to_str());
+    match stem.filter(|_| out.extension().is_some_and(|own| own == extension)) {
+        Some(stem) => Ok(stem.into()),
+        None => {
+            let (found, expected) = (out.display(), format!("a file that ends in .{extension}"));
+            let remedy = format!("write --out {}", out.with_extension(extension).display());
+            Err(flag("--out", found, &expected, &remedy).into())
+        }
+    }
+}
+
+fn must_be_free(path: &Path) -> Result<(), Failure> {
+    if !path.exists() {
+        return Ok(());
+    }
+    let found = format!("{}, which is there already", path.display());
+    Err(flag(
+        "--out",
+        found,
+        "a name that is still free",
+        "take another name, or move the file away",
+    )
+    .into())
+}
+
+/// What is to be written, and what to say of it beside.
+fn files(
+    (kind, version): (Kind, fmu::Version),
+    subject: Subject,
+    (model, values): (&Loaded, &Values),
+    stem: &str,
+) -> Result<(Vec<File>, String), Failure> {
+    let own = |content: Vec<u8>| File {
+        name: format!("{stem}.{}", kind.extension()),
+        content,
+    };
+    let text = |text: String| (vec![own(text.into_bytes())], String::new());
+    Ok(match kind {
+        Kind::C => (c::files(subject, stem), String::new()),
+        Kind::Fmu => {
+            let unit = fmu::pack(subject, version).map_err(|message| cannot_compile(&message))?;
+            (vec![own(unit.archive)], library(&unit.library))
+        }
+        Kind::Matlab => (vec![matlab::program(subject, stem)?], String::new()),
+        Kind::Mat => (
+            vec![own(matlab::data(subject, &matrices(model, values)?))],
+            String::new(),
+        ),
+        Kind::Modelica => text(modelica::model(subject.compiled, subject.values)),
+        Kind::Json => text(json::line(&matrices(model, values)?)),
+        Kind::Csv => text(entries(&matrices(model, values)?)),
+        Kind::Latex => text(show(subject.compiled, Stage::Latex)),
+    })
+}
+
+fn matrices(model: &Loaded, values: &Values) -> Result<StateSpace, Failure> {
+    let matrices = state_space(&**model, values, None);
+    parameters::require_finite(&model.about().name, matrices.matrices.values().flatten().flatten())?;
+    Ok(matrices)
+}
+
+/// An entry of a matrix a line.
+fn entries(of: &StateSpace) -> String {
+    let states: Vec<&str> = of.states.iter().map(|own| &*own.name).collect();
+    let inputs: Vec<&str> = of.inputs.iter().map(|own| &*own.variable).collect();
+    let outputs: Vec<&str> = of.outputs.iter().map(|own| &*own.name).collect();
+    let blocks = [
+        ("A", &states, &states),
+        ("B", &states, &inputs),
+        ("C", &outputs, &states),
+        ("D", &outputs, &inputs),
+    ];
+    let mut text = String::from("matrix,row,column,value\n");
+    for (name, rows, columns) in blocks {
+        for (row, values) in rows.iter().zip(&of.matrices[name]) {
+            let line = |(column, value): (&&str, &f64)| format!("{name},{row},{column},{value:?}\n");
+            text.extend(columns.iter().zip(values).map(line));
+        }
+    }
+    text
+}
+
+/// What a user should know of the library of a unit.
+fn library(of: &Library) -> String {
+    match of {
+        Library::Compiled { place, compiler, .. } => format!("{place}: compiled by {compiler}\n"),
+        Library::Absent(why) => {
+            format!("no library: {why}; the unit has C99 sources, which an importer that compiles sources can use\n")
+        }
+    }
+}
+
+fn cannot_compile(message: &str) -> Failure {
+    let remedy = "name a C99 compiler in the environment variable CC, or make room for temporary files";
+    flag("--as fmu", message.trim_end(), "a library of the model", remedy).into()
+}
