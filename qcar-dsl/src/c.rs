@@ -6,10 +6,10 @@
 
 // Texts as comments and literals.
 mod text;
-// One function.
-mod function;
 // What functions stand on.
 mod support;
+// One function.
+mod function;
 // Sizes, places and declarations.
 mod header;
 // Names, units and sparsity as data.

@@ -9,20 +9,26 @@ mod unit;
 mod table;
 // How evenly times come.
 mod steps;
+// What is odd about samples, as it is told.
+mod finding;
+// What was read of a run.
+mod reading;
 // What a campaign lists, as types.
 mod contents;
 // TOML read key by key, all problems gathered.
 mod fields;
 // Which channel of a measured file a sensor is.
 mod tap;
+// What samples show to be wrong.
+mod samples;
 // Runs from files of rigs and other programs.
 mod recorded;
-// What their samples show to be wrong.
+// Time histories of runs.
+mod history;
+// What they show to be wrong beside each other.
 mod findings;
 // From `campaign.toml` to the types.
 mod manifest;
-// Time histories of runs.
-mod history;
 // Quasi-static curves and roads.
 mod curve;
 // The answer that some campaigns are published with.
@@ -33,7 +39,7 @@ pub use contents::{
     Tap, Test, Trigger, Window,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
-pub use findings::Finding;
+pub use finding::Finding;
 pub use history::History;
 pub use truth::{Effect, Truth};
 pub use unit::{Dimension, dimension};

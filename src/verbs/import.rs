@@ -11,16 +11,16 @@ use crate::catalogue;
 use crate::failure::{Failure, flag};
 use crate::files::put;
 
-// Which sensor a channel is, by its name and unit.
-mod guess;
 // Names taken apart.
 mod tokens;
+// Which sensor a channel is, by its name and unit.
+mod guess;
 // The sensors of a campaign.
 mod sensors;
-// Which kind of run a file is.
-mod kind;
 // What a sweep does, from its pad.
 mod swept;
+// Which kind of run a file is.
+mod kind;
 
 /// Look into measured files and begin a campaign with them
 ///

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use super::recorded::Recorded;
+use super::reading::Recorded;
 
 /// What `[vehicle]` may hold beside parameters of the model, corner values, SI.
 pub const FACTS: [&str; 7] = [

@@ -1,70 +1,16 @@
 //! What measured samples show to be wrong with themselves, before anything is fitted to them.
 
-use std::fmt;
-
-use qcar_signals::health::{Flaw, FlawKind, flaws};
 use qcar_signals::resample::Grid;
 
-use super::contents::{Campaign, Quantity, Role, Run, Test};
+use super::contents::{Campaign, Run, Test};
+use super::finding::Finding;
 use super::history::History;
-use super::recorded::Missing;
+use super::reading::Missing;
+use super::samples::of_samples;
 use crate::error::{InputError, Place, Problem};
 
 // Both sides of the car beside each other.
 mod sides;
-
-/// Something that is odd about a channel of a run.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Finding {
-    /// The run's name.
-    pub run: String,
-    /// The sensor's name.
-    pub channel: String,
-    /// Times of the first and last sample concerned, s, on the clock of the file.
-    pub span: (f64, f64),
-    /// What it is, with values in SI.
-    pub what: String,
-    /// True where a sweep that is fitted rests on a channel that is dead.
-    pub fatal: bool,
-}
-
-impl fmt::Display for Finding {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (first, last) = self.span;
-        write!(out, "{}, `{}`, {first:.3} s", self.run, self.channel)?;
-        if last > first {
-            write!(out, " to {last:.3} s")?;
-        }
-        write!(out, ": {}", self.what)
-    }
-}
-
-/// What is odd about the samples of a sensor in a run, whose SI unit is `unit`.
-pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
-    let steady = unit == Quantity::Acceleration.unit();
-    let finding = |flaw: &Flaw| Finding {
-        run: run.name.clone(),
-        channel: channel.into(),
-        span: (grid.time(flaw.samples.0), grid.time(flaw.samples.1)),
-        what: said(flaw, unit),
-        fatal: matches!((&flaw.kind, &run.test), (FlawKind::Dead(_), Test::Sweep(_))) && run.role == Role::Fit,
-    };
-    flaws(samples, steady).iter().map(finding).collect()
-}
-
-fn said(flaw: &Flaw, unit: &str) -> String {
-    let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
-    match flaw.kind {
-        FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),
-        FlawKind::Clipped(value) => format!(
-            "{count} samples are cut off at {} {unit}: the channel is clipped",
-            short(value)
-        ),
-        FlawKind::Spike(value) if count == 1 => format!("a spike to {} {unit}", short(value)),
-        FlawKind::Spike(value) => format!("{count} spikes, the largest to {} {unit}", short(value)),
-        FlawKind::Drift(drift) => format!("the mean drifts by {} {unit}", short(drift)),
-    }
-}
 
 /// What the sensors of both sides of a sweep say of each other.
 fn of_sides(run: &Run, history: &History) -> Vec<Finding> {

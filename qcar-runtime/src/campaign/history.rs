@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use super::contents::{Campaign, Channel, Run, Test};
-use super::recorded::Recorded;
+use super::reading::Recorded;
 use super::steps;
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};

@@ -4,7 +4,8 @@ use std::path::Path;
 
 use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test};
 use super::fields::{Document, Section};
-use super::recorded::{self, Files, Recorded};
+use super::reading::Recorded;
+use super::recorded::{self, Files};
 use super::{table, unit};
 use crate::error::{InputError, Place, Problem};
 use runs::{Known, run};

@@ -1,8 +1,8 @@
 //! Sensors that are wired or mounted wrongly, as the other side of the car shows: in a sweep both sides do nearly the same.
 
 use super::super::contents::{Channel, Run, Side};
+use super::super::finding::Finding;
 use super::super::history::History;
-use super::Finding;
 
 /// Two sensors are alike or opposite where their correlation is above this, and neither below it.
 const ALIKE: f64 = 0.5;

@@ -5,7 +5,8 @@ use std::path::Path;
 use qcar_signals::resample::{Grid, resample};
 
 use super::super::contents::Run;
-use super::super::findings::{Finding, of_samples};
+use super::super::finding::Finding;
+use super::super::samples::of_samples;
 use super::channel::Channel;
 use super::even::Even;
 use super::window::Span;

@@ -1,0 +1,29 @@
+//! Something that is odd about measured samples, as it is told.
+
+use std::fmt;
+
+/// Something that is odd about a channel of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The run's name.
+    pub run: String,
+    /// The sensor's name.
+    pub channel: String,
+    /// Times of the first and last sample concerned, s, on the clock of the file.
+    pub span: (f64, f64),
+    /// What it is, with values in SI.
+    pub what: String,
+    /// True where a sweep that is fitted rests on a channel that is dead.
+    pub fatal: bool,
+}
+
+impl fmt::Display for Finding {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (first, last) = self.span;
+        write!(out, "{}, `{}`, {first:.3} s", self.run, self.channel)?;
+        if last > first {
+            write!(out, " to {last:.3} s")?;
+        }
+        write!(out, ": {}", self.what)
+    }
+}

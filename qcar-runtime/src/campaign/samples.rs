@@ -1,0 +1,34 @@
+//! What samples of a channel show to be wrong with themselves.
+
+use qcar_signals::health::{Flaw, FlawKind, flaws};
+use qcar_signals::resample::Grid;
+
+use super::contents::{Quantity, Role, Run, Test};
+use super::finding::Finding;
+
+/// What is odd about the samples of a sensor in a run, whose SI unit is `unit`.
+pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
+    let steady = unit == Quantity::Acceleration.unit();
+    let finding = |flaw: &Flaw| Finding {
+        run: run.name.clone(),
+        channel: channel.into(),
+        span: (grid.time(flaw.samples.0), grid.time(flaw.samples.1)),
+        what: said(flaw, unit),
+        fatal: matches!((&flaw.kind, &run.test), (FlawKind::Dead(_), Test::Sweep(_))) && run.role == Role::Fit,
+    };
+    flaws(samples, steady).iter().map(finding).collect()
+}
+
+fn said(flaw: &Flaw, unit: &str) -> String {
+    let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
+    match flaw.kind {
+        FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),
+        FlawKind::Clipped(value) => format!(
+            "{count} samples are cut off at {} {unit}: the channel is clipped",
+            short(value)
+        ),
+        FlawKind::Spike(value) if count == 1 => format!("a spike to {} {unit}", short(value)),
+        FlawKind::Spike(value) => format!("{count} spikes, the largest to {} {unit}", short(value)),
+        FlawKind::Drift(drift) => format!("the mean drifts by {} {unit}", short(drift)),
+    }
+}
