@@ -51,7 +51,8 @@ fn a_rival_that_is_level_or_ahead_is_not_told_apart() {
         let said = verdict(
             &browser,
             &with(|data| {
-                data["discover"]["effects"][0]["rivals"][0]["behind"] = json!(behind);
+                let rival = json!({ "effect": "subframe", "at": "body", "behind": behind, "early": false });
+                data["discover"]["effects"][0]["rivals"][0] = rival;
             }),
         );
         let lead = "Missing: suspended mass at body, not distinguishable from subframe at body.";

@@ -62,7 +62,7 @@ function axleTable(axle, fresh) {
     [
       ['name', 'text'],
       ['what', 'text'],
-      ['value', 'text'],
+      ['value', 'text law'],
       ['', 'text'],
     ],
     [...masses, ...links],
