@@ -36,14 +36,10 @@ impl Proposed {
     pub fn said(&self) -> String {
         match &self.kind {
             Kind::Sweep(own) => format!(
-                "a sweep from {} to {} Hz, its frequency growing {}, at {} m/s",
+                "a {} sweep from {} to {} Hz at {} m/s",
+                if own.logarithmic { "logarithmic" } else { "linear" },
                 number(own.start, DIGITS),
                 number(own.end, DIGITS),
-                if own.logarithmic {
-                    "as a logarithm does"
-                } else {
-                    "evenly"
-                },
                 number(own.peak_velocity, DIGITS)
             ),
             Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),
