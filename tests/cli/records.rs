@@ -344,6 +344,54 @@ fn bounds_and_spans_of_time_are_told_as_such() {
     assert_eq!((heading[4], first[4]), ("unit", "s"), "{said}");
 }
 
+/// A mass that a constant force pushes against a damper on a stiff spring, in closed form. The spring relaxes in 50 µs; a record of
+/// this rate gets steps of 1 ms, and the Runge-Kutta method diverges where a step is longer than 2.8 relaxation times.
+#[test]
+fn steps_are_halved_where_a_law_is_too_stiff_for_them() {
+    let [mass, drag, rate, force]: [f64; 4] = [2.0, 300.0, 2e4, 10.0];
+    let stiffness = rate * drag;
+    let root = (rate * rate / 4.0 - stiffness / mass).sqrt();
+    let [slow, fast] = [-rate / 2.0 + root, -rate / 2.0 - root];
+    let end = force / drag;
+    // Velocity and acceleration at the start are 0 and force / mass.
+    let b = (force / mass + end * slow) / (fast - slow);
+    let a = -end - b;
+    let place = |t: f64| end * t + a * (slow * t).exp_m1() / slow + b * (fast * t).exp_m1() / fast;
+    let times = (0..SAMPLES).map(|k| k as f64 / RATE);
+    let run: [(&str, Vec<f64>); 2] = [("push", vec![force; SAMPLES]), ("z", times.map(place).collect())];
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("stiff.axle"), STIFF).unwrap();
+    campaign(
+        folder.path(),
+        "./stiff.axle",
+        "[parameters]\n",
+        "band_limited = false",
+        &[&run],
+    );
+    let simulated = succeeds(&["simulate", folder.path().to_str().unwrap(), "--format", "json"]);
+    let simulated: Value = serde_json::from_str(&simulated).unwrap();
+    let left = simulated["records"][0]["nrms"].as_f64().expect("a finite replay");
+    assert!(left < 1e-4, "{simulated}");
+}
+
+const STIFF: &str = "axle stiff {
+    \"A mass against a damper that stands on a stiff spring\"
+    known param m: kg = 2 in 0.1..10 \"Mass\";
+    param c: N s/m = 300 in 1..1e4 \"Damper\";
+    param k: N/m = 6e6 in 1..1e9 \"Spring in series with it\";
+    direction z {
+        mass body = m;
+        force f on body;
+        link damper: body {
+            state f_damper: N;
+            rate f_damper = k * (v - f_damper / c);
+            force = f_damper;
+        }
+        output body.position;
+    }
+}
+";
+
 /// The force of an actuator between two masses, with a gain of its own, and a second input that only one run has.
 #[test]
 fn an_input_between_two_masses_has_a_gain_and_what_is_not_recorded_rests() {
