@@ -1,6 +1,5 @@
 //! A straight-line program as statements of MATLAB, and what they stand on.
 
-use crate::expr::Function;
 use crate::program::{Op, Program, Value};
 use crate::straight::{Language, Leaf, Locals, Pieces, Written};
 
@@ -51,34 +50,6 @@ impl Language for Matlab {
             _ if number.is_sign_negative() => format!("({number:?})"),
             _ => format!("{number:?}"),
         }
-    }
-
-    fn call(&self, function: Function, a: &str) -> String {
-        let name = match function {
-            Function::Abs => "abs",
-            Function::Sign => "sign",
-            Function::Sqrt => "sqrt",
-            Function::Exp => "exp",
-            Function::Ln => "log",
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Atan => "atan",
-            Function::Tanh => "tanh",
-        };
-        format!("{name}({a})")
-    }
-
-    fn power(&self, a: &str, b: &str) -> String {
-        format!("{a} ^ {b}")
-    }
-
-    fn smaller(&self, a: &str, b: &str) -> String {
-        format!("min({a}, {b})")
-    }
-
-    fn larger(&self, a: &str, b: &str) -> String {
-        format!("max({a}, {b})")
     }
 
     fn choice(&self, test: &str, a: &str, b: &str) -> String {

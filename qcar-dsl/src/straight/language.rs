@@ -6,18 +6,38 @@ use super::Locals;
 use crate::expr::Function;
 use crate::program::{Op, Program, Value};
 
-/// What a language writes in its own way.
+/// What a language writes in its own way. What has a default here is alike in MATLAB and Modelica.
 pub trait Language {
     /// A number, to every digit.
     fn number(&self, number: f64) -> String;
     /// A function of a value.
-    fn call(&self, function: Function, a: &str) -> String;
+    fn call(&self, function: Function, a: &str) -> String {
+        let name = match function {
+            Function::Abs => "abs",
+            Function::Sign => "sign",
+            Function::Sqrt => "sqrt",
+            Function::Exp => "exp",
+            Function::Ln => "log",
+            Function::Sin => "sin",
+            Function::Cos => "cos",
+            Function::Tan => "tan",
+            Function::Atan => "atan",
+            Function::Tanh => "tanh",
+        };
+        format!("{name}({a})")
+    }
     /// `a` to the power of `b`.
-    fn power(&self, a: &str, b: &str) -> String;
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("{a} ^ {b}")
+    }
     /// The smaller of two.
-    fn smaller(&self, a: &str, b: &str) -> String;
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("min({a}, {b})")
+    }
     /// The larger of two.
-    fn larger(&self, a: &str, b: &str) -> String;
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("max({a}, {b})")
+    }
     /// `a` where the test is above zero, else `b`.
     fn choice(&self, test: &str, a: &str, b: &str) -> String;
     /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
