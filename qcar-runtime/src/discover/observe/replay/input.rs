@@ -1,4 +1,4 @@
-//! Recorded inputs on the nodes of a fixed-step integration: every sample, and so many nodes between.
+//! Recorded inputs at the ends and middles of the steps of an integration: every sample, and so many nodes between.
 
 use std::f64::consts::TAU;
 
