@@ -68,6 +68,8 @@ pub struct Parameter {
     pub range: Option<(f64, f64)>,
     /// Declared `known`: never estimated unless a campaign asks for it, so the identifiability rules leave it alone.
     pub known: bool,
+    /// Declared `clock`: the time since a run began, which takes other values in it.
+    pub clock: bool,
     /// Where.
     pub declared: Declared,
 }

@@ -216,6 +216,8 @@ pub struct If<Part> {
 pub struct Parameter {
     /// `known param`
     pub known: bool,
+    /// `clock param`, which is known too.
+    pub clock: bool,
     /// The name.
     pub name: Name,
     /// The declared unit.

@@ -65,6 +65,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
                 rate: 1000.0,
                 amplitude: frequency.iter().map(|f| level * std::f64::consts::TAU * f).collect(),
                 frequency: frequency.clone(),
+                time: vec![0.0; frequency.len()],
                 band: (0.5, 30.0),
             },
         });

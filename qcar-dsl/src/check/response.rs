@@ -37,11 +37,9 @@ impl Seen {
 /// Everything that can be seen of a model at one parameter set: responses of outputs and channels to each input, and
 /// for laws that are not linear the change of the force itself, in so many motions.
 pub fn sensitivities(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Vec<Seen> {
-    let motions = if scratch.slopes.iter().any(|slopes| slopes.nonlinear) {
-        motions
-    } else {
-        1
-    };
+    let is_nonlinear = scratch.slopes.iter().any(|slopes| slopes.nonlinear);
+    let has_clock = scratch.model.parameters.iter().any(|parameter| parameter.clock);
+    let motions = if is_nonlinear || has_clock { motions } else { 1 };
     let frequencies = if point.kind == Kind::Plain { PLAIN } else { DECLARED };
     let mut seen = Vec::new();
     for motion in 0..motions {

@@ -58,8 +58,10 @@ impl<'a> Point<'a> {
     }
 
     fn parameter(&self, index: u16) -> f64 {
-        let chance = uniform(self.seed, tag(Symbol::Parameter(index)));
         let parameter = &self.model.parameters[usize::from(index)];
+        // Time goes on from motion to motion.
+        let seed = if parameter.clock { self.motion } else { self.seed };
+        let chance = uniform(seed, tag(Symbol::Parameter(index)));
         match (self.kind, parameter.range, parameter.default) {
             (Kind::Declared, Some((low, high)), _) if low > 0.0 => low * (high / low).powf(chance),
             (Kind::Declared, Some((low, high)), _) => low + (high - low) * chance,

@@ -11,10 +11,11 @@ use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, P
 const HEAD: &str = "effect name at link l named damper { … }";
 
 /// What a change can begin with.
-const WORDS: [&str; 20] = [
+const WORDS: [&str; 21] = [
     "param",
     "strength",
     "shape",
+    "clock",
     "known",
     "shared",
     "source",
@@ -176,7 +177,9 @@ fn called(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<(Name, O
 
 fn change(tokens: &mut Tokens) -> Parsed<Change> {
     match tokens.peek().as_deref() {
-        Some("param" | "strength" | "shape" | "known" | "shared") => Ok(Change::Parameter(parameter(tokens)?)),
+        Some("param" | "strength" | "shape" | "clock" | "known" | "shared") => {
+            Ok(Change::Parameter(parameter(tokens)?))
+        }
         Some("take") => take(tokens),
         Some("add") => add(tokens),
         Some("replace") => replace(tokens),
@@ -200,8 +203,10 @@ fn declaration(tokens: &mut Tokens) -> Parsed<Change> {
 fn parameter(tokens: &mut Tokens) -> Parsed<EffectParameter> {
     const EXAMPLE: &str = "param k: N/m = 0.5*l.spring in 0.1*l.spring..2*l.spring \"what it is\";";
     let (strength, shape) = (tokens.take_word("strength"), tokens.take_word("shape"));
-    // What is given is no strength: nothing would be left to find.
+    let clock = !strength && !shape && tokens.take_word("clock");
+    // What is given is no strength: nothing would be left to find. Time is always given.
     let (shared, known) = (tokens.take_word("shared"), !strength && tokens.take_word("known"));
+    let known = known || clock;
     word(tokens, "param", EXAMPLE)?;
     let name = tokens.new_name("the name of a parameter", EXAMPLE)?;
     tokens.expect(":", EXAMPLE)?;
@@ -212,10 +217,11 @@ fn parameter(tokens: &mut Tokens) -> Parsed<EffectParameter> {
     let low = expression(tokens)?;
     tokens.expect("..", EXAMPLE)?;
     let high = expression(tokens)?;
-    let role = match (strength, shape) {
-        (true, _) => Role::Strength(vanishes_at(tokens)?),
-        (false, true) => Role::Shape,
-        (false, false) => Role::Other,
+    let role = match (strength, shape, clock) {
+        (true, ..) => Role::Strength(vanishes_at(tokens)?),
+        (_, true, _) => Role::Shape,
+        (.., true) => Role::Clock,
+        _ => Role::Other,
     };
     let (doc, _) = tokens.text("a sentence that says what it is", EXAMPLE)?;
     tokens.expect(";", EXAMPLE)?;

@@ -25,9 +25,10 @@ pub enum Scope {
 }
 
 /// What a statement can begin with.
-const WORDS: [&str; 18] = [
+const WORDS: [&str; 19] = [
     "param",
     "known",
+    "clock",
     "let",
     "direction",
     "road",
@@ -85,7 +86,7 @@ pub fn statement(tokens: &mut Tokens, scope: Scope) -> Parsed<Statement> {
     match word.as_deref() {
         Some("option") => option(tokens),
         Some("require") => require(tokens),
-        Some("param" | "known") => parameter(tokens),
+        Some("param" | "known" | "clock") => parameter(tokens),
         Some("let") => Ok(Statement::Let(definition(tokens)?)),
         Some("if") => Ok(Statement::If(conditional(tokens, &mut |inside| body(inside, scope))?)),
         Some("direction") => direction(tokens),
@@ -166,7 +167,8 @@ fn require(tokens: &mut Tokens) -> Parsed<Statement> {
 
 fn parameter(tokens: &mut Tokens) -> Parsed<Statement> {
     const EXAMPLE: &str = "param k_tire: N/m = 200 N/mm in 50 N/mm..800 N/mm \"what it is\";";
-    let known = tokens.take_word("known");
+    let clock = tokens.take_word("clock");
+    let known = clock || tokens.take_word("known");
     if !tokens.take_word("param") {
         return tokens.expected("`param`", "known param m_corner: kg;");
     }
@@ -187,6 +189,7 @@ fn parameter(tokens: &mut Tokens) -> Parsed<Statement> {
     tokens.expect(";", EXAMPLE)?;
     Ok(Statement::Parameter(Parameter {
         known,
+        clock,
         name,
         unit,
         default,

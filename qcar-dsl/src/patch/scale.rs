@@ -59,6 +59,7 @@ impl Scale {
         };
         Parameter {
             known: true,
+            clock: false,
             name: Name::new(name),
             unit: UnitText {
                 factors: factors.iter().map(factor).collect(),

@@ -26,7 +26,9 @@ pub enum ParameterRole {
     },
     /// It says where the effect acts, over travel, speed or frequency.
     Shape,
-    /// Neither.
+    /// It is the time since a run began, in s or, without a unit, in parts of the run: each run gives it.
+    Clock,
+    /// None of these.
     Other,
 }
 
@@ -89,6 +91,7 @@ fn with_expressions(base: &Base, asked: &[Asked]) -> (Model, Vec<Diagnostic>) {
     for one in asked {
         questions.push(Statement::Parameter(Parameter {
             known: false,
+            clock: false,
             name: Name::new(unit_of(one)),
             unit: one.declared.unit.clone(),
             default: None,
@@ -165,6 +168,7 @@ fn numbers(one: &Asked, model: &Model, answers: &BTreeMap<&str, (f64, Unit)>) ->
 fn role(declared: &EffectParameter, value: f64, (low, high): (f64, f64)) -> Result<ParameterRole, Box<Diagnostic>> {
     let vanishes_at = match &declared.role {
         Role::Shape => return Ok(ParameterRole::Shape),
+        Role::Clock => return Ok(ParameterRole::Clock),
         Role::Other => return Ok(ParameterRole::Other),
         Role::Strength(VanishesAt::Zero) => 0.0,
         Role::Strength(VanishesAt::Infinity) => f64::INFINITY,
@@ -198,6 +202,7 @@ fn declaration(one: &Asked, numbers: Numbers, base: &Base) -> (NewParameter, Par
     let [from, to] = [(&declared.range.0, low), (&declared.range.1, high)].map(|(e, value)| number(e, value));
     let parameter = Parameter {
         known: declared.known,
+        clock: declared.role == Role::Clock,
         name: Name::new(&one.name),
         unit: declared.unit.clone(),
         default: Some(ParameterDefault::Number(number(&declared.start, numbers.start))),

@@ -92,13 +92,15 @@ fn law_block(head: &str, law: &[LawStatement]) -> Vec<String> {
 
 fn parameter_line(parameter: &EffectParameter) -> String {
     let shared = if parameter.shared { "shared " } else { "" };
-    let known = if parameter.known { "known " } else { "" };
+    let known = parameter.known && parameter.role != Role::Clock;
+    let known = if known { "known " } else { "" };
     let (low, high) = &parameter.range;
     let (role, vanishes) = match &parameter.role {
         Role::Strength(VanishesAt::Zero) => ("strength ", String::new()),
         Role::Strength(VanishesAt::Infinity) => ("strength ", " vanishes at infinity".to_string()),
         Role::Strength(VanishesAt::Value(value)) => ("strength ", format!(" vanishes at {value}")),
         Role::Shape => ("shape ", String::new()),
+        Role::Clock => ("clock ", String::new()),
         Role::Other => ("", String::new()),
     };
     format!(

@@ -99,7 +99,11 @@ fn option(choice: &Choice) -> String {
 }
 
 fn parameter_line(parameter: &Parameter) -> String {
-    let known = if parameter.known { "known " } else { "" };
+    let known = match (parameter.clock, parameter.known) {
+        (true, _) => "clock ",
+        (false, true) => "known ",
+        (false, false) => "",
+    };
     let default = match &parameter.default {
         None => String::new(),
         Some(ParameterDefault::Number(number)) => format!(" = {number}"),

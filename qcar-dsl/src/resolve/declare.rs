@@ -70,6 +70,7 @@ impl Resolver<'_> {
             default,
             range,
             known,
+            clock: parameter.clock,
             declared,
         })
     }

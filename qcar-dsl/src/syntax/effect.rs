@@ -170,7 +170,7 @@ pub struct EffectParameter {
     pub shared: bool,
     /// `known param`
     pub known: bool,
-    /// `strength param` or `shape param`
+    /// `strength param`, `shape param` or `clock param`
     pub role: Role,
     /// The name.
     pub name: Name,
@@ -191,7 +191,9 @@ pub enum Role {
     Strength(VanishesAt),
     /// `shape param`: it says where the effect acts, over travel, speed or frequency.
     Shape,
-    /// Neither.
+    /// `clock param`: the time since a run began, in s or, without a unit, in parts of the run.
+    Clock,
+    /// None of these.
     Other,
 }
 

@@ -4,6 +4,7 @@
 use super::noise::Form;
 use crate::campaign::Axis;
 use crate::model::Model;
+use crate::response::parameters::Clock;
 
 /// Something that might be missing, at a place.
 pub struct Candidate {
@@ -66,7 +67,9 @@ pub enum ParameterRole {
     },
     /// It says where the effect acts, over travel, speed or frequency.
     Shape,
-    /// Neither.
+    /// It is the time since a run began: each run gives it.
+    Clock(Clock),
+    /// None of these.
     Other,
 }
 

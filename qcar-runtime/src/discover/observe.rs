@@ -27,6 +27,8 @@ mod cleat;
 mod time_history;
 // The K&C rig: slow cycles and sines.
 mod kc;
+// Runs through which a parameter changes.
+mod drift;
 // From a campaign to a data set.
 mod read;
 // From a model to predictions.

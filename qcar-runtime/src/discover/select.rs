@@ -21,12 +21,12 @@ use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
-use race::{Fidelity, Finalist, entrants, race};
+use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
 use verdict::{Set, closed, is_missing, judged, predictive};
 use visible::visible;
 
-use super::answer::{Discovery, Learned, News, Progress, Verdict, told};
+use super::answer::{Discovery, Learned, News, Progress, Rival, Verdict, told};
 use super::candidate::{Candidate, Workshop};
 use super::numbers::{MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Stimulus};
@@ -70,10 +70,10 @@ pub fn discover(
         let learned = learn::learn(alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
-    } else if let Some(several) = several(&sets, &discovery) {
-        // Names may make up together for one law that the catalogue does not have.
+    } else if let Some(found) = doubtful(&sets, &discovery, evidence) {
+        // Names may make up for a law that the catalogue does not have.
         let law = learn::single(alone, evidence, progress);
-        let law = law.filter(|law| law.log_posterior() > several.log_posterior());
+        let law = law.filter(|law| law.log_posterior() > found.log_posterior());
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
@@ -151,8 +151,8 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// The set that was found, where it has several effects.
-fn several<'s>(sets: &'s [Set], discovery: &Discovery) -> Option<&'s Set> {
+/// The set that was found, where it has several effects, or leaves more of the gap than chance would.
+fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> Option<&'s Set> {
     let found = discovery.told_apart().0;
     let is_it = |set: &&Set| {
         let effects = set.assembly.effects().iter();
@@ -165,7 +165,8 @@ fn several<'s>(sets: &'s [Set], discovery: &Discovery) -> Option<&'s Set> {
     };
     let order = |a: &&Set, b: &&Set| a.log_posterior().total_cmp(&b.log_posterior());
     let found = sets.iter().filter(is_it).max_by(order);
-    found.filter(|set| set.assembly.effects().len() > 1)
+    let closes = |set: &Set| closed(&sets[0].explanation, &set.explanation, evidence);
+    found.filter(|set| set.assembly.effects().len() > 1 || closes(set) < evidence.numbers.certain())
 }
 
 /// The most probable set.
@@ -271,12 +272,9 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
     };
     let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
+    let rivals = rivals(&candidates, &dropped);
     for own in &mut sets {
-        own.rivals = dropped
-            .iter()
-            .take(RIVALS)
-            .map(|left| verdict::rival(&candidates[left.candidate], left.behind))
-            .collect();
+        own.rivals.clone_from(&rivals);
     }
     Ok(sets)
 }
@@ -289,6 +287,19 @@ fn explained(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> 
 
 /// Dropped candidates that are told of.
 const RIVALS: usize = 3;
+
+/// The best of those that were dropped, each name once: its forms are no rivals of one another.
+fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
+    let mut rivals: Vec<Rival> = Vec::new();
+    for left in dropped {
+        let own = verdict::rival(&candidates[left.candidate], left.behind);
+        let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
+        if rivals.len() < RIVALS && !rivals.iter().any(is_it) {
+            rivals.push(own);
+        }
+    }
+    rivals
+}
 
 /// Logarithm of the odds of a candidate before any measurement: even odds that something is missing, equal ones for all
 /// effects, shared among the places and forms of one.

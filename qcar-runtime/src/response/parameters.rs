@@ -13,6 +13,17 @@ pub struct Values {
     p: Vec<f64>,
     /// For each parameter the one that it takes its value from: itself, unless its default ties it.
     leader: Vec<usize>,
+    /// Those that are the time since a run began.
+    clocks: Vec<(usize, Clock)>,
+}
+
+/// How the time since a run began is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// In s.
+    Seconds,
+    /// In parts of the run: from 0 at its beginning to 1 at its end.
+    PartOfRun,
 }
 
 /// Why a parameter has no value.
@@ -115,7 +126,8 @@ impl Values {
             .collect();
         errors.extend((0..stated.len()).filter_map(|k| invalid(about, k, leader[k] == k, stated[k])));
         if errors.is_empty() {
-            Ok(Self { p, leader })
+            let clocks = Vec::new();
+            Ok(Self { p, leader, clocks })
         } else {
             Err(errors)
         }
@@ -129,6 +141,28 @@ impl Values {
     /// The parameter that this one takes its value from; itself unless it is tied.
     pub fn leader(&self, parameter: usize) -> usize {
         self.leader[parameter]
+    }
+
+    /// With these parameters as the time since a run began, by their places.
+    pub fn with_clocks(self, clocks: Vec<(usize, Clock)>) -> Self {
+        Self { clocks, ..self }
+    }
+
+    /// True where something changes while a run goes on.
+    pub fn have_clocks(&self) -> bool {
+        !self.clocks.is_empty()
+    }
+
+    /// The same at a part of a run that takes so long (s).
+    pub fn at_part(&self, part: f64, length: f64) -> Self {
+        let mut then = self.clone();
+        for &(place, clock) in &self.clocks {
+            then.p[place] = match clock {
+                Clock::Seconds => part * length,
+                Clock::PartOfRun => part,
+            };
+        }
+        then
     }
 
     /// Changes a parameter together with all that are tied to it.

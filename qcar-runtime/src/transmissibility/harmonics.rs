@@ -33,6 +33,15 @@ pub struct HarmonicLine {
     pub variance: Vec<f64>,
 }
 
+/// The moment in which a sweep passes a frequency.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Passage {
+    /// s from the first sample.
+    pub time: f64,
+    /// In the unit of the excitation.
+    pub amplitude: f64,
+}
+
 /// A sweep as the sum of its multiples needs it.
 pub struct Swept {
     rate: f64,
@@ -71,9 +80,9 @@ impl Swept {
         }
     }
 
-    /// Amplitude of the excitation while its frequency is within a few percent of `frequency` (Hz); `None` where it
-    /// never is.
-    pub fn amplitude(&self, frequency: f64) -> Option<f64> {
+    /// When the excitation passes `frequency` (Hz), s from the first sample, and its amplitude there: the medians over the
+    /// time that it is within a few percent of it; `None` where it never is.
+    pub fn passage(&self, frequency: f64) -> Option<Passage> {
         const NEAR: f64 = 0.04;
         // Half a period to each side: a difference over that span is the mean frequency of one period.
         let half = (0.5 * self.rate / frequency).ceil() as usize;
@@ -81,12 +90,12 @@ impl Swept {
             let cycles = (self.phase[k + half] - self.phase[k - half]) / std::f64::consts::TAU;
             (cycles * self.rate / (2 * half) as f64 / frequency - 1.0).abs() < NEAR
         });
-        let mut near: Vec<f64> = near.map(|k| self.envelope[k]).collect();
-        if near.is_empty() {
-            return None;
-        }
+        let near: Vec<usize> = near.collect();
         let middle = near.len() / 2;
-        Some(*near.select_nth_unstable_by(middle, f64::total_cmp).1)
+        let time = *near.get(middle)? as f64 / self.rate;
+        let mut envelope: Vec<f64> = near.iter().map(|&k| self.envelope[k]).collect();
+        let amplitude = *envelope.select_nth_unstable_by(middle, f64::total_cmp).1;
+        Some(Passage { time, amplitude })
     }
 
     /// The responses of a signal of the same record at `frequencies` (Hz, increasing).

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use qcar_dsl::patch::{Curve, NewParameter, Ordinate, Patch};
+use qcar_dsl::patch::{Curve, NewParameter, Ordinate, ParameterRole, Patch};
 use qcar_runtime::discover::answer::{Finding, Learned};
 
 use super::Written;
@@ -129,7 +129,8 @@ const DETERMINED: f64 = 0.5;
 fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> String {
     let named = |name: &str| parameters.iter().find(|own| own.effect_name == name);
     let scale = curve.scale.as_deref().and_then(named);
-    let unit = scale.map_or("in its unit".into(), |own| own.unit.to_string());
+    let over = scale.or_else(|| named(&curve.over));
+    let unit = over.map_or("in its unit".into(), |own| own.unit.to_string());
     let scale = scale.map_or(1.0, |own| own.start);
     let points = curve.points.iter().filter_map(|(x, y)| match y {
         Ordinate::Number(y) => Some((x * scale, *y)),
@@ -145,6 +146,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> Stri
     let over = match curve.over.as_str() {
         "s" => "travel",
         "v" => "speed",
+        clock if is_clock(clock, parameters) => return of_time(&points, unit),
         other => other,
     };
     let rest = points.iter().find(|(x, _)| *x == 0.0).map_or(0.0, |(_, y)| *y);
@@ -173,6 +175,24 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> Stri
         (true, _) => told(&rebound, "in rebound; compression is not determined"),
     };
     format!("over the {over} it goes from {} at rest to {sides}", number(rest, 3))
+}
+
+fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
+    let own = parameters.iter().find(|own| own.effect_name == name);
+    own.is_some_and(|own| own.role == ParameterRole::Clock)
+}
+
+/// `it goes from 1 when a run begins to 0.9 after 10, 0.7 after 30 s`
+fn of_time(points: &[(f64, f64)], unit: String) -> String {
+    let later = points.iter().filter(|(time, _)| *time > 0.0);
+    let told: Vec<String> = later
+        .map(|(time, y)| format!("{} after {}", number(*y, 3), number(*time, 3)))
+        .collect();
+    if told.is_empty() {
+        return "how it changes with time is not determined".into();
+    }
+    let unit = if unit == "1" { "of the run".into() } else { unit };
+    format!("it goes from 1 when a run begins to {} {unit}", told.join(", "))
 }
 
 /// The points to one side of rest, from there on, without those that only repeat the last.

@@ -366,6 +366,10 @@ fn remaining(of: &Answer) -> String {
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.told_apart();
     match of.discovery.verdict {
+        Verdict::None if is_doubtful(of) => {
+            "nothing large is missing: what is left is small, but no noise, and nothing that was tried explains it"
+                .into()
+        }
         Verdict::None => "nothing is missing, what is left is noise".into(),
         Verdict::Found => format!("found {}", listed(found)),
         Verdict::Class if found.is_empty() => format!("these data cannot tell apart {}", listed(class)),
@@ -376,6 +380,12 @@ pub(crate) fn sentence(of: &Answer) -> String {
         ),
         Verdict::Unknown => "something is missing, and no effect of the catalogue explains it".into(),
     }
+}
+
+/// True where an answer is less probable than one may be that is given as certain.
+fn is_doubtful(of: &Answer) -> bool {
+    let doubt = of.evidence.numbers.doubt;
+    of.discovery.probability.is_some_and(|probability| probability < doubt)
 }
 
 /// What comes before the name of a finding that is one of several.

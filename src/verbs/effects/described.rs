@@ -97,6 +97,7 @@ impl Parameter {
             Role::Strength(VanishesAt::Infinity) => (Some("strength"), Some("infinity".to_string())),
             Role::Strength(VanishesAt::Value(value)) => (Some("strength"), Some(value.to_string())),
             Role::Shape => (Some("shape"), None),
+            Role::Clock => (Some("clock"), None),
             Role::Other => (None, None),
         };
         let (low, high) = &declared.range;

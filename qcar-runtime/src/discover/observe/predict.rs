@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::dataset::Evidence;
 use super::prediction::{Free, Misread, PredictError, Prediction};
 use super::run::{Run, Stimulus};
-use super::{cleat, kc, sweep, time_history};
+use super::{cleat, drift, kc, sweep, time_history};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -84,6 +84,24 @@ pub fn replayed(
 }
 
 fn of_run(
+    model: &dyn Model,
+    both: [&Values; 2],
+    misread: &Misread,
+    free: &[Free],
+    evidence: &Evidence,
+    run: usize,
+) -> Result<Vec<Prediction>, PredictError> {
+    if !both[0].have_clocks() {
+        return of_unchanging(model, both, misread, free, evidence, run);
+    }
+    drift::through(evidence, run, |part, length| {
+        let [values, side] = both.map(|own| own.at_part(part, length));
+        of_unchanging(model, [&values, &side], misread, free, evidence, run)
+    })
+}
+
+/// Of a run through which no parameter changes.
+fn of_unchanging(
     model: &dyn Model,
     [values, side]: [&Values; 2],
     misread: &Misread,

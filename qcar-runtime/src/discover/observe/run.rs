@@ -48,6 +48,8 @@ pub enum Stimulus {
         frequency: Vec<f64>,
         /// Amplitude of the reference there, in its unit.
         amplitude: Vec<f64>,
+        /// When the sweep passed there, s from its first sample.
+        time: Vec<f64>,
         /// First and last frequency of the sweep, Hz.
         band: (f64, f64),
     },

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::taken::Taken;
 use crate::campaign::Role;
-use crate::discover::candidate::{Added, Candidate, Change, Workshop};
+use crate::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::discover::posterior::{Explanation, Gap, Given, Refit, Setting, Start, fit, settle};
 use crate::model::Model;
-use crate::response::parameters::Values;
+use crate::response::parameters::{Clock, Values};
 
 /// A model with effects in it.
 #[derive(Clone)]
@@ -18,6 +18,8 @@ pub struct Assembly {
     workshop: Arc<dyn Workshop>,
     setting: Setting,
     nuisance: Nuisance,
+    /// Parameters that are the time since a run began.
+    clocks: Vec<(String, Clock)>,
     effects: Vec<Placed>,
 }
 
@@ -47,6 +49,7 @@ pub struct Hypothesis<'a> {
     given: Vec<Given>,
     vehicle: &'a BTreeMap<String, f64>,
     nuisance: Nuisance,
+    clocks: Vec<(String, Clock)>,
 }
 
 /// Values of parameters by name, and errors of sensors, from which a fit begins.
@@ -88,6 +91,7 @@ impl Assembly {
             workshop,
             setting: setting.clone(),
             nuisance: Nuisance::of(evidence),
+            clocks: Vec::new(),
             effects: Vec::new(),
         })
     }
@@ -133,6 +137,7 @@ impl Assembly {
             given: self.setting.given.clone(),
             vehicle: &self.setting.vehicle,
             nuisance: self.nuisance.clone(),
+            clocks: self.clocks.clone(),
         }
     }
 
@@ -143,6 +148,7 @@ impl Assembly {
             Change::Model { model, parameters } => {
                 hypothesis.model = &**model;
                 hypothesis.given.extend(unknown(parameters));
+                hypothesis.clocks.extend(clocks(parameters));
             }
             Change::Sensor { .. } => hypothesis.nuisance = suspecting(&self.nuisance, candidate)?,
         }
@@ -157,6 +163,7 @@ impl Assembly {
                 let form = candidate.form.as_deref();
                 assembly.workshop = Arc::from(self.workshop.with(&candidate.effect, &candidate.at, form)?);
                 assembly.setting.given.extend(unknown(parameters));
+                assembly.clocks.extend(clocks(parameters));
             }
             Change::Sensor { .. } => assembly.nuisance = suspecting(&self.nuisance, candidate)?,
         }
@@ -188,6 +195,14 @@ fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
         name: parameter.name.clone(),
         value: parameter.start,
         range: Some(parameter.range),
+    })
+}
+
+/// What of an effect is the time since a run began.
+fn clocks(parameters: &[Added]) -> impl Iterator<Item = (String, Clock)> {
+    parameters.iter().filter_map(|own| match own.role {
+        ParameterRole::Clock(clock) => Some((own.name.clone(), clock)),
+        _ => None,
     })
 }
 
@@ -252,7 +267,13 @@ impl<'a> Hypothesis<'a> {
                 .map_or(given.value, |&value| inside(given, value));
             (given.name.clone(), value)
         };
-        Values::resolve(about, &of_model.map(value).collect(), &self.vehicle.clone()).map_err(PredictError::Parameters)
+        let values = Values::resolve(about, &of_model.map(value).collect(), &self.vehicle.clone());
+        let place = |name: &str| about.parameters.iter().position(|own| own.name == name);
+        let clocks = self
+            .clocks
+            .iter()
+            .filter_map(|(name, clock)| Some((place(name)?, *clock)));
+        Ok(values.map_err(PredictError::Parameters)?.with_clocks(clocks.collect()))
     }
 
     fn free(&self) -> Vec<Free> {

@@ -243,7 +243,8 @@ fn is_part(part: &Set, whole: &Set) -> bool {
 /// How many candidates are told of.
 const CANDIDATES: usize = 3;
 
-/// The most probable effects, each with the best set that has it alone, or else the best with it.
+/// The most probable effects, each with the best set that has it alone, or else the best with it. What an answer withdraws
+/// of a set, since it predicts nothing, has no part in its probability.
 fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: &Evidence) -> Vec<Probable> {
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();
@@ -255,7 +256,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             fewer.then(a.log_posterior().total_cmp(&b.log_posterior()))
         };
         let best = with.max_by(order)?;
-        let holds = |own: &&Answer| sets[own.set].names().contains(&name);
+        let holds = |own: &&Answer| sets[predictive(sets, own.set, evidence)].names().contains(&name);
         let form = best
             .assembly
             .effects()
@@ -267,7 +268,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             effect: name.0.to_owned(),
             at: name.1.to_owned(),
             form,
-            probability: answers.iter().filter(holds).map(|own| own.probability).sum(),
+            probability: answers.iter().filter(holds).fold(0.0, |sum, own| sum + own.probability),
             explained: closed(before, &best.explanation, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
         })

@@ -10,7 +10,7 @@ use crate::discover::observe::series::LEAST_NOISE;
 use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
-use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Swept};
+use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Passage, Swept};
 use crate::transmissibility::{Point, points, signal};
 
 /// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
@@ -67,11 +67,8 @@ impl Evidence {
         let rate = history.sample_rate;
         let swept = Swept::new(&excitation, rate, band, ORDERS);
         let grid = grid(band, rate / excitation.len() as f64);
-        let passed: Vec<(f64, f64)> = grid
-            .into_iter()
-            .filter_map(|f| Some((f, swept.amplitude(f)?)))
-            .collect();
-        let (frequency, amplitude): (Vec<f64>, Vec<f64>) = passed.into_iter().unzip();
+        let passed: Vec<(f64, Passage)> = grid.into_iter().filter_map(|f| Some((f, swept.passage(f)?))).collect();
+        let frequency: Vec<f64> = passed.iter().map(|(f, _)| *f).collect();
         let (place, before) = (self.runs.len(), self.series.len());
         for sensor in sensors {
             let samples = signal(&history, &sensor)?;
@@ -102,7 +99,8 @@ impl Evidence {
                 signal: excitation,
                 rate,
                 frequency,
-                amplitude,
+                amplitude: passed.iter().map(|(_, own)| own.amplitude).collect(),
+                time: passed.iter().map(|(_, own)| own.time).collect(),
                 band,
             },
         });

@@ -30,6 +30,7 @@ fn group(places: &[f64], scale: f64) -> Group {
             rate: 1.0,
             frequency: Vec::new(),
             amplitude: Vec::new(),
+            time: Vec::new(),
             band: (1.0, 2.0),
         }),
     };

@@ -1,0 +1,107 @@
+//! Runs through which a parameter changes slowly, such as a damper that fades: the model is asked at several times, as though
+//! it had always been as it is then, and each value is read between the two times next to its own. What changes within one
+//! oscillation needs a state in the model instead.
+
+use nalgebra::Complex;
+
+use super::{Delay, Evidence, Kind, PredictError, Prediction, Run, Series, Stimulus};
+
+/// Times at which a run is looked at lie no closer than this, s: slow against every mode of an axle.
+const APART: f64 = 3.0;
+/// And there are no more of them than this: between two of them a change counts as a straight line.
+const MOST: usize = 6;
+
+/// What is said of a run, by what is said of it `at` a part of it, which takes so long (s).
+///
+/// # Errors
+/// As `at`.
+pub fn through(
+    evidence: &Evidence,
+    run: usize,
+    at: impl Fn(f64, f64) -> Result<Vec<Prediction>, PredictError>,
+) -> Result<Vec<Prediction>, PredictError> {
+    let length = length(&evidence.runs[run].stimulus);
+    let last = ((length / APART).ceil() as usize).min(MOST - 1);
+    let mut predictions = Vec::new();
+    for k in 0..=last {
+        predictions.push(at(k as f64 / last.max(1) as f64, length)?);
+    }
+    let read = |place: usize| {
+        let of_times: Vec<&Prediction> = predictions.iter().map(|own| &own[place]).collect();
+        let series = &evidence.series[of_times[0].series];
+        let moments = moments(series, &evidence.runs[run]).into_iter();
+        let weights: Vec<(usize, f64)> = moments.map(|moment| between(last, moment / length)).collect();
+        blended(&of_times, &weights)
+    };
+    Ok((0..predictions[0].len()).map(read).collect())
+}
+
+/// How long something moved, s.
+fn length(stimulus: &Stimulus) -> f64 {
+    match stimulus {
+        Stimulus::Sweep { time, .. } => time.iter().copied().fold(0.0, f64::max),
+        Stimulus::History { inputs, rate, .. } => inputs.samples as f64 / rate,
+        Stimulus::Cleat(passage) => passage.duration,
+        Stimulus::Travel { .. } | Stimulus::Sine { .. } => 0.0,
+    }
+}
+
+/// When each value of a series was measured, s since the run began.
+fn moments(series: &Series, run: &Run) -> Vec<f64> {
+    let swept = |at: &f64| match &run.stimulus {
+        Stimulus::Sweep { frequency, time, .. } => {
+            let place = frequency.iter().position(|f| f == at);
+            place.map_or(0.0, |place| time[place])
+        }
+        _ => 0.0,
+    };
+    let start = match &run.stimulus {
+        Stimulus::History { inputs, .. } => inputs.start,
+        _ => 0.0,
+    };
+    match series.kind {
+        Kind::Harmonic(_) => series.at.iter().map(swept).collect(),
+        Kind::Time | Kind::Passage => series.at.iter().map(|at| at - start).collect(),
+        Kind::Travel | Kind::Width | Kind::Cycle(_) => vec![0.0; series.at.len()],
+    }
+}
+
+/// Of `last` steps through a run, the one in which a part of it lies, and how far it has gone there.
+fn between(last: usize, part: f64) -> (usize, f64) {
+    if last == 0 {
+        return (0, 0.0);
+    }
+    let place = part.clamp(0.0, 1.0) * last as f64;
+    let earlier = (place as usize).min(last - 1);
+    (earlier, place - earlier as f64)
+}
+
+/// One prediction of several at successive times.
+fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
+    let blend = |part: &dyn Fn(&Prediction) -> Vec<Complex<f64>>| -> Vec<Complex<f64>> {
+        let parts: Vec<Vec<Complex<f64>>> = of_times.iter().map(|own| part(own)).collect();
+        let value = |(k, &(earlier, weight)): (usize, &(usize, f64))| {
+            let later = (earlier + 1).min(parts.len() - 1);
+            parts[earlier][k] * (1.0 - weight) + parts[later][k] * weight
+        };
+        weights.iter().enumerate().map(value).collect()
+    };
+    let first = of_times[0];
+    let delay = first.delay.as_ref().map(|own| Delay {
+        slope: blend(&|p| p.delay.as_ref().map_or_else(Vec::new, |own| own.slope.clone())),
+        shares: own.shares.clone(),
+    });
+    let has_louder = first.louder.is_some();
+    Prediction {
+        series: first.series,
+        value: blend(&|p| p.value.clone()),
+        slopes: (0..first.slopes.len())
+            .map(|k| blend(&|p| p.slopes[k].clone()))
+            .collect(),
+        delay,
+        louder: has_louder.then(|| blend(&|p| p.louder.clone().unwrap_or_default())),
+        begun: (0..first.begun.len())
+            .map(|k| (first.begun[k].0.clone(), blend(&|p| p.begun[k].1.clone())))
+            .collect(),
+    }
+}
