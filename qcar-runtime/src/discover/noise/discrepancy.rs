@@ -64,9 +64,11 @@ impl Discrepancy {
                 None => groups.push((key, series.least_discrepancy, values)),
             }
         }
+        let keys: Vec<Key> = groups.iter().map(|(key, ..)| key.clone()).collect();
+        let along = |key: &Key| keys.iter().filter(|other| other.is_beside(key)).count();
         let groups = groups
             .into_iter()
-            .map(|(key, least, values)| Group::new(key, least, values, &evidence.numbers));
+            .map(|(key, least, values)| Group::new(key.clone(), along(&key), least, values, &evidence.numbers));
         Self {
             groups: groups.collect(),
         }

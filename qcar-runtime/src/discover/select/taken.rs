@@ -27,7 +27,11 @@ impl Taken {
         let unknowns = match &candidate.change {
             Change::Model { parameters, .. } => {
                 let unknown = |p: &Added| Unknown::Parameter(p.effect_name.clone(), p.name.clone());
-                parameters.iter().map(unknown).collect()
+                parameters
+                    .iter()
+                    .filter(|own| !matches!(own.role, ParameterRole::Clock(_)))
+                    .map(unknown)
+                    .collect()
             }
             Change::Sensor { form, parameter, .. } => {
                 let place = nuisance.of_sensors().saturating_sub(1);

@@ -17,7 +17,8 @@ pub struct Group {
     rows: Vec<[usize; 2]>,
     /// Rows of a value: two where it is complex.
     parts: usize,
-    /// What the evidence of each run counts: a tyre's law is wrong in all rides alike, so that all of them count as one.
+    /// What the evidence of each run counts: a tyre's law is wrong in all rides alike, and moves all masses along an axis by
+    /// one force, so that all of these count as one.
     weight: f64,
     /// The correlation, in units of the noise, for a `τ` of one.
     correlation: Banded,
@@ -38,13 +39,21 @@ pub struct Key {
     pub run: Discriminant<Stimulus>,
 }
 
+impl Key {
+    /// True for what sensors along the same axis give in runs of the same kind, the sensor itself included.
+    pub fn is_beside(&self, other: &Key) -> bool {
+        (self.sensor.axis, self.kind, self.run) == (other.sensor.axis, other.kind, other.run)
+    }
+}
+
 /// Steps of the search for `τ`, and the least that differs from zero.
 const STEPS: usize = 12;
 const LEAST: f64 = 1e-4;
 const MOST: f64 = 2.0;
 
 impl Group {
-    pub fn new(key: Key, least: f64, mut values: Vec<Value>, numbers: &Numbers) -> Self {
+    /// Of so many sensors that see the same force.
+    pub fn new(key: Key, sensors: usize, least: f64, mut values: Vec<Value>, numbers: &Numbers) -> Self {
         values.sort_by(|a, b| a.place.total_cmp(&b.place));
         let correlated = |row: usize| -> Range<usize> {
             values[..row].partition_point(|other| values[row].place - other.place >= 1.0)..row + 1
@@ -56,7 +65,7 @@ impl Group {
             a.scale * b.scale * levels * correlation(kind, (a.place - b.place).abs())
         };
         let weight = match kind {
-            Kind::Passage => 1.0 / runs(&values) as f64,
+            Kind::Passage => 1.0 / (sensors * runs(&values)) as f64,
             _ => 1.0,
         };
         let mut group = Self {

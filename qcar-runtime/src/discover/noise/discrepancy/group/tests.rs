@@ -36,6 +36,7 @@ fn group(places: &[f64], scale: f64) -> Group {
     };
     Group::new(
         key,
+        1,
         0.0,
         places.iter().enumerate().map(value).collect(),
         &Numbers::default(),
