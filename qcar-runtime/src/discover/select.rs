@@ -134,7 +134,7 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
     let first = is_open.then_some(best).filter(|_| !is_settled(sets, best, evidence));
-    first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], &evidence.numbers)))
+    first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
 
 /// The next of the sets of one effect that the beam holds.
@@ -250,7 +250,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
-    if is_missing(set, &evidence.numbers) {
+    if is_missing(set, evidence) {
         // Where the parameters of a model are that leaves much says little of where they are beside the right effect.
         let given = Place::given(&looks.coarse);
         for prospect in &mut prospects {

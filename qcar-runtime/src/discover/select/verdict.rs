@@ -176,7 +176,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
         );
     }
     let verdict = match (findings.is_empty(), alike) {
-        (true, _) if is_missing(&sets[best], &evidence.numbers) => Verdict::Unknown,
+        (true, _) if is_missing(&sets[best], evidence) => Verdict::Unknown,
         (true, _) => Verdict::None,
         (false, 0) => Verdict::Found,
         (false, _) => Verdict::Class,
@@ -206,12 +206,14 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
     }
 }
 
-/// True where a model leaves more of any sensor than models of its kind do.
-pub fn is_missing(set: &Set, numbers: &Numbers) -> bool {
+/// True where a model leaves more of any sensor than models of its kind do, and more than the uncertainty of all that
+/// judges: what a noisy sensor leaves alone is no sign of an effect.
+pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
-    discrepancy
+    let is_large = discrepancy
         .flat_map(|own| own.missed())
-        .any(|missed| missed.tau > numbers.expected_discrepancy)
+        .any(|missed| missed.tau > evidence.numbers.expected_discrepancy);
+    is_large && excess(&set.explanation, evidence) > 0.0
 }
 
 /// The smallest list of sets that is certain, without those that only add to another one of it. It is the
@@ -333,10 +335,13 @@ fn log_score(set: &Set, evidence: &Evidence) -> f64 {
 
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.
 pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
+    1.0 - excess(after, evidence) / excess(before, evidence).max(f64::MIN_POSITIVE)
+}
+
+/// The squared gap over its uncertainty on the runs that judge (those that were fitted, where none do) beyond what noise
+/// alone leaves, which is 1.
+fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
-    let excess = |own: &Explanation| {
-        let gap = if held_out { own.gap.held_out } else { own.gap.fit };
-        (gap.powi(2) - 1.0).max(0.0)
-    };
-    1.0 - excess(after) / excess(before).max(f64::MIN_POSITIVE)
+    let gap = if held_out { own.gap.held_out } else { own.gap.fit };
+    (gap.powi(2) - 1.0).max(0.0)
 }
