@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use qcar_dsl::check::Checked;
 use qcar_dsl::front::check_text;
 use qcar_dsl::parse::parse_text;
-use qcar_dsl::patch::{Ordinate, Patch, Patched};
+use qcar_dsl::patch::{Ordinate, ParameterRole, Patch, Patched};
 use qcar_dsl::source::Source;
 
 fn models() -> PathBuf {
@@ -112,6 +112,28 @@ fn laws_apply_at_whatever_has_such_a_term() {
         ["tire", "spring", "top_mount", "wheel_bushing_x"]
     );
     assert_eq!(places("tire_law"), ["tire"]);
+    assert_eq!(places("time_law"), ["damper"]);
+}
+
+/// At one moment only a combination of its coefficients is seen: time has to go on for all of them.
+#[test]
+fn a_law_over_time_is_seen_as_time_goes_on() {
+    for name in ["time_law", "run_law"] {
+        let law = law(name);
+        let patched = patched(&law, &model("axle_a"), "damper");
+        assert!(patched.model.unseen().is_empty(), "{name}");
+        let clock = &patched.parameters[0];
+        assert_eq!((clock.role, clock.known), (ParameterRole::Clock, true), "{name}");
+        let text = patched.text("");
+        assert!(text.contains(&format!("    clock param {}: ", clock.name)), "{text}");
+        let without = text.replacen("clock param", "known param", 1);
+        let still = Source {
+            name: "still.axle".into(),
+            text: without,
+        };
+        let still = check_text(still, &load).unwrap_or_else(|report| panic!("{report}"));
+        assert_eq!(still.unseen().len(), 1, "{name}");
+    }
 }
 
 /// The points of a curve are numbers, parameters, or products of these; what it is over may be a part of a parameter.

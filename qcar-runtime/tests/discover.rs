@@ -7,11 +7,11 @@ use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
 use qcar_runtime::discover::noise::{Form, Nuisance};
-use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
+use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus, predict};
 use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::Model;
-use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::parameters::{Clock, Values};
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::{Point, logarithmic};
 use strut::{Parts, Strut};
@@ -164,6 +164,45 @@ fn a_smooth_calibration_error_leaves_no_gap() {
             model.about().parameters[free.parameter].name
         );
     }
+}
+
+/// Its value is another in each line of a sweep: that of the moment in which the sweep passes there.
+#[test]
+fn a_parameter_that_is_the_time_changes_through_a_run() {
+    let model = Strut::new(PLAIN);
+    let mut evidence = evidence(&model, &TRUTH, |_, _| 1.0);
+    let count = evidence.series[0].at.len();
+    // Five steps of 400 s, and lines between them: the damping grows by 1 N s/m in a second.
+    let moments: Vec<f64> = (0..count).map(|k| 2000.0 * k as f64 / (count - 1) as f64).collect();
+    for run in &mut evidence.runs {
+        if let Stimulus::Sweep { time, .. } = &mut run.stimulus {
+            time.clone_from(&moments);
+        }
+    }
+    let damping = model.about().parameters.iter().position(|p| p.name == "c_wheel_z");
+    let damping = damping.expect("it has a damper");
+    let still = resolve(&model, &TRUTH);
+    let drifting = still.clone().with_clocks(vec![(damping, Clock::Seconds)]);
+    let seen = predict(&model, &drifting, &[], &evidence, Role::Fit).expect("it has the sensors");
+    let at = |time: f64| {
+        let mut then = still.clone();
+        then.set(damping, time);
+        predict(&model, &then, &[], &evidence, Role::Fit).expect("it has the sensors")
+    };
+    let steps: Vec<_> = (0..=5).map(|k| at(400.0 * f64::from(k))).collect();
+    for (place, own) in seen.iter().enumerate() {
+        for (k, value) in own.value.iter().enumerate() {
+            let (step, part) = ((moments[k] / 400.0).floor().min(4.0), moments[k] / 400.0);
+            let [earlier, later] = [0, 1].map(|next| steps[step as usize + next][place].value[k]);
+            let expected = earlier + (later - earlier) * (part - step);
+            assert!((value - expected).norm() < 1e-12 * expected.norm(), "line {k}");
+        }
+    }
+    let of_run = still
+        .clone()
+        .with_clocks(vec![(damping, Clock::PartOfRun)])
+        .at_part(0.25, 2000.0);
+    assert_eq!(of_run.as_slice()[damping], 0.25);
 }
 
 /// 4 % at one of three sensors that are good to 0.7 % each: all would have to be wrong, and that is no explanation.

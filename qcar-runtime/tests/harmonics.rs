@@ -90,6 +90,13 @@ fn the_amplitude_is_that_of_the_sweep_and_there_is_none_beyond() {
     for f in [0.8, 3.0, 20.0] {
         let passage = swept.passage(f).expect("the sweep passes there");
         assert!((passage.amplitude - 1.0).abs() < 0.02);
+        // Half a second of silence comes before the sweep.
+        let time = 0.5 + SECONDS * (f / BAND.0).ln() / (BAND.1 / BAND.0).ln();
+        assert!(
+            (passage.time - time).abs() < 0.1,
+            "{f} Hz at {} s, not {time}",
+            passage.time
+        );
     }
     assert_eq!(swept.passage(60.0), None);
 }

@@ -184,9 +184,9 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
 
 /// `it goes from 1 when a run begins to 0.9 after 10, 0.7 after 30 s`
 fn of_time(points: &[(f64, f64)], unit: String) -> String {
-    let later = points.iter().filter(|(time, _)| *time > 0.0);
+    let later = side(points, 1.0).into_iter();
     let told: Vec<String> = later
-        .map(|(time, y)| format!("{} after {}", number(*y, 3), number(*time, 3)))
+        .map(|(time, y)| format!("{} after {}", number(y, 3), number(time, 3)))
         .collect();
     if told.is_empty() {
         return "how it changes with time is not determined".into();
@@ -261,6 +261,19 @@ mod tests {
         assert!(
             said([0.5, 0.5, 2.0, 1.5], [0.01; 4])
                 .contains("0.5 at 0.2, 0.25 at 0.4 1 in compression and 2 at 0.2, 3 at 0.4 1 in rebound")
+        );
+    }
+
+    #[test]
+    fn what_changes_with_time_is_told_by_the_time() {
+        let points = [(0.0, 1.0), (10.0, 0.9), (30.0, 0.75), (100.0, 0.75)];
+        assert_eq!(
+            of_time(&points, "s".into()),
+            "it goes from 1 when a run begins to 0.9 after 10, 0.75 after 30 s"
+        );
+        assert_eq!(
+            of_time(&points[..1], "1".into()),
+            "how it changes with time is not determined"
         );
     }
 

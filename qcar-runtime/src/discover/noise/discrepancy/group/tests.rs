@@ -12,15 +12,19 @@ fn sensor() -> Point {
     }
 }
 
-/// Values at these places of one run, all of unit noise and signal.
-fn group(places: &[f64], scale: f64) -> Group {
-    let value = |(k, place): (usize, &f64)| Value {
+/// A value of unit noise and signal.
+fn value(k: usize, place: f64, scale: f64) -> Value {
+    Value {
         run: 0,
-        place: *place,
+        place,
         rows: [k, k],
         parts: 1,
         scale,
-    };
+    }
+}
+
+/// Values at these places of one run.
+fn group(places: &[f64], scale: f64) -> Group {
     let key = Key {
         sensor: sensor(),
         kind: Kind::Time,
@@ -38,7 +42,11 @@ fn group(places: &[f64], scale: f64) -> Group {
         key,
         1,
         0.0,
-        places.iter().enumerate().map(value).collect(),
+        places
+            .iter()
+            .enumerate()
+            .map(|(k, &place)| value(k, place, scale))
+            .collect(),
         &Numbers::default(),
     )
 }
@@ -85,4 +93,23 @@ fn discrepancy_is_learnt_from_its_own_draws() {
     let drawn = factor.times(&white);
     group.learn(&drawn);
     assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
+}
+
+/// Three sensors that one force moves prove no more than one of them.
+#[test]
+fn sensors_of_one_force_count_as_one() {
+    let places: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
+    let of = |kind, sensors| {
+        let key = Key {
+            kind,
+            ..group(&places, 1.0).key
+        };
+        let values = places.iter().enumerate().map(|(k, &place)| value(k, place, 3.0));
+        let mut group = Group::new(key, sensors, 0.0, values.collect(), &Numbers::default());
+        group.set(0.4);
+        group.log_determinant()
+    };
+    let alone = of(Kind::Passage, 1);
+    assert!(alone > 0.0 && (of(Kind::Passage, 3) - alone / 3.0).abs() < 1e-12);
+    assert_eq!(of(Kind::Time, 3), of(Kind::Time, 1));
 }
