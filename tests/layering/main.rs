@@ -1,4 +1,5 @@
-//! The module lists of each crate are the data's path, the crates keep apart, and the engine knows no axle by name.
+//! The module lists of each crate are the data's path, the crates keep apart, the engine knows no axle by name, and each
+//! crate can be packed.
 
 // Source files.
 mod source;
@@ -6,6 +7,8 @@ mod source;
 mod paths;
 // The lists that they make.
 mod modules;
+// What is in a crate that is packed.
+mod packages;
 
 use std::collections::BTreeSet;
 use std::fs;
