@@ -52,6 +52,7 @@ pub fn listen() {
     let _ = ctrlc::set_handler(end);
 }
 
+#[expect(clippy::disallowed_methods, reason = "files are whole here, and no other is begun")]
 fn end() {
     let unwritten: Vec<String> = left()
         .iter()
