@@ -1,5 +1,5 @@
-//! The module lists of each crate are the data's path, the crates keep apart, the engine knows no axle by name, and each
-//! crate can be packed.
+//! The module lists of each crate are the data's path, the crates keep apart, the engine knows no axle by name, each crate
+//! can be packed, and what a page for engineers names is there.
 
 // Source files.
 mod source;
@@ -9,6 +9,8 @@ mod paths;
 mod modules;
 // What is in a crate that is packed.
 mod packages;
+// What pages for engineers name.
+mod documents;
 
 use std::collections::BTreeSet;
 use std::fs;
