@@ -1,4 +1,4 @@
-//! What recipes and maps name is there.
+//! What recipes and the glossary name is there.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -35,6 +35,39 @@ fn files_that_are_named_are_there() {
             assert!(Path::new(&path).exists(), "{page} names {path}, which is not there");
         }
     }
+}
+
+#[test]
+fn words_of_the_code_in_the_glossary_are_there() {
+    let text = read(Path::new("ARCHITECTURE.md"));
+    let glossary = text.split("## Glossary").nth(1).unwrap();
+    let folders = [
+        "qcar-dsl/src",
+        "qcar-runtime/src",
+        "src",
+        "tests/blind/src",
+        "models/src",
+    ];
+    let files: Vec<_> = folders
+        .iter()
+        .flat_map(|folder| rust_files(Path::new(folder)))
+        .collect();
+    let texts = files.iter().map(|file| format!("{} {}", file.display(), read(file)));
+    let texts = texts.collect::<String>();
+    let words = |text: &str| -> BTreeSet<String> {
+        let letter = |c: char| c.is_alphanumeric() || c == '_';
+        text.split(|c| !letter(c)).map(String::from).collect()
+    };
+    let known = words(&texts);
+    let mut named = BTreeSet::new();
+    for row in glossary.lines().filter(|line| line.starts_with("| ")) {
+        let cells: Vec<&str> = row.split('|').collect();
+        assert_eq!(cells.len(), 5, "{row}");
+        named.extend(cells[3].split('`').skip(1).step_by(2).flat_map(words));
+    }
+    assert!(named.len() > 40, "the test sees {named:?}");
+    let unknown: Vec<&String> = named.difference(&known).collect();
+    assert!(unknown.is_empty(), "{unknown:?}");
 }
 
 #[test]
