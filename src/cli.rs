@@ -3,6 +3,7 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
+use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
     score, show, simulate, study,
@@ -17,6 +18,9 @@ use crate::verbs::{
 // The same width everywhere, so that help reads in a terminal as it does in the tests.
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
+    /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
+    #[arg(long, global = true, value_name = "UNITS", default_value = "si", hide_default_value = true)]
+    units: Units,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -47,6 +51,7 @@ enum Verb {
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
+        units::choose(self.units);
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
             Verb::Inspect(arguments) => inspect::run(&arguments),

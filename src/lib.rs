@@ -5,6 +5,8 @@
 pub mod failure;
 // Reading and writing.
 pub mod files;
+// The units in which results are shown.
+pub mod units;
 // Results for people, programs and eyes.
 pub mod table;
 // The same for other programs.
@@ -15,6 +17,8 @@ pub mod figure;
 pub mod histories;
 // And all of it on one page.
 pub mod report;
+// Results as workbooks.
+pub mod spreadsheet;
 // Signs of life meanwhile.
 pub mod progress;
 // What becomes of both when the user stops the work.

@@ -31,6 +31,8 @@ mod notices;
 pub(crate) mod render;
 // The result as files.
 pub(crate) mod files;
+// The result as a workbook.
+pub(crate) mod workbook;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -48,7 +50,7 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json, transmissibility.csv and transmissibility.svg into this folder
+    /// Write parameters.toml, fit.json, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
@@ -96,6 +98,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         files::write(&fitted, folder)?;
+        workbook::write(&fitted, folder)?;
     }
     let result = match arguments.format {
         Format::Text => render::text(&fitted),

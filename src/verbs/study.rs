@@ -32,6 +32,8 @@ mod gap;
 mod summary;
 // What was used.
 mod record;
+// The numbers as a workbook.
+mod workbook;
 // All of it for the page, and without the curves for programs.
 mod contents;
 
@@ -47,7 +49,7 @@ pub struct Arguments {
     /// Start from this model, by name or path, in place of the campaign's
     #[arg(long)]
     model: Option<String>,
-    /// Write report.html, study.json and the files of each step into this folder
+    /// Write report.html, study.json, results.xlsx and the files of each step into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: PathBuf,
     /// How to print
@@ -61,6 +63,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let contents = contents::Contents::of(&study);
     let json = json::line(&contents.result);
     put(&arguments.out, "study.json", &json)?;
+    workbook::write(&study, &arguments.out)?;
     let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
     put(&arguments.out, "report.html", &page(Report::Study, &title, &contents))?;
     let result = match arguments.format {

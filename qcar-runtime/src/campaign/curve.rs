@@ -107,6 +107,9 @@ impl Campaign {
     /// Where its file holds anything but finite numbers, or `x` does not increase.
     pub fn road(&self, road: &Road) -> Result<RoadSamples, InputError> {
         let file = self.folder.join(&road.file);
+        if let Some(corners) = &road.corners {
+            return between(file, &road.name, corners);
+        }
         let mut table = read(&file, ROAD)?;
         let x = increasing(&mut table, "x")?;
         Ok(RoadSamples {
@@ -116,6 +119,22 @@ impl Campaign {
             file,
         })
     }
+}
+
+/// A road of straight pieces.
+fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSamples, InputError> {
+    if let Some(pair) = corners.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
+        let place = Place::Name(format!("{name} x"));
+        let (found, remedy) = (format!("{} m after {} m", pair[1][0], pair[0][0]), "sort the rows, or correct the value");
+        return Err(Problem::new(file, place, found, "a larger value", remedy).into());
+    }
+    let slopes = corners.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
+    Ok(RoadSamples {
+        slope: slopes.chain([0.0]).collect(),
+        x: corners.iter().map(|corner| corner[0]).collect(),
+        z: corners.iter().map(|corner| corner[1]).collect(),
+        file,
+    })
 }
 
 fn other_kind(file: &Path, expected: &str) -> InputError {

@@ -2,11 +2,13 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test};
+use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test, unit_of_fact};
 use super::fields::{Document, Section};
 use super::reading::Recorded;
 use super::recorded::{self, Files};
-use super::{table, unit};
+use super::table;
+use super::unit::Declared;
+use super::workbook::{Entry, Workbook};
 use crate::error::{InputError, Place, Problem};
 use runs::{Known, run};
 use sensors::sensors;
@@ -60,17 +62,28 @@ impl Campaign {
 
 fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {
     format(&top);
-    let (name, model, description) = (top.text("name"), top.text("model"), top.remark("description"));
+    let (name, description) = (top.text("name"), top.remark("description"));
+    let workbook = workbook(folder, &top, files);
+    let of_workbook = workbook.as_ref().and_then(|workbook| workbook.model.clone());
+    let model = match top.has("model") || of_workbook.is_none() {
+        true => top.text("model"),
+        false => of_workbook,
+    };
     let vehicle = top
         .section("vehicle")
-        .map(|section| section.numbers())
+        .map(|section| section.quantities(unit_of_fact))
         .unwrap_or_default();
     let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
     let parameters = top
         .section("parameters")
         .map_or(Some(Vec::new()), |section| parameters(&section));
     let sensors = sensors(folder, &top);
-    let roads = each(top.sections("road"), "name", road, |road| &road.name);
+    let mut roads = each(top.sections("road"), "name", road, |road| &road.name);
+    if let (Some(roads), Some(workbook)) = (&mut roads, &workbook) {
+        let own: Vec<String> = roads.iter().map(|road| road.name.clone()).collect();
+        let others = workbook.roads.iter().filter(|road| !own.contains(&road.name));
+        roads.extend(others.cloned());
+    }
     let known = Known {
         folder,
         files,
@@ -83,12 +96,20 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
         |section| run(section, &known),
         |run| &run.name,
     );
+    let mut runs = runs;
+    if let (Some(runs), Some(workbook)) = (&mut runs, &workbook) {
+        runs.extend(workbook.runs.iter().cloned());
+    }
     if runs.as_ref().is_some_and(Vec::is_empty) {
         top.wrong("run", "no run", "at least one [[run]]", "list the measured files");
     }
     top.finish();
     let (folder, notices) = (folder.to_path_buf(), Vec::new());
     let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
+    let (vehicle, parameters) = match workbook {
+        Some(workbook) => above(vehicle, parameters, workbook),
+        None => (vehicle, parameters),
+    };
     let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
     Some(Campaign {
         folder,
@@ -105,6 +126,47 @@ fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> 
         notices,
         recorded: Vec::new(),
     })
+}
+
+/// The workbook that a campaign points at.
+fn workbook(folder: &Path, top: &Section<'_>, files: &Files) -> Option<Workbook> {
+    let axle = top.optional_text("axle");
+    let Some(named) = top.optional_text("workbook") else {
+        if axle.is_some() {
+            top.wrong("axle", "no `workbook`", "`workbook = \"vehicle.xlsx\"` beside it", "add it, or remove `axle`");
+        }
+        return None;
+    };
+    let read = Workbook::known(&folder.join(&named), &named, axle.as_deref(), files);
+    read.map_err(|error| top.adopt(error)).ok()
+}
+
+/// What the campaign states, and below it what its workbook does.
+fn above(
+    mut vehicle: Vec<(String, f64)>,
+    mut parameters: Vec<Parameter>,
+    workbook: Workbook,
+) -> (Vec<(String, f64)>, Vec<Parameter>) {
+    let stated: Vec<String> = vehicle.iter().map(|(name, _)| name.clone()).collect();
+    let facts = workbook.vehicle.into_iter().filter(|own| !stated.contains(&own.name));
+    vehicle.extend(facts.map(|own| (own.name, own.value)));
+    let stated: Vec<String> = parameters.iter().map(|own| own.name.clone()).chain(stated).collect();
+    let others = workbook.parameters.into_iter().filter(|own| !stated.contains(&own.name));
+    parameters.extend(others.map(Parameter::from));
+    (vehicle, parameters)
+}
+
+impl From<Entry> for Parameter {
+    fn from(of: Entry) -> Self {
+        Parameter {
+            name: of.name,
+            value: of.value,
+            unit: of.unit,
+            range: of.range,
+            fit: of.fit,
+            comment: of.comment,
+        }
+    }
 }
 
 fn format(top: &Section<'_>) {
@@ -165,9 +227,10 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
     let (value, unit, fit) = (section.number("value"), section.text("unit"), section.boolean("fit"));
     let (range, comment) = (section.range("range"), section.remark("comment"));
     section.finish();
-    if let Some(unit) = unit.as_ref().filter(|unit| unit::dimension(unit).is_none()) {
-        let remedy = "convert value and range, and write the coherent unit (N/m, N s/m, kg, m, 1)";
-        section.wrong("unit", format!("\"{unit}\""), "a coherent SI unit", remedy);
+    let declared = unit.as_deref().map(Declared::of);
+    if let (Some(unit), Some(None)) = (&unit, &declared) {
+        let remedy = "write the unit of value and range, such as N/m, N/mm, N s/m, kg, mm or 1";
+        section.wrong("unit", format!("\"{unit}\""), "a unit of mechanics", remedy);
     }
     if let (Some(value), Some((lower, upper))) = (value, range)
         && !(lower..=upper).contains(&value)
@@ -180,11 +243,12 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
             remedy,
         );
     }
+    let declared = declared??;
     Some(Parameter {
         name,
-        value: value?,
-        unit: unit?,
-        range,
+        value: declared.si(value?),
+        range: range.map(|(lower, upper)| (declared.si(lower), declared.si(upper))),
+        unit: declared.coherent,
         fit: fit?,
         comment,
     })
@@ -196,6 +260,7 @@ fn road(section: &Section<'_>) -> Option<Road> {
     Some(Road {
         name: name?,
         file: file?,
+        corners: None,
     })
 }
 
@@ -258,7 +323,8 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
-    runs.chain(campaign.roads.iter().map(|road| (road.file.as_str(), ROAD, &[][..])))
+    let roads = campaign.roads.iter().filter(|road| road.corners.is_none());
+    runs.chain(roads.map(|road| (road.file.as_str(), ROAD, &[][..])))
         .collect()
 }
 

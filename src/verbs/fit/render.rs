@@ -98,7 +98,7 @@ fn parameters(of: &[ParameterFit]) -> String {
     table.text()
 }
 
-fn remark(of: &ParameterFit) -> String {
+pub(super) fn remark(of: &ParameterFit) -> String {
     let bound = of.at_bound.map(|bound| match bound {
         Bound::Lower => "at the lower end of its range",
         Bound::Upper => "at the upper end of its range",
