@@ -19,8 +19,8 @@ use crate::verbs::{
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
     /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
-    #[arg(long, global = true, value_name = "UNITS", default_value = "si", hide_default_value = true)]
-    units: Units,
+    #[arg(long, global = true, value_name = "UNITS")]
+    units: Option<Units>,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -51,7 +51,7 @@ enum Verb {
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
-        units::choose(self.units);
+        self.units.map_or((), units::choose);
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
             Verb::Inspect(arguments) => inspect::run(&arguments),

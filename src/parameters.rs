@@ -17,6 +17,7 @@ use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::spelling;
 
 use crate::failure;
+use crate::units;
 use file::{ParameterFile, numbers};
 use fitted::Answer;
 
@@ -167,9 +168,13 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
     let all = about.parameters.iter().zip(p);
     let beyond = all.filter_map(|(parameter, &value)| {
         let (low, high) = parameter.range?;
-        let (name, unit, model) = (&parameter.name, &parameter.unit, &about.name);
+        let shown = |value| units::value(value, &parameter.unit);
+        let (name, unit, model) = (&parameter.name, units::name(&parameter.unit), &about.name);
         let sentence = format!(
-            "{name} = {value} {unit} is outside {low} to {high} {unit}, which model {model} takes for plausible"
+            "{name} = {} {unit} is outside {} to {} {unit}, which model {model} takes for plausible",
+            shown(value),
+            shown(low),
+            shown(high)
         );
         (!(low..=high).contains(&value)).then_some(sentence)
     });

@@ -4,6 +4,7 @@ use std::str::FromStr;
 use std::sync::OnceLock;
 
 use qcar_runtime::campaign::Declared;
+use serde_json::json;
 
 /// What `engineering` stands for: a unit for each kind that engineers of ride comfort do not show in SI.
 const ENGINEERING: [&str; 5] = ["N/mm", "N s/mm", "mm", "mm/s", "g"];
@@ -53,6 +54,18 @@ impl Units {
         self.0.iter().find(|own| own.declared.is_like(si))
     }
 
+    /// What makes a page know these units and open in them.
+    fn script(&self) -> String {
+        if self.0.is_empty() {
+            return "view.units = 'si';".into();
+        }
+        let scale = |own: &Shown| (own.declared.coherent.clone(), json!([own.declared.shown(1.0), own.name]));
+        let scales: serde_json::Map<_, _> = self.0.iter().map(scale).collect();
+        let names: Vec<&str> = self.0.iter().map(|own| own.name.as_str()).collect();
+        let system = json!({ "name": names.join(", "), "scales": scales });
+        format!("SYSTEMS.chosen = {};\nview.units = 'chosen';", system.to_string().replace('<', "\\u003c"))
+    }
+
     /// The unit in which what is `si` inside is shown.
     pub fn name<'a>(&'a self, si: &'a str) -> &'a str {
         self.of_kind(si).map_or(si, |own| &own.name)
@@ -64,7 +77,7 @@ impl Units {
     }
 }
 
-/// The user's choice; SI where there is none.
+/// The user's choice.
 static CHOSEN: OnceLock<Units> = OnceLock::new();
 
 /// Shows everything from now on in these units. The first choice of a process holds.
@@ -72,22 +85,19 @@ pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
 }
 
-/// The units that were chosen.
-pub fn chosen() -> &'static Units {
-    CHOSEN.get_or_init(Units::default)
-}
-
-/// The unit in which what is `si` inside is shown.
+/// The unit in which what is `si` inside is shown: SI where nobody has chosen.
 pub fn name(si: &str) -> &str {
-    match chosen().of_kind(si) {
-        Some(own) => &own.name,
-        None => si,
-    }
+    CHOSEN.get().map_or(si, |units| units.name(si))
 }
 
 /// A value in SI as it is shown.
 pub fn value(value: f64, si: &str) -> f64 {
-    chosen().value(value, si)
+    CHOSEN.get().map_or(value, |units| units.value(value, si))
+}
+
+/// What makes a page open in the units that were chosen; nothing where nobody has, and the page has its own.
+pub fn script() -> String {
+    CHOSEN.get().map_or(String::new(), Units::script)
 }
 
 /// What a column holds, and behind it in brackets its unit; of a pure number no unit.

@@ -282,9 +282,12 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let (mut recorded, mut problems) = (Vec::new(), Vec::new());
     for (file, required, allowed) in tables(campaign, &channels) {
         match table::header(&campaign.folder.join(file)) {
-            Ok(names) => {
+            Ok(headings) => {
+                let path = campaign.folder.join(file);
+                problems.extend(table::check_units(&path, &headings, |name| unit_of_column(campaign, name)));
+                let names: Vec<String> = headings.into_iter().map(|own| own.name).collect();
                 problems.extend(table::check_names(
-                    &campaign.folder.join(file),
+                    &path,
                     &names,
                     required,
                     allowed,
@@ -301,6 +304,18 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
         }
     }
     InputError::unless_empty(problems, Some(recorded))
+}
+
+/// The SI unit of a column of a plain table.
+fn unit_of_column(campaign: &Campaign, name: &str) -> Option<&'static str> {
+    match name {
+        "time" => Some("s"),
+        "displacement" | "x" | "z" => Some("m"),
+        "velocity" => Some("m/s"),
+        "force" => Some("N"),
+        "slope" => Some("1"),
+        name => campaign.channel(name).map(|channel| channel.quantity.unit()),
+    }
 }
 
 /// Where a file is missing, its columns are what its maker must know.

@@ -17,6 +17,7 @@ use super::left::{BeforeAfter, Left, channel, left};
 use super::places::{self, Missing};
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
+use crate::units;
 
 /// The answer as `docs/json.md` describes it.
 #[derive(Serialize)]
@@ -282,8 +283,9 @@ pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
 fn offsets_table(of: &Explanation) -> String {
     let mut table = Table::new(["channel", "quantity", "unit", "offset", "stderr"]);
     for own in offsets(of) {
-        let numbers = [number(own.offset, 4), or_dash(own.stderr, 2)];
-        let names = [own.channel, own.quantity.into(), own.unit.into()];
+        let shown = |value| units::value(value, own.unit);
+        let numbers = [number(shown(own.offset), 4), or_dash(own.stderr.map(shown), 2)];
+        let names = [own.channel, own.quantity.into(), units::name(own.unit).into()];
         table.row(names.into_iter().chain(numbers).collect());
     }
     table.text()
@@ -438,12 +440,13 @@ fn tiles(of: &Answer) -> String {
         "times_the_uncertainty",
     ]);
     for tile in of.discovery.before.gap.tiles.iter().take(8) {
+        let unit = unit_of_span(tile.kind);
         table.row(vec![
             channel(&tile.sensor),
             tile.kind.order().map_or("-".into(), |order| order.to_string()),
-            number(tile.span.0, 3),
-            number(tile.span.1, 3),
-            unit_of_span(tile.kind).into(),
+            number(units::value(tile.span.0, unit), 3),
+            number(units::value(tile.span.1, unit), 3),
+            units::name(unit).into(),
             number(tile.level, 3),
             number(tile.strength, 3),
         ]);

@@ -104,7 +104,7 @@ fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
 fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusive<u32>) -> Result<(), XlsxError> {
     let (first, last) = rows.into_inner();
     let mut chart = Chart::new(ChartType::ScatterStraight);
-    chart.title().set_name(format!("{}, {}", of.observation.channel.name, of.level.name));
+    chart.title().set_name(&format!("{}, {}", of.observation.channel.name, of.level.name));
     for (column, source) in (MAGNITUDES..).zip(SOURCES) {
         let series = chart.add_series().set_name(source);
         series.set_categories((RATIOS, first, MAGNITUDES - 1, last, MAGNITUDES - 1));

@@ -39,7 +39,7 @@ fn cleats(workbook: &mut Workbook, of: &Track) -> Result<(), XlsxError> {
     let count = of.before.compared.runs.len() as u32;
     for (place, (column, title)) in (0..).zip(OF_ERRORS.into_iter().zip(["peak", "after-shake"])) {
         let mut chart = Chart::new(ChartType::Column);
-        chart.title().set_name(format!("Error of the {title} over cleats"));
+        chart.title().set_name(&format!("Error of the {title} over cleats"));
         for (first, (name, _)) in (0..).map(|model| model * count + 1).zip(&driven) {
             let series = chart.add_series().set_name(*name);
             series.set_categories((ERRORS, first, 1, first + count - 1, 4));
