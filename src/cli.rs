@@ -3,6 +3,7 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
+use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
@@ -21,6 +22,16 @@ pub struct Cli {
     /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
     #[arg(long, global = true, value_name = "UNITS")]
     units: Option<Units>,
+    /// When to colour: auto (on a terminal, unless NO_COLOR is set), always or never
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        hide_default_value = true,
+        hide_possible_values = true
+    )]
+    color: Color,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -51,7 +62,10 @@ enum Verb {
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
-        self.units.map_or((), units::choose);
+        terminal::look(self.color);
+        if let Some(units) = self.units {
+            units::choose(units);
+        }
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
             Verb::Inspect(arguments) => inspect::run(&arguments),
@@ -71,7 +85,7 @@ impl Cli {
             Verb::Patch(arguments) => patch::run(&arguments),
             Verb::Diff(arguments) => diff::run(&arguments),
             Verb::Export(arguments) => export::run(&arguments),
-            Verb::Completions(arguments) => Ok(completions::run(&arguments, Cli::command())),
+            Verb::Completions(arguments) => completions::run(&arguments, &Cli::command()),
         }
     }
 }

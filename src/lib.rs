@@ -5,6 +5,8 @@
 pub mod failure;
 // Reading and writing.
 pub mod files;
+// How wide a terminal is, and whether it shows colours.
+pub mod terminal;
 // The units in which results are shown.
 pub mod units;
 // Results for people, programs and eyes.
@@ -33,6 +35,8 @@ pub mod inertias;
 pub mod catalogue;
 // Effects that a model may miss.
 pub mod effects;
+// Names that a shell completes.
+pub mod completion;
 // How far and how hard the parts of a model move in a campaign.
 pub mod scales;
 // Models with effects in them.

@@ -299,7 +299,9 @@ fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
 
 fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
     let declared = about.parameters.iter().filter_map(|parameter| {
-        let stated = [&file.parameters, &file.vehicle].into_iter().find_map(|own| own.get(&*parameter.name))?;
+        let stated = [&file.parameters, &file.vehicle]
+            .into_iter()
+            .find_map(|own| own.get(&*parameter.name))?;
         Some((parameter, stated, stated.unit.as_ref()?))
     });
     let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
@@ -320,7 +322,10 @@ fn wrong_settings(about: &About, settings: &[Setting]) -> Vec<Problem> {
     let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
     wrong
         .map(|(parameter, own, unit)| {
-            let (name, found) = (format!("--set {}", own.name), format!("a value in \"{unit}\" or a multiple of it"));
+            let (name, found) = (
+                format!("--set {}", own.name),
+                format!("a value in \"{unit}\" or a multiple of it"),
+            );
             let remedy = "correct the unit, or leave it out for a value in SI";
             failure::flag(&name, found, &examples(&parameter.unit), remedy)
         })

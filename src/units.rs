@@ -40,7 +40,10 @@ impl Units {
                 format!("expected `si`, `engineering` or units such as N/mm,mm,g, found `{name}`; write each unit once")
             })?;
             if let Some(twice) = units.of_kind(&declared.coherent) {
-                return Err(format!("`{name}` and `{}` are of one kind; leave one of them out", twice.name));
+                return Err(format!(
+                    "`{name}` and `{}` are of one kind; leave one of them out",
+                    twice.name
+                ));
             }
             units.0.push(Shown {
                 name: name.into(),
@@ -59,11 +62,19 @@ impl Units {
         if self.0.is_empty() {
             return "view.units = 'si';".into();
         }
-        let scale = |own: &Shown| (own.declared.coherent.clone(), json!([own.declared.shown(1.0), own.name]));
+        let scale = |own: &Shown| {
+            (
+                own.declared.coherent.clone(),
+                json!([own.declared.shown(1.0), own.name]),
+            )
+        };
         let scales: serde_json::Map<_, _> = self.0.iter().map(scale).collect();
         let names: Vec<&str> = self.0.iter().map(|own| own.name.as_str()).collect();
         let system = json!({ "name": names.join(", "), "scales": scales });
-        format!("SYSTEMS.chosen = {};\nview.units = 'chosen';", system.to_string().replace('<', "\\u003c"))
+        format!(
+            "SYSTEMS.chosen = {};\nview.units = 'chosen';",
+            system.to_string().replace('<', "\\u003c")
+        )
     }
 
     /// The unit in which what is `si` inside is shown.
@@ -120,7 +131,10 @@ mod tests {
         assert_eq!((units.name("N s/m"), units.value(1500.0, "N s/m")), ("N s/m", 1500.0));
         assert_eq!(units.name("1"), "1");
         let engineering: Units = "engineering".parse().unwrap();
-        assert_eq!((engineering.name("N s/m"), engineering.value(1500.0, "N s/m")), ("N s/mm", 1.5));
+        assert_eq!(
+            (engineering.name("N s/m"), engineering.value(1500.0, "N s/m")),
+            ("N s/mm", 1.5)
+        );
         assert_eq!("si".parse::<Units>(), Ok(Units::default()));
     }
 

@@ -37,8 +37,8 @@ mod curve;
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing,
-    Sweep, Tap, Test, Trigger, Window, unit_of_fact,
+    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side,
+    Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
 pub use finding::Finding;

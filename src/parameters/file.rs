@@ -134,7 +134,11 @@ impl From<Workbook> for ParameterFile {
         ParameterFile {
             parameters: of.parameters.into_iter().map(stated).collect(),
             vehicle: of.vehicle.into_iter().map(stated).collect(),
-            blanks: of.blanks.into_iter().map(|(name, place)| (name, (of.file.clone(), place))).collect(),
+            blanks: of
+                .blanks
+                .into_iter()
+                .map(|(name, place)| (name, (of.file.clone(), place)))
+                .collect(),
             path: of.file.clone(),
         }
     }
@@ -260,7 +264,9 @@ impl Reader<'_> {
         let unit = table
             .and_then(|table| table.get("unit"))
             .and_then(|unit| unit.get_ref().as_str());
-        let kind = Some(section).filter(|section| *section == "vehicle").and_then(|_| unit_of_fact(own));
+        let kind = Some(section)
+            .filter(|section| *section == "vehicle")
+            .and_then(|_| unit_of_fact(own));
         let (value, unit) = match (number, unit) {
             (Some(DeValue::String(text)), None) => self.quantity(offset, &key, text, kind)?,
             (number, unit) => {
@@ -290,25 +296,31 @@ impl Reader<'_> {
                 Some(kind) => format!("a number with {}", examples(kind)),
                 None => "a number with its unit, such as \"187 N/mm\"".into(),
             };
-            self.wrong(offset, key, &format!("\"{text}\""), &expected, "correct the value or its unit");
+            self.wrong(
+                offset,
+                key,
+                &format!("\"{text}\""),
+                &expected,
+                "correct the value or its unit",
+            );
         }
         quantity.map(|(value, unit)| (value, Some(unit.coherent)))
     }
 
     /// A number in the unit that is declared for it, in SI.
-    fn in_unit(
-        &mut self,
-        offset: usize,
-        key: &str,
-        value: f64,
-        unit: Option<&str>,
-    ) -> Option<(f64, Option<String>)> {
+    fn in_unit(&mut self, offset: usize, key: &str, value: f64, unit: Option<&str>) -> Option<(f64, Option<String>)> {
         let Some(unit) = unit else {
             return Some((value, None));
         };
         let Some(declared) = Declared::of(unit) else {
             let remedy = "write the unit of the value, such as N/m, N/mm, N s/m, kg, mm or 1";
-            self.wrong(offset, key, &format!("the unit \"{unit}\""), "a unit of mechanics", remedy);
+            self.wrong(
+                offset,
+                key,
+                &format!("the unit \"{unit}\""),
+                "a unit of mechanics",
+                remedy,
+            );
             return None;
         };
         Some((declared.si(value), Some(declared.coherent)))

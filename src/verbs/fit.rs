@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Unseen;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
@@ -17,10 +18,12 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
+use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::folder_for_results;
 use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
+use crate::terminal::prose;
 use crate::verbs::Format;
 
 // What K&C curves say beside it.
@@ -62,7 +65,7 @@ pub struct Arguments {
 #[derive(Args, Default)]
 pub struct Choices {
     /// Fit this model, by name or path, in place of the campaign's
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Searches: the first from the campaign's start values, the others from all over its ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
@@ -101,7 +104,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         workbook::write(&fitted, folder)?;
     }
     let result = match arguments.format {
-        Format::Text => render::text(&fitted),
+        Format::Text => prose(&render::text(&fitted)),
         Format::Json => render::json(&fitted),
     };
     if fitted.fit.converged && notices::all_at_bounds(&fitted.fit).is_none() {

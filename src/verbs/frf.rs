@@ -15,6 +15,7 @@ use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
 use crate::table::{Table, number};
+use crate::terminal::prose;
 use crate::units;
 use crate::verbs::{ModelArguments, TableFormat};
 
@@ -102,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         values.flat_map(|channel| channel.re.iter().chain(&channel.im)),
     )?;
     Ok(match arguments.format {
-        TableFormat::Text => text(&response, &frequency),
+        TableFormat::Text => prose(&text(&response, &frequency)),
         TableFormat::Json => json::line(&response),
         TableFormat::Csv => csv(&response, &frequency),
     })
@@ -224,7 +225,11 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
                 number(value.arg().to_degrees(), 5),
             ]
         });
-        table.row(std::iter::once(number(units::value(*frequency, "Hz"), 5)).chain(polar).collect());
+        table.row(
+            std::iter::once(number(units::value(*frequency, "Hz"), 5))
+                .chain(polar)
+                .collect(),
+        );
     }
     table.text()
 }

@@ -17,6 +17,7 @@ use crate::json;
 use crate::parameters;
 use crate::progress::while_counting;
 use crate::table::{Table, number, or_dash};
+use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
 
@@ -84,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         write::start_values(&campaign, &gradients)?;
     }
     Ok(match arguments.format {
-        Format::Text => text(&gradients),
+        Format::Text => prose(&text(&gradients)),
         Format::Json => json::line(&gradients),
     })
 }

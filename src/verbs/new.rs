@@ -17,7 +17,9 @@ mod template;
 ///
 /// Files that are there already stay as they are.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle\n  qcar new template vehicle.xlsx")]
+#[command(
+    after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle\n  qcar new template vehicle.xlsx"
+)]
 pub struct Arguments {
     #[command(subcommand)]
     what: What,

@@ -39,7 +39,8 @@ fn alike(at: &str, a: &Value, b: &Value) {
         }
         (Value::Object(a), Value::Object(b)) => {
             assert_eq!(a.len(), b.len(), "{at}");
-            a.iter().for_each(|(key, own)| alike(&format!("{at}.{key}"), own, &b[key]));
+            a.iter()
+                .for_each(|(key, own)| alike(&format!("{at}.{key}"), own, &b[key]));
         }
         _ => assert_eq!(a, b, "{at}"),
     }
@@ -58,7 +59,11 @@ fn a_template_that_openpyxl_fills_in_is_the_campaign() {
         link(&root.join(CAMPAIGN).join(part), &folder.join("campaign").join(part));
     }
     qcar(&["new", "template", &path(folder, "vehicle.xlsx")]);
-    run(&python, &[root.join("tests/export/workbook/fill.py").to_str().unwrap()], folder);
+    run(
+        &python,
+        &[root.join("tests/export/workbook/fill.py").to_str().unwrap()],
+        folder,
+    );
     let filled = path(folder, "campaign");
     let both = |verb: &str| [CAMPAIGN, &filled].map(|campaign| json(&qcar(&[verb, campaign, "--format", "json"])));
     let [original, own] = both("kc");
@@ -71,14 +76,38 @@ fn a_template_that_openpyxl_fills_in_is_the_campaign() {
 
 /// Each row: a cell, what is written there, and what the error must say beside sheet and cell.
 const WRONG: &[(&str, &str, &[&str])] = &[
-    ("front.k_tire", "'=C20*1000'", &["formula `=C20*1000` of `front.k_tire`", "never computed", "a number in N/m"]),
+    (
+        "front.k_tire",
+        "'=C20*1000'",
+        &[
+            "formula `=C20*1000` of `front.k_tire`",
+            "never computed",
+            "a number in N/m",
+        ],
+    ),
     ("front.k_tire", "'stiff'", &["the text `stiff`", "a number in N/m"]),
-    ("front.k_tire.unit", "'N/mmm'", &["the unit \"N/mmm\"", "a unit of the kind of N/m, such as \"N/mm\""]),
-    ("front.k_tire.unit", "'N s/m'", &["the unit \"N s/m\"", "a unit of the kind of N/m"]),
+    (
+        "front.k_tire.unit",
+        "'N/mmm'",
+        &["the unit \"N/mmm\"", "a unit of the kind of N/m, such as \"N/mm\""],
+    ),
+    (
+        "front.k_tire.unit",
+        "'N s/m'",
+        &["the unit \"N s/m\"", "a unit of the kind of N/m"],
+    ),
     ("front.k_tire.unit", "None", &["no unit", "a unit of the kind of N/m"]),
     ("front.k_tire", "None", &["no value", "N/m", "fill in the cell"]),
-    ("front.r_tire.unit", "'kg'", &["the unit \"kg\"", "a unit of the kind of m"]),
-    ("front.c_tire.lower", "'=1/2'", &["formula `=1/2` of `front.c_tire.lower`"]),
+    (
+        "front.r_tire.unit",
+        "'kg'",
+        &["the unit \"kg\"", "a unit of the kind of m"],
+    ),
+    (
+        "front.c_tire.lower",
+        "'=1/2'",
+        &["formula `=1/2` of `front.c_tire.lower`"],
+    ),
     ("front.c_tire.upper", "0.0", &["a value within its range"]),
     ("axle", "'middle'", &["the axle `middle`", "front or rear"]),
 ];
@@ -116,7 +145,9 @@ fn a_template_with_values_gives_them_back() {
     let response = |params: &str| qcar(&["frf", "axle_a", "--params", params, "--frequencies", "1:20:5"]);
     for units in ["si", "engineering"] {
         let file = path(folder.path(), &format!("{units}.xlsx"));
-        qcar(&["new", "template", &file, "--model", "axle_a", "--params", CAMPAIGN, "--units", units]);
+        qcar(&[
+            "new", "template", &file, "--model", "axle_a", "--params", CAMPAIGN, "--units", units,
+        ]);
         assert_eq!(response(&file), response(CAMPAIGN), "{units}");
     }
 }
@@ -128,7 +159,16 @@ fn results_in_a_workbook_are_those_of_the_json() {
     };
     let folder = tempfile::tempdir().unwrap();
     let out = path(folder.path(), "fit");
-    let fit = json(&qcar(&["fit", CAMPAIGN, "--out", &out, "--format", "json", "--units", "engineering"]));
+    let fit = json(&qcar(&[
+        "fit",
+        CAMPAIGN,
+        "--out",
+        &out,
+        "--format",
+        "json",
+        "--units",
+        "engineering",
+    ]));
     let program = "
 import json, openpyxl
 book = openpyxl.load_workbook('fit/results.xlsx')
@@ -154,8 +194,18 @@ print(json.dumps({name: rows(name) for name in book.sheetnames}
             assert!(!row[column].as_f64().zip(expected).is_some_and(off), "{key} of {row}");
         }
     }
-    assert_eq!(book["Fit"].as_array().unwrap().len(), 1 + fit["channels"].as_array().unwrap().len());
-    let lines = fs::read_to_string(folder.path().join("fit/transmissibility.csv")).unwrap().lines().count();
+    assert_eq!(
+        book["Fit"].as_array().unwrap().len(),
+        1 + fit["channels"].as_array().unwrap().len()
+    );
+    let lines = fs::read_to_string(folder.path().join("fit/transmissibility.csv"))
+        .unwrap()
+        .lines()
+        .count();
     assert_eq!(book["Transmissibilities"].as_array().unwrap().len(), lines);
-    assert!(book["charts"]["Transmissibilities"].as_u64().unwrap() >= 3, "{}", book["charts"]);
+    assert!(
+        book["charts"]["Transmissibilities"].as_u64().unwrap() >= 3,
+        "{}",
+        book["charts"]
+    );
 }

@@ -125,10 +125,15 @@ impl Campaign {
 fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSamples, InputError> {
     if let Some(pair) = corners.windows(2).find(|pair| pair[1][0] <= pair[0][0]) {
         let place = Place::Name(format!("{name} x"));
-        let (found, remedy) = (format!("{} m after {} m", pair[1][0], pair[0][0]), "sort the rows, or correct the value");
+        let (found, remedy) = (
+            format!("{} m after {} m", pair[1][0], pair[0][0]),
+            "sort the rows, or correct the value",
+        );
         return Err(Problem::new(file, place, found, "a larger value", remedy).into());
     }
-    let slopes = corners.windows(2).map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
+    let slopes = corners
+        .windows(2)
+        .map(|pair| (pair[1][1] - pair[0][1]) / (pair[1][0] - pair[0][0]));
     Ok(RoadSamples {
         slope: slopes.chain([0.0]).collect(),
         x: corners.iter().map(|corner| corner[0]).collect(),

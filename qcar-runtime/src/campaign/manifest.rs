@@ -133,7 +133,12 @@ fn workbook(folder: &Path, top: &Section<'_>, files: &Files) -> Option<Workbook>
     let axle = top.optional_text("axle");
     let Some(named) = top.optional_text("workbook") else {
         if axle.is_some() {
-            top.wrong("axle", "no `workbook`", "`workbook = \"vehicle.xlsx\"` beside it", "add it, or remove `axle`");
+            top.wrong(
+                "axle",
+                "no `workbook`",
+                "`workbook = \"vehicle.xlsx\"` beside it",
+                "add it, or remove `axle`",
+            );
         }
         return None;
     };
@@ -151,7 +156,10 @@ fn above(
     let facts = workbook.vehicle.into_iter().filter(|own| !stated.contains(&own.name));
     vehicle.extend(facts.map(|own| (own.name, own.value)));
     let stated: Vec<String> = parameters.iter().map(|own| own.name.clone()).chain(stated).collect();
-    let others = workbook.parameters.into_iter().filter(|own| !stated.contains(&own.name));
+    let others = workbook
+        .parameters
+        .into_iter()
+        .filter(|own| !stated.contains(&own.name));
     parameters.extend(others.map(Parameter::from));
     (vehicle, parameters)
 }
@@ -284,14 +292,11 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
         match table::header(&campaign.folder.join(file)) {
             Ok(headings) => {
                 let path = campaign.folder.join(file);
-                problems.extend(table::check_units(&path, &headings, |name| unit_of_column(campaign, name)));
+                problems.extend(table::check_units(&path, &headings, |name| {
+                    unit_of_column(campaign, name)
+                }));
                 let names: Vec<String> = headings.into_iter().map(|own| own.name).collect();
-                problems.extend(table::check_names(
-                    &path,
-                    &names,
-                    required,
-                    allowed,
-                ));
+                problems.extend(table::check_names(&path, &names, required, allowed));
                 recorded.extend(names);
             }
             Err(error) => {

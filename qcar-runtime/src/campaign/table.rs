@@ -70,8 +70,14 @@ fn headings(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<
 }
 
 /// What is wrong with the units of columns, of which `si` knows what they must be a kind of.
-pub(super) fn check_units(file: &Path, headings: &[Heading], si: impl Fn(&str) -> Option<&'static str>) -> Vec<Problem> {
-    let stated = headings.iter().filter_map(|own| Some((&own.name, own.unit.as_ref()?, si(&own.name)?)));
+pub(super) fn check_units(
+    file: &Path,
+    headings: &[Heading],
+    si: impl Fn(&str) -> Option<&'static str>,
+) -> Vec<Problem> {
+    let stated = headings
+        .iter()
+        .filter_map(|own| Some((&own.name, own.unit.as_ref()?, si(&own.name)?)));
     let wrong = stated.filter(|(_, unit, si)| !Declared::of(unit).is_some_and(|unit| unit.is_like(si)));
     wrong
         .map(|(name, unit, si)| {

@@ -136,7 +136,10 @@ impl Tap {
 
 /// The part of a recording that is a run.
 pub(super) fn window(section: &Section<'_>) -> Option<Window> {
-    let (from, to) = (section.optional_quantity("from", "s"), section.optional_quantity("to", "s"));
+    let (from, to) = (
+        section.optional_quantity("from", "s"),
+        section.optional_quantity("to", "s"),
+    );
     let trigger = match section.section("trigger") {
         Some(section) => Some(trigger(&section)?),
         None => None,

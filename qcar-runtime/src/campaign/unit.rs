@@ -83,7 +83,11 @@ impl Declared {
         let text = text.trim();
         let mut ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
         let end = ends.find(|&end| text[..end].trim_end().parse::<f64>().is_ok())?;
-        let value = text[..end].trim_end().parse::<f64>().ok().filter(|value| value.is_finite())?;
+        let value = text[..end]
+            .trim_end()
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite())?;
         let unit = Declared::of(&text[end..])?;
         Some((unit.si(value), unit))
     }

@@ -89,7 +89,10 @@ impl Workbook {
         let axle = cells.axle(axle)?;
         let (vehicle, parameters) = (cells.facts(&axle), cells.parameters(&axle));
         let model = cells.text(&format!("{axle}.model"));
-        let (runs, roads) = (curves(&mut cells, &recording, named, &axle), roads(&mut cells, &recording, named));
+        let (runs, roads) = (
+            curves(&mut cells, &recording, named, &axle),
+            roads(&mut cells, &recording, named),
+        );
         InputError::unless_empty(
             cells.problems,
             Some(Workbook {
@@ -107,7 +110,10 @@ impl Workbook {
 
 /// The signals of a sheet.
 fn of_sheet<'a>(recording: &'a Recording, sheet: &str) -> impl Iterator<Item = &'a Signal> {
-    recording.signals.iter().filter(move |signal| signal.source.group == sheet)
+    recording
+        .signals
+        .iter()
+        .filter(move |signal| signal.source.group == sheet)
 }
 
 /// How many numbers a column has from its top, where it has any.

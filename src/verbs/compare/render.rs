@@ -244,7 +244,11 @@ pub(super) fn ratios_csv(of: &Comparison) -> String {
 /// Peaks and after-shakes, speeds and heights.
 pub(super) fn passages_csv(of: &Comparison) -> String {
     let sides = ["a", "b", "measured_a", "measured_b"];
-    let of_metric = |metric: &str| sides.map(|side| units::heading(&format!("{metric}_{side}"), "m/s^2")).join(",");
+    let of_metric = |metric: &str| {
+        sides
+            .map(|side| units::heading(&format!("{metric}_{side}"), "m/s^2"))
+            .join(",")
+    };
     let mut out = format!(
         "run,{},{},mass,axis,{},{}\n",
         units::heading("speed", "m/s"),

@@ -14,7 +14,12 @@ pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> Str
         let unit = of.get(name).map_or("", String::as_str);
         let shown = |value| units::value(value, unit);
         let error = or_dash(Some(shown(*error)).filter(|error| error.is_finite()), 2);
-        table.row(vec![name.clone(), units::name(unit).into(), number(shown(*value), 4), error]);
+        table.row(vec![
+            name.clone(),
+            units::name(unit).into(),
+            number(shown(*value), 4),
+            error,
+        ]);
     }
     let share = 100.0 * finding.closed;
     let form = finding

@@ -42,7 +42,17 @@ pub(crate) fn sheets(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxErr
 }
 
 fn parameters(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
-    let headings = ["parameter", "unit", "start", "value", "stderr", "stderr_%", "from", "to", "remark"];
+    let headings = [
+        "parameter",
+        "unit",
+        "start",
+        "value",
+        "stderr",
+        "stderr_%",
+        "from",
+        "to",
+        "remark",
+    ];
     let row = |own: &qcar_runtime::fit::report::ParameterFit| {
         let shown = |value: Option<f64>| Cell::Number(value.map(|value| units::value(value, &own.unit)));
         vec![
@@ -57,11 +67,24 @@ fn parameters(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
             Cell::Text(render::remark(own)),
         ]
     };
-    table(workbook, "Parameters", &headings.map(String::from), of.fit.parameters.iter().map(row)).map(drop)
+    table(
+        workbook,
+        "Parameters",
+        &headings.map(String::from),
+        of.fit.parameters.iter().map(row),
+    )
+    .map(drop)
 }
 
 fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
-    let headings = ["channel", "run", "role", "in_the_cost", "fit_magnitude_%", "fit_phase_%"];
+    let headings = [
+        "channel",
+        "run",
+        "role",
+        "in_the_cost",
+        "fit_magnitude_%",
+        "fit_phase_%",
+    ];
     let row = |own: &qcar_runtime::fit::report::ChannelFit| {
         vec![
             own.name.as_str().into(),
@@ -72,13 +95,24 @@ fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
             own.quality.fit_phase.into(),
         ]
     };
-    table(workbook, "Fit", &headings.map(String::from), of.fit.channels.iter().map(row)).map(drop)
+    table(
+        workbook,
+        "Fit",
+        &headings.map(String::from),
+        of.fit.channels.iter().map(row),
+    )
+    .map(drop)
 }
 
 /// All ratios below each other, and beside them a chart of each.
 fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
     let of_all = |unit: &'static str| SOURCES.map(|source| format!("{source} [{unit}]"));
-    let headings = [["run".into(), "channel".into(), "frequency [Hz]".into()], of_all("dB"), of_all("deg")].concat();
+    let headings = [
+        ["run".into(), "channel".into(), "frequency [Hz]".into()],
+        of_all("dB"),
+        of_all("deg"),
+    ]
+    .concat();
     let sheet = table(workbook, RATIOS, &headings, all.iter().flat_map(rows))?;
     let mut next = 1;
     for (place, own) in all.iter().enumerate() {
@@ -94,7 +128,11 @@ fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
         let values = [of.observation.value[line], of.before[line], of.after[line]];
         let decibels = values.map(|value: Complex<f64>| Cell::from(20.0 * value.norm().log10()));
         let degrees = values.map(|value| Cell::from(value.arg().to_degrees()));
-        let named = [Cell::from(of.level.name.as_str()), (&*of.observation.channel.name).into(), (*frequency).into()];
+        let named = [
+            Cell::from(of.level.name.as_str()),
+            (&*of.observation.channel.name).into(),
+            (*frequency).into(),
+        ];
         named.into_iter().chain(decibels).chain(degrees).collect()
     };
     of.observation.frequency.iter().enumerate().map(row)
@@ -104,7 +142,9 @@ fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
 fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusive<u32>) -> Result<(), XlsxError> {
     let (first, last) = rows.into_inner();
     let mut chart = Chart::new(ChartType::ScatterStraight);
-    chart.title().set_name(&format!("{}, {}", of.observation.channel.name, of.level.name));
+    chart
+        .title()
+        .set_name(&format!("{}, {}", of.observation.channel.name, of.level.name));
     for (column, source) in (MAGNITUDES..).zip(SOURCES) {
         let series = chart.add_series().set_name(source);
         series.set_categories((RATIOS, first, MAGNITUDES - 1, last, MAGNITUDES - 1));
@@ -116,7 +156,10 @@ fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusiv
         chart.x_axis().set_min(*low).set_max(*high);
     }
     chart.x_axis().set_label_position(ChartAxisLabelPosition::Low);
-    chart.y_axis().set_name("magnitude [dB]").set_crossing(ChartAxisCrossing::Min);
+    chart
+        .y_axis()
+        .set_name("magnitude [dB]")
+        .set_crossing(ChartAxisCrossing::Min);
     let (beside, high, wide) = CHARTS;
     let (row, column) = ((place / beside) as u32 * high + 1, (place % beside) as u16 * wide);
     let right = MAGNITUDES + 2 * SOURCES.len() as u16 + 1;

@@ -3,10 +3,12 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::error::InputError;
 
 use super::must_be_new;
 use crate::catalogue;
+use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::parameters;
@@ -32,7 +34,7 @@ pub(super) struct Arguments {
     /// The file to write, which ends in .xlsx
     file: PathBuf,
     /// Parameters of this model alone, by name or path, in place of those of every shipped model of a car's corner
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Values to begin with, for the front axle: a TOML file with [parameters], or a campaign folder
     #[arg(long, value_name = "FILE")]
@@ -44,7 +46,13 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     let name = file.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     if !name.ends_with(".xlsx") {
         let found = format!("`{}`", file.display());
-        return Err(flag("FILE", found, "a name that ends in .xlsx", "write a name such as vehicle.xlsx").into());
+        return Err(flag(
+            "FILE",
+            found,
+            "a name that ends in .xlsx",
+            "write a name such as vehicle.xlsx",
+        )
+        .into());
     }
     must_be_new(file)?;
     let models = match &arguments.model {
@@ -53,7 +61,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
     };
     let mut rows = rows(models.iter().map(|model| model.about()));
     let given = parameters::given(arguments.params.as_deref(), &[])?;
-    rows.iter_mut().for_each(|row| row.front = given.get(&row.name).copied());
+    rows.iter_mut()
+        .for_each(|row| row.front = given.get(&row.name).copied());
     let bytes = workbook(file, arguments.model.as_deref(), &rows)?;
     put(file.parent().unwrap_or(Path::new("")), name, &bytes)?;
     let file = file.display();

@@ -12,7 +12,12 @@ pub(super) fn record(of: &Record) -> Figure {
         let [measured, simulated] = signals;
         Panel {
             title: error.channel.clone(),
-            vertical: format!("{}, {} ({:.1} % NRMS)", error.quantity, units::name(error.unit), 100.0 * error.nrms),
+            vertical: format!(
+                "{}, {} ({:.1} % NRMS)",
+                error.quantity,
+                units::name(error.unit),
+                100.0 * error.nrms
+            ),
             curves: vec![
                 curve("measured", Style::Measured, (measured, error.unit), of),
                 curve("simulated", Style::After, (simulated, error.unit), of),

@@ -199,9 +199,13 @@ fn percent(part: f64) -> String {
 
 /// The errors, a row for each run, mass and axis.
 pub(crate) fn csv(of: &Compared) -> String {
-    let [measured_peak, simulated_peak, measured_shake, simulated_shake] =
-        ["measured_peak", "simulated_peak", "measured_after_shake", "simulated_after_shake"]
-            .map(|what| units::heading(what, ACCELERATION));
+    let [measured_peak, simulated_peak, measured_shake, simulated_shake] = [
+        "measured_peak",
+        "simulated_peak",
+        "measured_after_shake",
+        "simulated_after_shake",
+    ]
+    .map(|what| units::heading(what, ACCELERATION));
     let head = format!(
         "run,role,mass,axis,{measured_peak},{simulated_peak},peak_error,{measured_shake},{simulated_shake},after_shake_error\n"
     );
@@ -210,7 +214,12 @@ pub(crate) fn csv(of: &Compared) -> String {
         let Difference {
             run, role, mass, axis, ..
         } = d;
-        let peaks = format!("{},{},{}", shown(d.measured_peak), shown(d.simulated_peak), d.peak_error);
+        let peaks = format!(
+            "{},{},{}",
+            shown(d.measured_peak),
+            shown(d.simulated_peak),
+            d.peak_error
+        );
         let shakes = format!(
             "{},{},{}",
             shown(d.measured_after_shake),

@@ -33,8 +33,13 @@ pub(super) fn write(of: &Study, folder: &Path) -> Result<(), InputError> {
 
 fn cleats(workbook: &mut Workbook, of: &Track) -> Result<(), XlsxError> {
     let models = [("before", Some(&of.before)), ("after", of.after.as_ref())];
-    let driven: Vec<_> = models.into_iter().filter_map(|(name, driven)| Some((name, driven?))).collect();
-    let rows = driven.iter().flat_map(|(name, driven)| driven.compared.runs.iter().map(|own| row(name, own)));
+    let driven: Vec<_> = models
+        .into_iter()
+        .filter_map(|(name, driven)| Some((name, driven?)))
+        .collect();
+    let rows = driven
+        .iter()
+        .flat_map(|(name, driven)| driven.compared.runs.iter().map(|own| row(name, own)));
     let sheet = table(workbook, ERRORS, &headings(), rows)?;
     let count = of.before.compared.runs.len() as u32;
     for (place, (column, title)) in (0..).zip(OF_ERRORS.into_iter().zip(["peak", "after-shake"])) {
@@ -56,7 +61,11 @@ fn headings() -> Vec<String> {
     let own = |what: &str| units::heading(what, ACCELERATION);
     let named = ["model", "run", "role", "mass", "axis"].map(String::from);
     let peaks = [own("measured peak"), own("simulated peak"), "peak error [%]".into()];
-    let shakes = [own("measured after-shake"), own("simulated after-shake"), "after-shake error [%]".into()];
+    let shakes = [
+        own("measured after-shake"),
+        own("simulated after-shake"),
+        "after-shake error [%]".into(),
+    ];
     [&named[..], &peaks, &shakes].concat()
 }
 

@@ -106,7 +106,10 @@ fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Opt
         section.positive("peak_velocity", "m/s"),
         section.choice("spacing", Spacing::NAMES),
     );
-    let (start, end) = (section.positive("start_frequency", "Hz"), section.positive("end_frequency", "Hz"));
+    let (start, end) = (
+        section.positive("start_frequency", "Hz"),
+        section.positive("end_frequency", "Hz"),
+    );
     let sample_rate = sample_rate(section, known, file);
     let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
     if start_frequency >= end_frequency {
@@ -138,7 +141,10 @@ fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Opt
 }
 
 fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
-    let (peak_velocity, amplitude) = (section.positive("peak_velocity", "m/s"), section.positive("amplitude", "m"));
+    let (peak_velocity, amplitude) = (
+        section.positive("peak_velocity", "m/s"),
+        section.positive("amplitude", "m"),
+    );
     Some(Test::DynamicBounce {
         peak_velocity: peak_velocity?,
         amplitude: amplitude?,

@@ -36,7 +36,8 @@ impl<'a> Cells<'a> {
             other => {
                 let cell = self.cell("axle").filter(|_| wanted.is_none());
                 let found = other.map_or("no axle".into(), |other| format!("the axle `{other}`"));
-                let remedy = "write one of them into the cell that is called `axle`; `qcar new template` makes such a workbook";
+                let remedy =
+                    "write one of them into the cell that is called `axle`; `qcar new template` makes such a workbook";
                 let expected = AXLES.join(" or ");
                 Err(Problem::new(self.file, cell.map_or(Place::File, place), found, expected, remedy).into())
             }
@@ -92,7 +93,10 @@ impl<'a> Cells<'a> {
     /// Every parameter that has a value on an axle.
     pub fn parameters(&mut self, axle: &str) -> Vec<Entry> {
         let (recording, prefix) = (self.recording, format!("{axle}."));
-        let names = recording.scalars.iter().filter_map(|cell| cell.name.strip_prefix(&prefix));
+        let names = recording
+            .scalars
+            .iter()
+            .filter_map(|cell| cell.name.strip_prefix(&prefix));
         let own = names.filter(|name| !name.contains('.') && *name != "model" && !FACTS.contains(name));
         own.filter_map(|name| {
             let kind = self.text(&format!("kind.{name}"));
@@ -122,7 +126,9 @@ impl<'a> Cells<'a> {
         };
         let value = unit.si(self.number(own, kind)?);
         let bound = |cells: &mut Self, end: &str| {
-            let cell = cells.cell(&format!("{cell}.{end}")).filter(|cell| cell.value != Value::Empty)?;
+            let cell = cells
+                .cell(&format!("{cell}.{end}"))
+                .filter(|cell| cell.value != Value::Empty)?;
             cells.number(cell, kind).map(|value| unit.si(value))
         };
         let bounds = (bound(self, "lower"), bound(self, "upper"));
@@ -157,7 +163,11 @@ impl<'a> Cells<'a> {
 
     /// A unit of the kind of a coherent one.
     pub fn unit(&mut self, place: Place, text: &str, kind: Option<&str>) -> Option<Declared> {
-        let text = if ["", "-"].contains(&text) && kind == Some("1") { "1" } else { text };
+        let text = if ["", "-"].contains(&text) && kind == Some("1") {
+            "1"
+        } else {
+            text
+        };
         let declared = Declared::of(text).filter(|unit| kind.is_none_or(|kind| unit.is_like(kind)));
         if declared.is_none() {
             let found = match text {
@@ -165,7 +175,12 @@ impl<'a> Cells<'a> {
                 text => format!("the unit \"{text}\""),
             };
             let expected = examples(kind.unwrap_or("a parameter"));
-            self.wrong(place, found, expected, "write the unit in which the values of this row are");
+            self.wrong(
+                place,
+                found,
+                expected,
+                "write the unit in which the values of this row are",
+            );
         }
         declared
     }
@@ -190,7 +205,8 @@ impl<'a> Cells<'a> {
 
     /// Notes what is wrong at a place.
     pub fn wrong(&mut self, place: Place, found: String, expected: impl Into<String>, remedy: &str) {
-        self.problems.push(Problem::new(self.file, place, found, expected, remedy));
+        self.problems
+            .push(Problem::new(self.file, place, found, expected, remedy));
     }
 }
 

@@ -37,7 +37,11 @@ pub(super) struct Row {
 
 /// The facts of the vehicle and every parameter that one of the models has, group by group.
 pub(super) fn rows<'a>(models: impl Iterator<Item = &'a About>) -> Vec<Row> {
-    let mut rows: Vec<Row> = FACTS.into_iter().zip(FACT_NAMES).map(|(name, doc)| fact(name, doc)).collect();
+    let mut rows: Vec<Row> = FACTS
+        .into_iter()
+        .zip(FACT_NAMES)
+        .map(|(name, doc)| fact(name, doc))
+        .collect();
     for parameter in models.flat_map(|about| about.parameters.iter()) {
         let is_own = !matches!(parameter.default, Default::Same(_));
         if is_own && rows.iter().all(|row| row.name != parameter.name) {

@@ -16,9 +16,15 @@ const PREPARED: u32 = 5000;
 /// Adds the sheets.
 pub(super) fn write(workbook: &mut Workbook, looks: &Looks) -> Result<(), XlsxError> {
     let of_test = |axle, test| COLUMNS.map(|(column, unit)| (format!("{axle} {test} {column}"), unit));
-    let curves = AXLES.into_iter().flat_map(|axle| TESTS.into_iter().flat_map(move |test| of_test(axle, test)));
-    let dampers = AXLES.into_iter().flat_map(|axle| DAMPER.map(|(column, unit)| (format!("{axle} {column}"), unit)));
-    let cleats = HEIGHTS.into_iter().flat_map(|height| ["x", "z"].map(|axis| (format!("cleat_{height} {axis}"), "m")));
+    let curves = AXLES
+        .into_iter()
+        .flat_map(|axle| TESTS.into_iter().flat_map(move |test| of_test(axle, test)));
+    let dampers = AXLES
+        .into_iter()
+        .flat_map(|axle| DAMPER.map(|(column, unit)| (format!("{axle} {column}"), unit)));
+    let cleats = HEIGHTS
+        .into_iter()
+        .flat_map(|height| ["x", "z"].map(|axis| (format!("cleat_{height} {axis}"), "m")));
     table(workbook, looks, CURVES, curves.collect())?;
     table(workbook, looks, DAMPERS, dampers.collect())?;
     table(workbook, looks, CLEATS, cleats.collect())

@@ -1,9 +1,7 @@
 //! The sheet of the values: a row for each parameter, with cells for the front and for the rear axle.
 
 use qcar_runtime::campaign::workbook::{AXLES, VALUES};
-use rust_xlsxwriter::{
-    DataValidation, DataValidationErrorStyle, DataValidationRule, Workbook, Worksheet, XlsxError,
-};
+use rust_xlsxwriter::{DataValidation, DataValidationErrorStyle, DataValidationRule, Workbook, Worksheet, XlsxError};
 
 use super::rows::{GROUPS, Row};
 use crate::catalogue;
@@ -13,7 +11,13 @@ use crate::units;
 /// Columns of what a row is; those of each axle follow.
 const WHAT: [(&str, f64); 2] = [("Name", 58.0), ("Model variable", 20.0)];
 /// Columns of an axle: the value's own name, and what is behind its dot.
-const OF_AXLE: [(&str, &str); 5] = [("", ""), ("Unit", ".unit"), ("From", ".lower"), ("To", ".upper"), ("Fit", ".fit")];
+const OF_AXLE: [(&str, &str); 5] = [
+    ("", ""),
+    ("Unit", ".unit"),
+    ("From", ".lower"),
+    ("To", ".upper"),
+    ("Fit", ".fit"),
+];
 /// Columns behind those of both axles: what names begin with.
 const LAST: [(&str, &str, f64); 2] = [("Comment", "comment.", 40.0), ("Kind of unit", "kind.", 14.0)];
 
@@ -28,7 +32,12 @@ struct Sheet<'a> {
 }
 
 /// Adds the sheet.
-pub(super) fn write(workbook: &mut Workbook, looks: &Looks, model: Option<&str>, rows: &[Row]) -> Result<(), XlsxError> {
+pub(super) fn write(
+    workbook: &mut Workbook,
+    looks: &Looks,
+    model: Option<&str>,
+    rows: &[Row],
+) -> Result<(), XlsxError> {
     let mut out = Sheet {
         sheet: Worksheet::new(),
         looks,
@@ -117,7 +126,8 @@ impl Sheet<'_> {
         let [comment, kind] = LAST.map(|(_, prefix, _)| format!("{prefix}{}", row.name));
         self.sheet.write_blank(at, column, &self.looks.input)?;
         self.names.push((comment, at, column));
-        self.sheet.write_string_with_format(at, column + 1, &row.unit, &self.looks.plain)?;
+        self.sheet
+            .write_string_with_format(at, column + 1, &row.unit, &self.looks.plain)?;
         self.names.push((kind, at, column + 1));
         Ok(())
     }
@@ -128,14 +138,17 @@ impl Sheet<'_> {
         if row.group == 0 {
             return Ok(());
         }
-        let range = row.range.map(|(low, high)| [low, high].map(|end| units::value(end, &row.unit)));
+        let range = row
+            .range
+            .map(|(low, high)| [low, high].map(|end| units::value(end, &row.unit)));
         if let Some([low, high]) = range {
             let plausible = validation(low, high, units::name(&row.unit))?;
             self.sheet.add_data_validation(at, column, at, column, &plausible)?;
         }
         for (offset, end) in [(2, range.map(|ends| ends[0])), (3, range.map(|ends| ends[1]))] {
             self.number(at, column + offset, end)?;
-            self.names.push((format!("{name}{}", OF_AXLE[usize::from(offset)].1), at, column + offset));
+            self.names
+                .push((format!("{name}{}", OF_AXLE[usize::from(offset)].1), at, column + offset));
         }
         let fit = if row.estimated { "yes" } else { "no" };
         self.word(at, column + 4, &format!("{name}.fit"), fit, &["yes", "no"])
@@ -153,7 +166,9 @@ impl Sheet<'_> {
 
     fn number(&mut self, at: u32, column: u16, value: Option<f64>) -> Result<(), XlsxError> {
         match value {
-            Some(value) => self.sheet.write_number_with_format(at, column, value, &self.looks.input)?,
+            Some(value) => self
+                .sheet
+                .write_number_with_format(at, column, value, &self.looks.input)?,
             None => self.sheet.write_blank(at, column, &self.looks.input)?,
         };
         Ok(())
@@ -163,13 +178,18 @@ impl Sheet<'_> {
     fn word(&mut self, at: u32, column: u16, name: &str, word: &str, choices: &[&str]) -> Result<(), XlsxError> {
         match word {
             "" => self.sheet.write_blank(at, column, &self.looks.input)?,
-            word => self.sheet.write_string_with_format(at, column, word, &self.looks.input)?,
+            word => self
+                .sheet
+                .write_string_with_format(at, column, word, &self.looks.input)?,
         };
         // Other units and models of the user's own are read as well.
         let list = DataValidation::new()
             .allow_list_strings(choices)?
             .set_error_style(DataValidationErrorStyle::Information)
-            .set_error_message(format!("Usual are {}.", choices.join(", ").chars().take(200).collect::<String>()))?;
+            .set_error_message(format!(
+                "Usual are {}.",
+                choices.join(", ").chars().take(200).collect::<String>()
+            ))?;
         self.sheet.add_data_validation(at, column, at, column, &list)?;
         self.names.push((name.into(), at, column));
         Ok(())
