@@ -58,21 +58,25 @@ impl Outlet {
         }
     }
 
-    /// Long lines broken between words, further ones indented. What begins with a space is drawn and stays as it is.
+    /// Long lines broken between words, further ones indented. What is drawn stays as it is.
     fn wrapped(self, text: &str) -> String {
         let Some(width) = self.width else {
             return text.into();
         };
-        let broken =
-            text.split_inclusive('\n')
-                .map(|line| match line.chars().count() > width && !line.starts_with(' ') {
-                    true => broken(line, width),
-                    false => line.into(),
-                });
-        broken.collect()
+        let lines = text.split_inclusive('\n').map(|line| {
+            let is_long = line.trim_end().chars().count() > width;
+            if is_long && !line.contains(DRAWN) {
+                broken(line, width)
+            } else {
+                line.into()
+            }
+        });
+        lines.collect()
     }
 }
 
+/// What lines of diagnostics are drawn with.
+const DRAWN: [char; 4] = ['│', '╭', '╰', '┬'];
 /// What is narrower is no width that anybody reads tables in.
 const NARROWEST: usize = 40;
 /// What further lines of a paragraph begin with.
@@ -131,21 +135,24 @@ pub fn complaint(text: &str) -> String {
 
 /// A line in pieces of at most so many characters, where there are spaces to break it.
 fn broken(line: &str, width: usize) -> String {
-    let (mut out, mut length) = (String::new(), 0);
-    for word in line.trim_end_matches('\n').split(' ') {
+    let text = line.trim_end_matches('\n');
+    let own_indent = &text[..text.len() - text.trim_start().len()];
+    let (mut out, mut length) = (own_indent.to_string(), own_indent.chars().count());
+    let mut is_first = true;
+    for word in text.trim_start().split(' ') {
         let own = word.chars().count();
-        if length > 0 && length + 1 + own > width {
-            out += "\n";
-            out += INDENT;
-            length = INDENT.len();
-        } else if length > 0 {
+        if !is_first && length + 1 + own > width {
+            out += &format!("\n{own_indent}{INDENT}");
+            length = own_indent.chars().count() + INDENT.len();
+        } else if !is_first {
             out.push(' ');
             length += 1;
         }
         out += word;
         length += own;
+        is_first = false;
     }
-    if line.ends_with('\n') { out + "\n" } else { out }
+    out + &line[text.len()..]
 }
 
 #[cfg(test)]
@@ -157,5 +164,6 @@ mod tests {
         assert_eq!(broken("note: one two three\n", 10), "note: one\n  two\n  three\n");
         assert_eq!(broken("unbreakable words", 4), "unbreakable\n  words");
         assert_eq!(broken("short\n", 80), "short\n");
+        assert_eq!(broken("  - a + b + c\n", 9), "  - a + b\n    + c\n");
     }
 }

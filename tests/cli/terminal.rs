@@ -39,7 +39,7 @@ const PRINTS: &[&str] = &[
     "fit models/campaigns/axle_a_rig --out out/fit",
     "simulate models/campaigns/axle_a_rig",
     "simulate models/campaigns/silverbox",
-    "compare out/fit/parameters.toml models/campaigns/axle_a_rig --model axle_a",
+    "compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig",
     "score models/campaigns/axle_a_rig",
     "import models/recordings/sweep_low.mf4 models/recordings/sweep_high.mf4 --out out/imported",
     "new axle my_axle",

@@ -23,10 +23,8 @@ const SIZES: [(&str, &str, f64); 7] = [
 
 fn size(shown: &str) -> (&'static str, f64) {
     let found = SIZES.iter().find(|(_, unit, _)| *unit == shown);
-    found.map_or_else(
-        || panic!("the unit {shown} was not asked for"),
-        |(si, _, size)| (si, *size),
-    )
+    let (si, _, size) = found.unwrap_or_else(|| panic!("the unit {shown} was not asked for"));
+    (si, *size)
 }
 
 /// The rows of a table of the terminal, by heading; words are parted by two spaces.
@@ -122,16 +120,7 @@ fn every_column_with_a_dimension_names_its_unit() {
     let write = |arguments: &[&str]| succeeds(&[arguments, &units].concat());
     write(&["fit", CAMPAIGN, "--out", &out("fit")]);
     write(&["simulate", CAMPAIGN, "--out", &out("rides")]);
-    let (fit, start) = (out("fit"), CAMPAIGN);
-    write(&[
-        "compare",
-        &(fit + "/parameters.toml"),
-        start,
-        "--model",
-        "axle_a",
-        "--out",
-        &out("compared"),
-    ]);
+    write(&["compare", CAMPAIGN, CAMPAIGN, "--out", &out("compared")]);
     let printed = [
         write(&["simulate", CAMPAIGN, "--format", "csv"]),
         write(&["frf", "axle_a", "--params", CAMPAIGN, "--format", "csv"]),

@@ -176,11 +176,15 @@ rows = lambda name: [list(row) for row in book[name].iter_rows(values_only=True)
 print(json.dumps({name: rows(name) for name in book.sheetnames}
                  | {'charts': {name: len(book[name]._charts) for name in book.sheetnames}}))";
     let book = json(&run(&python, &["-c", program], folder.path()));
-    let (parameters, size) = (fit["parameters"].as_object().unwrap(), |unit: &str| match unit {
+    let parameters = fit["parameters"].as_object().unwrap();
+    let size = |unit: &str| match unit {
         "N/m" => ("N/mm", 1e-3),
         "N s/m" => ("N s/mm", 1e-3),
-        other => (if other == "kg" { "kg" } else { "1" }, 1.0),
-    });
+        "m" => ("mm", 1e3),
+        "N" => ("N", 1.0),
+        "kg" => ("kg", 1.0),
+        _ => ("1", 1.0),
+    };
     let rows = &book["Parameters"].as_array().unwrap()[1..];
     assert_eq!(rows.len(), parameters.len());
     for row in rows {

@@ -37,6 +37,17 @@ def table(file):
     return {name: [row[name] for row in rows] for name in rows[0]}
 
 
+def corners(samples):
+    """A sample, and the foot of a step where the slope misses the next sample."""
+    x, z, slope = ([float(value) for value in samples[name]] for name in ("x", "z", "slope"))
+    yield x[0], z[0]
+    for at in range(1, len(x)):
+        foot = z[at - 1] + slope[at - 1] * (x[at] - x[at - 1])
+        if abs(z[at] - foot) > 1e-4:
+            yield x[at], foot
+        yield x[at], z[at]
+
+
 cell("axle").value = "rear"
 cell("rear.model").value = campaign["model"]
 for name, value in campaign["vehicle"].items():
@@ -54,9 +65,8 @@ for kind in ("bounce", "longitudinal"):
     for name, values in table(f"kc/{kind}.csv.gz").items():
         column("K&C curves", f"rear {kind} {name}", values)
 for road in campaign["road"]:
-    samples = table(road["file"])
-    for name in ("x", "z"):
-        column("Cleats", f"{road['name']} {name}", samples[name])
+    for name, values in zip("xz", zip(*corners(table(road["file"])))):
+        column("Cleats", f"{road['name']} {name}", values)
 book.save("campaign/vehicle.xlsx")
 
 sections = re.split(r"\n(?=\[)", text)

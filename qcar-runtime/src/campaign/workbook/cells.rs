@@ -124,23 +124,49 @@ impl<'a> Cells<'a> {
             }
             None => self.unit(place(own), &own.unit, kind)?,
         };
-        let value = unit.si(self.number(own, kind)?);
-        let bound = |cells: &mut Self, end: &str| {
-            let cell = cells
-                .cell(&format!("{cell}.{end}"))
-                .filter(|cell| cell.value != Value::Empty)?;
-            cells.number(cell, kind).map(|value| unit.si(value))
-        };
-        let bounds = (bound(self, "lower"), bound(self, "upper"));
+        let value = self.number(own, kind)?;
+        let range = self.range(cell, value, kind);
         Some(Entry {
             name: name.into(),
-            value,
-            range: self.range(own, value, bounds),
+            value: unit.si(value),
+            range: range.map(|(lower, upper)| (unit.si(lower), unit.si(upper))),
             fit: self.is_yes(&format!("{cell}.fit")),
             comment: self.text(&format!("comment.{name}")).unwrap_or_default(),
             place: place(own),
             unit: unit.coherent,
         })
+    }
+
+    /// The bounds of a value, in its unit; nothing unless both are there.
+    fn range(&mut self, cell: &str, value: f64, kind: Option<&str>) -> Option<(f64, f64)> {
+        let [lower, upper] = ["lower", "upper"].map(|end| {
+            let cell = self
+                .cell(&format!("{cell}.{end}"))
+                .filter(|cell| cell.value != Value::Empty)?;
+            Some((cell, self.number(cell, kind)?))
+        });
+        let ((lower_cell, lower), (upper_cell, upper)) = (lower?, upper?);
+        let beyond = [
+            (lower_cell, value < lower, "at most"),
+            (upper_cell, value > upper || lower >= upper, "at least"),
+        ];
+        for (cell, is_wrong, side) in beyond {
+            if is_wrong {
+                let found = format!(
+                    "{} as a bound of {value}",
+                    if side == "at most" { lower } else { upper }
+                );
+                let expected = format!("{side} {value}, and the lower bound below the upper");
+                self.wrong(
+                    place(cell),
+                    found,
+                    expected,
+                    "correct the bound or the value, which are in one unit",
+                );
+                return None;
+            }
+        }
+        Some((lower, upper))
     }
 
     /// A number in a cell that is not empty.
@@ -183,19 +209,6 @@ impl<'a> Cells<'a> {
             );
         }
         declared
-    }
-
-    fn range(&mut self, cell: &Scalar, value: f64, bounds: (Option<f64>, Option<f64>)) -> Option<(f64, f64)> {
-        let (Some(lower), Some(upper)) = bounds else {
-            return None;
-        };
-        if lower < upper && (lower..=upper).contains(&value) {
-            return Some((lower, upper));
-        }
-        let found = format!("{value} with the range {lower} to {upper} in SI");
-        let expected = "a value within its range";
-        self.wrong(place(cell), found, expected, "correct the value or its two bounds");
-        None
     }
 
     fn is_yes(&self, name: &str) -> bool {
