@@ -299,7 +299,7 @@ impl Reader<'_> {
             self.wrong(
                 offset,
                 key,
-                &format!("\"{text}\""),
+                &format!("the string \"{text}\""),
                 &expected,
                 "correct the value or its unit",
             );

@@ -42,6 +42,8 @@ const PRINTS: &[&str] = &[
     "compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig",
     "score models/campaigns/axle_a_rig",
     "import models/recordings/sweep_low.mf4 models/recordings/sweep_high.mf4 --out out/imported",
+    "discover models/campaigns/axle_c_study",
+    "study models/campaigns/axle_c_study --out out/study",
     "new axle my_axle",
     "new campaign my_rig",
     "new template vehicle.xlsx",

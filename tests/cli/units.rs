@@ -6,7 +6,8 @@ use std::path::Path;
 use qcar_signals::read::read;
 use serde_json::Value;
 
-use crate::common::{copy, qcar, qcar_in, succeeds};
+use crate::common::{copy, qcar, qcar_in, repository, run_line, succeeds};
+use crate::document::{blocks, commands};
 
 const CAMPAIGN: &str = "models/campaigns/axle_a_rig";
 
@@ -307,4 +308,53 @@ fn a_start_value_is_written_in_its_unit() {
         (stated * 1e3 / value - 1.0).abs() < 1e-4,
         "{stated} N/mm and {value} N/m"
     );
+}
+
+/// The page opens in the units that were asked for, and still knows its own.
+#[test]
+fn a_report_opens_in_the_units_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = |units: &[&str]| {
+        let out = folder.path().join(units.concat().replace('/', "_"));
+        let compare = [
+            "compare",
+            "axle_c",
+            "axle_c_rigid_tm",
+            "--params",
+            "models/campaigns/axle_c_study",
+            "--out",
+        ];
+        succeeds(&[&compare, &[out.to_str().unwrap()], units].concat());
+        fs::read_to_string(out.join("report.html")).unwrap()
+    };
+    assert!(!page(&[]).contains("view.units = 'si';"));
+    assert!(page(&["--units", "si"]).contains("view.units = 'si';"));
+    let own = page(&["--units", "kN/mm,cm"]);
+    let chosen = own
+        .split("SYSTEMS.chosen = ")
+        .nth(1)
+        .unwrap()
+        .split(";\n")
+        .next()
+        .unwrap();
+    let chosen: Value = serde_json::from_str(chosen).unwrap();
+    assert_eq!(chosen["name"], "kN/mm, cm");
+    assert_eq!(chosen["scales"]["N/m"], serde_json::json!([1e-6, "kN/mm"]));
+    assert_eq!(chosen["scales"]["m"], serde_json::json!([100.0, "cm"]));
+    assert!(own.contains("view.units = 'chosen';"));
+}
+
+#[test]
+fn the_commands_of_the_documents_run() {
+    let folder = repository();
+    let commands: Vec<String> = ["docs/excel.md", "docs/campaign-format.md"]
+        .iter()
+        .flat_map(|document| blocks(document))
+        .flat_map(|block| commands(&block).into_iter().map(String::from).collect::<Vec<_>>())
+        .collect();
+    assert!(commands.len() >= 4, "{commands:?}");
+    for line in commands {
+        let ran = run_line(folder.path(), &line);
+        assert_eq!(ran.status, 0, "qcar {line}\n{}", ran.stderr);
+    }
 }

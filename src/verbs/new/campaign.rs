@@ -107,7 +107,7 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
         .filter(|parameter| !matches!(parameter.default, Default::Same(_)))
         .partition(|parameter| parameter.known);
     let mut out = format!(
-        "# A campaign of measurements; docs/campaign-format.md describes it. All is SI, all paths are relative to this \
+        "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
          folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
          # What is known before any fit.\n[vehicle]\n"
     );
