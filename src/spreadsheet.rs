@@ -17,10 +17,8 @@ pub struct Looks {
     pub input: Format,
 }
 
-impl Looks {
-    /// Those of every workbook.
-    pub fn new() -> Self {
-        let plain = Format::new();
+impl Default for Looks {
+    fn default() -> Self {
         Looks {
             title: Format::new().set_bold().set_font_size(14),
             heading: Format::new().set_bold().set_background_color(Color::RGB(0xD9E2EC)),
@@ -28,7 +26,7 @@ impl Looks {
                 .set_background_color(Color::RGB(0xFFF9E5))
                 .set_border(FormatBorder::Thin)
                 .set_border_color(Color::RGB(0xCCCCCC)),
-            plain,
+            plain: Format::new(),
         }
     }
 }
@@ -90,7 +88,7 @@ pub fn table<'a>(
     headings: &[String],
     rows: impl IntoIterator<Item = Vec<Cell>>,
 ) -> Result<&'a mut Worksheet, XlsxError> {
-    let looks = Looks::new();
+    let looks = Looks::default();
     let sheet = workbook.add_worksheet();
     sheet.set_name(name)?.set_freeze_panes(1, 0)?;
     for (column, heading) in (0..).zip(headings) {

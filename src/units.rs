@@ -106,6 +106,14 @@ pub fn value(value: f64, si: &str) -> f64 {
     CHOSEN.get().map_or(value, |units| units.value(value, si))
 }
 
+/// What is shown, with its unit behind it; of a pure number without.
+pub fn with_unit(shown: &str, si: &str) -> String {
+    match name(si) {
+        "1" | "" => shown.into(),
+        unit => format!("{shown} {unit}"),
+    }
+}
+
 /// What makes a page open in the units that were chosen; nothing where nobody has, and the page has its own.
 pub fn script() -> String {
     CHOSEN.get().map_or(String::new(), Units::script)

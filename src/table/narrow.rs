@@ -4,8 +4,6 @@ use super::{SPACE, Shape, lines};
 
 /// What texts are not made narrower than.
 const TEXT: usize = 14;
-/// The same for the headings of numbers.
-const NUMBER: usize = 6;
 /// Behind these a word may be broken.
 const JOINTS: [char; 5] = ['_', '/', ',', '-', ']'];
 
@@ -28,17 +26,15 @@ pub(super) fn text(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Stri
     parts.collect::<Vec<_>>().join("\n")
 }
 
-/// Columns made narrower, the widest first, until the table fits or no column gives way.
+/// Columns made narrower until the table fits or no column gives way: first headings of numbers, which cost no line in each row,
+/// then texts, each time the widest.
 fn shrunk(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Vec<Shape> {
-    let least: Vec<usize> = shapes
-        .iter()
-        .enumerate()
-        .map(|(at, shape)| narrowest(rows, at, *shape))
-        .collect();
+    let all = shapes.iter().enumerate();
+    let least: Vec<usize> = all.map(|(at, shape)| narrowest(rows, at, *shape)).collect();
     let mut shapes = shapes.to_vec();
     while total(&shapes) > width {
         let yielding = shapes.iter().enumerate().filter(|(at, shape)| shape.0 > least[*at]);
-        let Some((at, _)) = yielding.max_by_key(|(_, shape)| shape.0) else {
+        let Some((at, _)) = yielding.max_by_key(|(_, (width, numeric))| (*numeric, *width)) else {
             break;
         };
         shapes[at].0 -= 1;
@@ -46,6 +42,7 @@ fn shrunk(rows: &[Vec<String>], shapes: &[Shape], width: usize) -> Vec<Shape> {
     shapes
 }
 
+/// Numbers stay whole, and so does a word of their heading.
 fn narrowest(rows: &[Vec<String>], column: usize, (width, numeric): Shape) -> usize {
     let numbers = || {
         rows[1..]
@@ -54,10 +51,15 @@ fn narrowest(rows: &[Vec<String>], column: usize, (width, numeric): Shape) -> us
             .max()
             .unwrap_or(0)
     };
-    if numeric {
-        numbers().max(NUMBER).min(width)
-    } else {
-        TEXT.min(width)
+    let words = || {
+        rows[0][column]
+            .split_inclusive(JOINTS)
+            .map(|word| word.chars().count())
+            .max()
+    };
+    match numeric {
+        true => numbers().max(words().unwrap_or(0)).min(width),
+        false => TEXT.min(width),
     }
 }
 

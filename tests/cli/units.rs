@@ -324,7 +324,7 @@ fn a_report_opens_in_the_units_asked_for() {
             "models/campaigns/axle_c_study",
             "--out",
         ];
-        succeeds(&[&compare, &[out.to_str().unwrap()], units].concat());
+        succeeds(&[&compare[..], &[out.to_str().unwrap()], units].concat());
         fs::read_to_string(out.join("report.html")).unwrap()
     };
     assert!(!page(&[]).contains("view.units = 'si';"));

@@ -11,9 +11,11 @@ use crate::programs::{python_with, qcar, run};
 
 const CAMPAIGN: &str = "models/campaigns/axle_a_rig";
 
-/// Values went through decimal fractions of other units, and parameters stand in another order: both move what searches and rides
-/// end at within their tolerances. Of numbers below one, such as relative errors, it is the difference.
-const ROUNDED: f64 = 1e-6;
+/// Values went through decimal fractions of other units, and parameters stand in another order: both move where searches and rides
+/// end within their tolerances. Of numbers below one, such as relative errors, it is the difference.
+const SEARCHED: f64 = 1e-6;
+/// The same of rides, whose signals are held to 1e-3 of their peaks.
+const RIDDEN: f64 = 1e-5;
 
 fn path(folder: &Path, name: &str) -> String {
     folder.join(name).to_str().unwrap().to_string()
@@ -28,20 +30,20 @@ fn json(text: &str) -> Value {
 }
 
 /// Every number of one value is that of the other.
-fn alike(at: &str, a: &Value, b: &Value) {
+fn alike(at: &str, a: &Value, b: &Value, tolerance: f64) {
     match (a, b) {
         (Value::Number(a), Value::Number(b)) => {
             let (a, b) = (a.as_f64().unwrap(), b.as_f64().unwrap());
-            assert!((a - b).abs() <= ROUNDED * a.abs().max(1.0), "{at}: {a} and {b}");
+            assert!((a - b).abs() <= tolerance * a.abs().max(1.0), "{at}: {a} and {b}");
         }
         (Value::Array(a), Value::Array(b)) => {
             assert_eq!(a.len(), b.len(), "{at}");
-            a.iter().zip(b).for_each(|(a, b)| alike(at, a, b));
+            a.iter().zip(b).for_each(|(a, b)| alike(at, a, b, tolerance));
         }
         (Value::Object(a), Value::Object(b)) => {
             assert_eq!(a.len(), b.len(), "{at}");
             a.iter()
-                .for_each(|(key, own)| alike(&format!("{at}.{key}"), own, &b[key]));
+                .for_each(|(key, own)| alike(&format!("{at}.{key}"), own, &b[key], tolerance));
         }
         _ => assert_eq!(a, b, "{at}"),
     }
@@ -68,11 +70,11 @@ fn a_template_that_openpyxl_fills_in_is_the_campaign() {
     let filled = path(folder, "campaign");
     let both = |verb: &str| [CAMPAIGN, &filled].map(|campaign| json(&qcar(&[verb, campaign, "--format", "json"])));
     let [original, own] = both("kc");
-    alike("kc", &original, &own);
+    alike("kc", &original, &own, SEARCHED);
     let [original, own] = both("fit");
-    alike("fit", &original["parameters"], &own["parameters"]);
+    alike("fit", &original["parameters"], &own["parameters"], SEARCHED);
     let [original, own] = both("simulate");
-    alike("simulate", &original["runs"], &own["runs"]);
+    alike("simulate", &original["runs"], &own["runs"], RIDDEN);
 }
 
 /// Each row: a cell, what is written there, and what the error must say beside sheet and cell.

@@ -15,6 +15,7 @@ use super::finding::described;
 use super::learned;
 use super::left::{BeforeAfter, Left, channel, left};
 use super::places::{self, Missing};
+use crate::effects;
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
 use crate::units;
@@ -404,12 +405,13 @@ fn acts(best: &Missing) -> String {
 
 /// How clearly each effect would have been seen.
 fn visible(of: &Answer) -> String {
-    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size_in_SI"]);
+    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
     for own in &of.discovery.visible {
-        let usual = own
-            .usual
-            .iter()
-            .map(|(name, value)| format!("{name} {}", number(*value, 3)));
+        let of_effect = effects::units(&own.effect);
+        let usual = own.usual.iter().map(|(name, value)| {
+            let si = of_effect.get(name).map_or("1", String::as_str);
+            units::with_unit(&format!("{name} {}", number(units::value(*value, si), 3)), si)
+        });
         table.row(vec![
             own.effect.clone(),
             own.at.clone(),

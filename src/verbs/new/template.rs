@@ -86,7 +86,7 @@ fn corners() -> Result<Vec<catalogue::Loaded>, Failure> {
 
 fn workbook(file: &Path, model: Option<&str>, rows: &[Row]) -> Result<Vec<u8>, InputError> {
     filled(file, |workbook| {
-        let looks = Looks::new();
+        let looks = Looks::default();
         values::write(workbook, &looks, model, rows)?;
         tables::write(workbook, &looks)
     })

@@ -77,12 +77,8 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
         let value = |(name, value, error): &(String, f64, f64)| {
             let si = of_names.get(name).map_or("1", String::as_str);
-            let unit = match units::name(si) {
-                "1" => String::new(),
-                unit => format!(" {unit}"),
-            };
             let [value, error] = [value, error].map(|value| units::value(*value, si));
-            format!("{name} = {} ± {}{unit}", number(value, 4), number(error, 2))
+            units::with_unit(&format!("{name} = {} ± {}", number(value, 4), number(error, 2)), si)
         };
         let values: Vec<String> = known.map(value).collect();
         let (choice, values) = (choice(&of.answer, place), values.join(", "));
