@@ -20,7 +20,7 @@ use crate::verbs::{
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
     /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
-    #[arg(long, global = true, value_name = "UNITS")]
+    #[arg(long, global = true, value_name = "UNITS", display_order = 900)]
     units: Option<Units>,
     /// When to colour: auto (on a terminal, unless NO_COLOR is set), always or never
     #[arg(
@@ -29,7 +29,8 @@ pub struct Cli {
         value_name = "WHEN",
         default_value = "auto",
         hide_default_value = true,
-        hide_possible_values = true
+        hide_possible_values = true,
+        display_order = 901
     )]
     color: Color,
     #[command(subcommand)]

@@ -8,11 +8,12 @@ use super::reading::Recorded;
 use super::recorded::{self, Files};
 use super::table;
 use super::unit::Declared;
-use super::workbook::{Entry, Workbook};
 use crate::error::{InputError, Place, Problem};
 use runs::{Known, run};
 use sensors::sensors;
 
+// What its workbook adds.
+mod workbook;
 // Its channels.
 mod sensors;
 // Its tests.
@@ -63,118 +64,47 @@ impl Campaign {
 fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {
     format(&top);
     let (name, description) = (top.text("name"), top.remark("description"));
-    let workbook = workbook(folder, &top, files);
-    let of_workbook = workbook.as_ref().and_then(|workbook| workbook.model.clone());
-    let model = match top.has("model") || of_workbook.is_none() {
-        true => top.text("model"),
-        false => of_workbook,
-    };
-    let vehicle = top
-        .section("vehicle")
-        .map(|section| section.quantities(unit_of_fact))
-        .unwrap_or_default();
+    let workbook = workbook::named(folder, &top, files);
+    let model = workbook::model(&top, workbook.as_ref());
+    let workbook = workbook.unwrap_or_default();
+    let vehicle = top.section("vehicle");
+    let vehicle = vehicle.map_or(Vec::new(), |section| section.quantities(unit_of_fact));
     let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
-    let parameters = top
-        .section("parameters")
-        .map_or(Some(Vec::new()), |section| parameters(&section));
+    let parameters = top.section("parameters");
+    let parameters = parameters.map_or(Some(Vec::new()), |section| parameters_of(&section));
     let sensors = sensors(folder, &top);
-    let mut roads = each(top.sections("road"), "name", road, |road| &road.name);
-    if let (Some(roads), Some(workbook)) = (&mut roads, &workbook) {
-        let own: Vec<String> = roads.iter().map(|road| road.name.clone()).collect();
-        let others = workbook.roads.iter().filter(|road| !own.contains(&road.name));
-        roads.extend(others.cloned());
-    }
+    let roads = each(top.sections("road"), "name", road, |road| &road.name);
+    let roads = roads.map(|roads| workbook.with_roads(roads));
     let known = Known {
         folder,
         files,
         roads: roads.as_deref(),
         sensors: sensors.as_deref(),
     };
-    let runs = each(
-        top.sections("run"),
-        "file",
-        |section| run(section, &known),
-        |run| &run.name,
-    );
-    let mut runs = runs;
-    if let (Some(runs), Some(workbook)) = (&mut runs, &workbook) {
-        runs.extend(workbook.runs.iter().cloned());
-    }
+    let read = |section: &Section<'_>| run(section, &known);
+    let runs = each(top.sections("run"), "file", read, |run| &run.name);
+    let runs = runs.map(|runs| workbook.with_runs(runs));
     if runs.as_ref().is_some_and(Vec::is_empty) {
         top.wrong("run", "no run", "at least one [[run]]", "list the measured files");
     }
     top.finish();
-    let (folder, notices) = (folder.to_path_buf(), Vec::new());
     let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
-    let (vehicle, parameters) = match workbook {
-        Some(workbook) => above(vehicle, parameters, workbook),
-        None => (vehicle, parameters),
-    };
     let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
     Some(Campaign {
-        folder,
+        folder: folder.to_path_buf(),
         name,
         description,
         model,
-        vehicle,
+        parameters: workbook.with_parameters(parameters, &vehicle),
+        vehicle: workbook.with_facts(vehicle),
         roles,
-        parameters,
         channels,
         taps,
         runs,
         roads,
-        notices,
+        notices: Vec::new(),
         recorded: Vec::new(),
     })
-}
-
-/// The workbook that a campaign points at.
-fn workbook(folder: &Path, top: &Section<'_>, files: &Files) -> Option<Workbook> {
-    let axle = top.optional_text("axle");
-    let Some(named) = top.optional_text("workbook") else {
-        if axle.is_some() {
-            top.wrong(
-                "axle",
-                "no `workbook`",
-                "`workbook = \"vehicle.xlsx\"` beside it",
-                "add it, or remove `axle`",
-            );
-        }
-        return None;
-    };
-    let read = Workbook::known(&folder.join(&named), &named, axle.as_deref(), files);
-    read.map_err(|error| top.adopt(error)).ok()
-}
-
-/// What the campaign states, and below it what its workbook does.
-fn above(
-    mut vehicle: Vec<(String, f64)>,
-    mut parameters: Vec<Parameter>,
-    workbook: Workbook,
-) -> (Vec<(String, f64)>, Vec<Parameter>) {
-    let stated: Vec<String> = vehicle.iter().map(|(name, _)| name.clone()).collect();
-    let facts = workbook.vehicle.into_iter().filter(|own| !stated.contains(&own.name));
-    vehicle.extend(facts.map(|own| (own.name, own.value)));
-    let stated: Vec<String> = parameters.iter().map(|own| own.name.clone()).chain(stated).collect();
-    let others = workbook
-        .parameters
-        .into_iter()
-        .filter(|own| !stated.contains(&own.name));
-    parameters.extend(others.map(Parameter::from));
-    (vehicle, parameters)
-}
-
-impl From<Entry> for Parameter {
-    fn from(of: Entry) -> Self {
-        Parameter {
-            name: of.name,
-            value: of.value,
-            unit: of.unit,
-            range: of.range,
-            fit: of.fit,
-            comment: of.comment,
-        }
-    }
 }
 
 fn format(top: &Section<'_>) {
@@ -221,7 +151,7 @@ fn roles(section: &Section<'_>) -> RoleNames {
     RoleNames { wheel, body }
 }
 
-fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {
+fn parameters_of(section: &Section<'_>) -> Option<Vec<Parameter>> {
     section
         .named_sections()
         .into_iter()

@@ -30,7 +30,7 @@ pub const TESTS: [&str; 2] = ["bounce", "longitudinal"];
 pub const COLUMNS: [(&str, &str); 2] = [("displacement", "m"), ("force", "N")];
 
 /// What a workbook says of one axle.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Workbook {
     /// Where it was read, to be named in errors.
     pub file: PathBuf,
