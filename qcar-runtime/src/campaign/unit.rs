@@ -141,7 +141,6 @@ fn coherent(of: Dimension) -> String {
 /// What units of the kind of a coherent one look like, to be expected in errors.
 pub fn examples(si: &str) -> String {
     let such: &[&str] = match dimension(si) {
-        Some([1, 0, 0]) => &["kg"],
         Some([0, 1, 0]) => &["mm", "in"],
         Some([0, 1, -1]) => &["mm/s", "km/h"],
         Some([0, 1, -2]) => &["g", "mm/s^2"],
