@@ -4,10 +4,13 @@
 use std::path::Path;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::resolve::options::Choices;
 
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
+use crate::terminal::prose;
 
 // Of measurements.
 mod campaign;
@@ -22,6 +25,7 @@ mod campaign;
 )]
 pub struct Arguments {
     /// Names of shipped models, paths of model files, or folders of campaigns
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     models: Vec<String>,
     /// Of a family's file, check every member that its options allow
     #[arg(long)]
@@ -39,7 +43,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
     let verdicts = named.iter().map(|name| verdict(name)).collect::<Result<Vec<_>, _>>()?;
     let all_well = verdicts.iter().all(|(well, _)| *well);
-    let text = verdicts.into_iter().map(|(_, text)| text).collect();
+    let text = prose(&verdicts.into_iter().map(|(_, text)| text).collect::<String>());
     if all_well {
         Ok(text)
     } else {

@@ -15,6 +15,8 @@ use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
 use crate::table::{Table, number};
+use crate::terminal::prose;
+use crate::units;
 use crate::verbs::{ModelArguments, TableFormat};
 
 /// Print the frequency response of the channels of a model
@@ -101,7 +103,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         values.flat_map(|channel| channel.re.iter().chain(&channel.im)),
     )?;
     Ok(match arguments.format {
-        TableFormat::Text => text(&response, &frequency),
+        TableFormat::Text => prose(&text(&response, &frequency)),
         TableFormat::Json => json::line(&response),
         TableFormat::Csv => csv(&response, &frequency),
     })
@@ -207,7 +209,7 @@ pub(crate) fn excitation(about: &About, channel: &Channel) -> Result<usize, Fail
 }
 
 fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
-    let mut headings = vec!["frequency_Hz".to_string()];
+    let mut headings = vec![format!("frequency_{}", units::name("Hz"))];
     headings.extend(
         of.channels
             .0
@@ -223,20 +225,25 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
                 number(value.arg().to_degrees(), 5),
             ]
         });
-        table.row(std::iter::once(number(*frequency, 5)).chain(polar).collect());
+        table.row(
+            std::iter::once(number(units::value(*frequency, "Hz"), 5))
+                .chain(polar)
+                .collect(),
+        );
     }
     table.text()
 }
 
 fn csv(of: &FrequencyResponse, frequency: &[f64]) -> String {
     let names = of.channels.0.iter().map(|(name, _)| format!(",{name}_re,{name}_im"));
-    let mut out = format!("frequency{}\n", names.collect::<String>());
+    let mut out = format!("{}{}\n", units::heading("frequency", "Hz"), names.collect::<String>());
     for (line, frequency) in frequency.iter().enumerate() {
         let cells = of
             .channels
             .0
             .iter()
             .map(|(_, channel)| format!(",{},{}", channel.re[line], channel.im[line]));
+        let frequency = units::value(*frequency, "Hz");
         out.push_str(&format!("{frequency}{}\n", cells.collect::<String>()));
     }
     out

@@ -9,6 +9,7 @@ use crate::json;
 use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space};
 use crate::table::{Table, number};
+use crate::terminal::prose;
 use crate::verbs::{Format, ModelArguments};
 
 /// Print A, B, C, D and their derivatives by every parameter
@@ -37,7 +38,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let matrices = state_space(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
     Ok(match arguments.format {
-        Format::Text => text(&matrices),
+        Format::Text => prose(&text(&matrices)),
         Format::Json => json::line(&matrices),
     })
 }

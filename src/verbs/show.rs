@@ -1,9 +1,11 @@
 //! `qcar show`: each stage of a model, for people.
 
 use clap::{Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::show;
 
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
 use crate::table::Table;
 
@@ -16,6 +18,7 @@ use crate::table::Table;
 )]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Which stage
     #[arg(long, value_enum, default_value_t = Stage::Equations)]

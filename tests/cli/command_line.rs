@@ -201,7 +201,7 @@ fn csv_holds_the_numbers_of_json() {
     let csv = succeeds(&[&command[..], &["--format", "csv"]].concat());
     let channel = &parsed(&[&command[..], &["--format", "json"]].concat())["channels"]["pad_to_body"];
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("frequency,pad_to_body_re,pad_to_body_im"));
+    assert_eq!(lines.next(), Some("frequency [Hz],pad_to_body_re,pad_to_body_im"));
     for (at, line) in lines.enumerate() {
         let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         let expected = ["frequency", "re", "im"].map(|part| channel[part][at].as_f64().unwrap());

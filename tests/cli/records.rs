@@ -242,7 +242,8 @@ fn records_are_replayed_and_what_is_left_is_told() {
         assert_eq!((&own["role"], &own["channel"]), (&role.into(), &"body_z".into()));
         assert!(own["nrms"].as_f64().unwrap() < 1e-3, "{own}");
         let columns = fs::read_to_string(out.join(format!("run_{place}.csv"))).unwrap();
-        assert!(columns.starts_with("time,body_z_displacement_measured,body_z_displacement_simulated\n"));
+        let head = "time [s],body_z_displacement_measured [m],body_z_displacement_simulated [m]\n";
+        assert!(columns.starts_with(head));
         assert_eq!(columns.lines().count(), SAMPLES + 1);
         assert!(
             fs::read_to_string(out.join(format!("run_{place}.svg")))
