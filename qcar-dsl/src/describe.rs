@@ -157,11 +157,10 @@ fn input(model: &Checked, sources: &[Source], symbol: Symbol) -> Option<Input> {
     let (name, unit, direction, kind) = match symbol {
         Symbol::Force(i) => {
             let force = &model.forces[i as usize];
-            let c = coordinate(model, force.on);
             (
                 force.name.clone(),
-                effort(c),
-                &c.direction,
+                force.unit,
+                &force.direction,
                 InputKind::Force(place(Source::Force(i))?),
             )
         }
@@ -188,13 +187,6 @@ fn input(model: &Checked, sources: &[Source], symbol: Symbol) -> Option<Input> {
         axis: direction.0.clone(),
         kind,
     })
-}
-
-/// N, or N m on an angle.
-fn effort(c: &Coordinate) -> Unit {
-    Unit {
-        sixths: [6, if c.angle { 12 } else { 6 }, -12],
-    }
 }
 
 fn output(model: &Checked, output: &model::Output) -> Output {
@@ -256,7 +248,7 @@ fn excitation(model: &Checked, source: Source) -> Excitation {
         }
         Source::Force(i) => {
             let force = &model.forces[i as usize];
-            let axis = coordinate(model, force.on).direction.0.clone();
+            let axis = force.direction.0.clone();
             Excitation {
                 name: force.name.clone(),
                 axis,

@@ -308,9 +308,10 @@ impl Balance {
             left = vec![inertia, graph.symbol(Symbol::Acceleration(id))];
             right.extend(weight(model, graph, id, inertia));
         }
-        for (place, _) in model.forces.iter().enumerate().filter(|(_, force)| force.on == id) {
-            let force = graph.symbol(Symbol::Force(place as u16));
-            right.push(Summand::signed(graph, false, force, &[]));
+        for (place, force) in model.forces.iter().enumerate() {
+            let own = graph.symbol(Symbol::Force(place as u16));
+            let shares = force.on.iter().filter(|(pushed, _)| *pushed == id);
+            right.extend(shares.map(|&(_, coefficient)| Summand::signed(graph, false, coefficient, &[own])));
         }
         Balance {
             coordinate: id,

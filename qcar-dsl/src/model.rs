@@ -7,7 +7,7 @@
 //! `f(s, v)`, positive in tension (`k s + c v` for a spring and damper). A coordinate `q` of the stretch receives
 //! the generalised force `-(∂s/∂q) f` (virtual work).
 
-use crate::expr::{CoordinateId, Expr, Graph, LinkId};
+use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -132,13 +132,19 @@ pub enum CoordinateKind {
     Motion,
 }
 
-/// An input that pushes a coordinate.
+/// An input that pushes a point, or two points apart.
 #[derive(Clone, Debug)]
 pub struct ForceInput {
     /// The name, unique in its direction.
     pub name: String,
-    /// What it pushes, in its positive direction.
-    pub on: CoordinateId,
+    /// The direction that its excitation counts to.
+    pub direction: Direction,
+    /// What it makes grow: coordinates with their coefficients (functions of parameters only), each coordinate once.
+    /// A coordinate `q` receives `∂on/∂q` times the force (virtual work), so that of a difference each end gets its own
+    /// sign. Empty for an input that acts through laws alone.
+    pub on: Vec<(CoordinateId, Expr)>,
+    /// N, or N m where it turns.
+    pub unit: Unit,
     /// Where.
     pub declared: Declared,
 }
@@ -183,6 +189,24 @@ pub struct Law {
     pub terms: Vec<Term>,
     /// Inner states of all terms, in the order of the text.
     pub inner: Vec<Inner>,
+    /// It may give energy: the text says `active`.
+    pub active: bool,
+}
+
+impl Law {
+    /// The force inputs that the terms and the rates use, by their places in `Model::forces`.
+    pub fn force_inputs(&self, graph: &Graph) -> Vec<u16> {
+        let forces = self.terms.iter().filter_map(|term| match *term {
+            Term::Force(force) => Some(force),
+            _ => None,
+        });
+        let leaves = graph.symbols(forces.chain(self.inner.iter().map(|inner| inner.rate)));
+        let input = |leaf| match leaf {
+            Symbol::Force(place) => Some(place),
+            _ => None,
+        };
+        leaves.into_iter().filter_map(input).collect()
+    }
 }
 
 /// One summand of a law, a resisting force that is positive in tension.
@@ -194,7 +218,7 @@ pub enum Term {
     Damper(Expr),
     /// `b dv/dt`
     Inerter(Expr),
-    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, and parameters.
+    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, force inputs and parameters.
     Force(Expr),
 }
 
@@ -205,7 +229,7 @@ pub struct Inner {
     pub name: String,
     /// Its unit.
     pub unit: Unit,
-    /// Its time derivative, in stretch, rate, inner states and parameters.
+    /// Its time derivative, in stretch, rate, inner states, force inputs and parameters.
     pub rate: Expr,
 }
 

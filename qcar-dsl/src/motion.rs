@@ -306,12 +306,8 @@ fn inputs(model: &Checked, used: &BTreeSet<Symbol>) -> Vec<Symbol> {
                 inputs.extend(Some(Symbol::Acceleration(c)).filter(|symbol| used.contains(symbol)));
             }
         }
-        let on = |c: CoordinateId| &model.coordinates[c.0 as usize].direction;
-        let forces = model
-            .forces
-            .iter()
-            .enumerate()
-            .filter(|(_, force)| *on(force.on) == direction);
+        let forces = model.forces.iter().enumerate();
+        let forces = forces.filter(|(_, force)| force.direction == direction);
         inputs.extend(forces.map(|(i, _)| Symbol::Force(i as u16)));
         let gravities = model
             .gravities

@@ -46,11 +46,8 @@ pub fn sources(model: &Checked) -> Vec<Source> {
                 && matches!(coordinate(c).kind, CoordinateKind::Road | CoordinateKind::Motion)
         });
         sources.extend(prescribed.map(Source::Motion));
-        let forces = model
-            .forces
-            .iter()
-            .enumerate()
-            .filter(|(_, force)| coordinate(force.on).direction == direction);
+        let forces = model.forces.iter().enumerate();
+        let forces = forces.filter(|(_, force)| force.direction == direction);
         sources.extend(forces.map(|(i, _)| Source::Force(i as u16)));
     }
     sources
@@ -64,14 +61,21 @@ struct System<'a> {
     impedance: Symmetric<Complex>,
     /// The amplitude of each coordinate for a unit force on each; zero for prescribed ones.
     compliance: Vec<Vec<Complex>>,
+    /// What each force input does to the coordinates.
+    loads: Vec<Load>,
     /// What changes with each parameter.
     changes: Vec<Change>,
 }
+
+/// The force on each coordinate for a unit of a force input, while nothing moves.
+type Load = Vec<(usize, Complex)>;
 
 /// What changes with one parameter.
 struct Change {
     links: Vec<LinkChange>,
     inertias: Vec<(usize, Expr)>,
+    /// The loads of the force inputs.
+    loads: Vec<Load>,
 }
 
 /// How a link changes with a parameter.
@@ -79,6 +83,8 @@ struct LinkChange {
     link: usize,
     stiffness: Complex,
     stretch: Vec<(CoordinateId, Expr)>,
+    /// Of the forces that force inputs have in its law.
+    inputs: Vec<(u16, Complex)>,
 }
 
 /// An output: a factor times a combination of amplitudes.
@@ -98,14 +104,18 @@ impl<'a> System<'a> {
         let links: Vec<Stiffness> = links.collect();
         let impedance = impedance(model, g, &links);
         let compliance = compliance(model, g, &impedance);
+        let loads: Vec<Load> = (0..model.forces.len())
+            .map(|i| load(model, g, &links, i as u16))
+            .collect();
         let changes = (0..model.parameters.len())
-            .map(|p| change(model, g, &links, p as u16))
+            .map(|p| change(model, g, &links, &loads, p as u16))
             .collect();
         System {
             model,
             links,
             impedance,
             compliance,
+            loads,
             changes,
         }
     }
@@ -116,15 +126,23 @@ impl<'a> System<'a> {
         for (y, output) in self.model.outputs.iter().enumerate() {
             let functional = self.functional(g, &output.signal);
             let scaled: Vec<Complex> = amplitudes.iter().map(|a| functional.factor.mul(g, *a)).collect();
-            let value = along(g, &functional.combination, &scaled);
+            let moved = along(g, &functional.combination, &scaled);
+            let value = match functional.input(&self.links, source) {
+                Some(force) => moved.add(g, force),
+                None => moved,
+            };
             if value.is_zero(g) {
                 continue;
             }
             let adjoint = self.adjoint(g, &functional);
             for (p, change) in self.changes.iter().enumerate() {
                 let indirect = self.derivative(g, &adjoint, &scaled, change);
-                let direct = functional.derivative(g, &amplitudes, &scaled, change);
-                let derivative = indirect.add(g, direct);
+                let direct = functional.derivative(g, source, &amplitudes, &scaled, change);
+                let mut derivative = indirect.add(g, direct);
+                if let Source::Force(i) = source {
+                    let loaded = through_load(g, &adjoint, &change.loads[i as usize]).mul(g, functional.factor);
+                    derivative = derivative.add(g, loaded);
+                }
                 if !derivative.is_zero(g) {
                     jacobian.push((outputs.len() as u16, p as u16, derivative));
                 }
@@ -141,7 +159,10 @@ impl<'a> System<'a> {
     fn amplitudes(&self, g: &mut Graph, source: Source) -> Vec<Complex> {
         let all = 0..self.compliance.len();
         match source {
-            Source::Force(i) => self.compliance[self.model.forces[i as usize].on.0 as usize].clone(),
+            Source::Force(i) => {
+                let load = &self.loads[i as usize];
+                self.compliance.iter().map(|row| through_load(g, row, load)).collect()
+            }
             Source::Motion(CoordinateId(r)) => {
                 let r = r as usize;
                 let forces: Vec<_> = all
@@ -240,8 +261,21 @@ impl<'a> System<'a> {
 }
 
 impl Functional {
+    /// What a force input adds to the force of a link by itself.
+    fn input(&self, links: &[Stiffness], source: Source) -> Option<Complex> {
+        let link = self.stretch_of.filter(|_| self.is_force)?;
+        by_source(&links[link].inputs, source)
+    }
+
     /// How the output changes because its own factor and combination do.
-    fn derivative(&self, g: &mut Graph, amplitudes: &[Complex], scaled: &[Complex], change: &Change) -> Complex {
+    fn derivative(
+        &self,
+        g: &mut Graph,
+        source: Source,
+        amplitudes: &[Complex],
+        scaled: &[Complex],
+        change: &Change,
+    ) -> Complex {
         let Some(own) = change.links.iter().find(|link| Some(link.link) == self.stretch_of) else {
             return Complex::zero(g);
         };
@@ -250,8 +284,48 @@ impl Functional {
             return turned;
         }
         let stiffened = along(g, &self.combination, amplitudes).mul(g, own.stiffness);
-        turned.add(g, stiffened)
+        let moved = turned.add(g, stiffened);
+        match by_source(&own.inputs, source) {
+            Some(pushed) => moved.add(g, pushed),
+            None => moved,
+        }
     }
+}
+
+/// The entry of a force input.
+fn by_source(inputs: &[(u16, Complex)], source: Source) -> Option<Complex> {
+    let found = inputs.iter().find(|(input, _)| Source::Force(*input) == source);
+    found.map(|&(_, value)| value)
+}
+
+/// `Σ value(coordinate) force`
+fn through_load(g: &mut Graph, values: &[Complex], load: &Load) -> Complex {
+    let zero = Complex::zero(g);
+    load.iter().fold(zero, |sum, &(c, force)| {
+        let share = values[c].mul(g, force);
+        sum.add(g, share)
+    })
+}
+
+/// What an input pushes by itself, less what the laws resist that it drives.
+fn load(model: &Checked, g: &mut Graph, links: &[Stiffness], input: u16) -> Load {
+    let pushed = model.forces[input as usize].on.iter();
+    let mut load: Load = pushed
+        .map(|&(c, share)| (c.0 as usize, Complex::real(g, share)))
+        .collect();
+    for (link, parts) in model.links.iter().zip(links) {
+        let Some(force) = by_source(&parts.inputs, Source::Force(input)) else {
+            continue;
+        };
+        for &(c, coefficient) in &link.stretch {
+            let push = force.scale(g, coefficient).neg(g);
+            match load.iter_mut().find(|(other, _)| *other == c.0 as usize) {
+                Some((_, sum)) => *sum = sum.add(g, push),
+                None => load.push((c.0 as usize, push)),
+            }
+        }
+    }
+    load
 }
 
 /// (jω)ⁿ
@@ -348,7 +422,7 @@ fn compliance(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>) ->
     compliance
 }
 
-fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], parameter: u16) -> Change {
+fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], loads: &[Load], parameter: u16) -> Change {
     let mut by = Differential::by(g, Symbol::Parameter(parameter));
     let mut changed = Vec::new();
     for (link, parts) in links.iter().enumerate() {
@@ -359,11 +433,17 @@ fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], parameter: u16) -
             .map(|&(c, coefficient)| (c, by.of(g, coefficient)));
         let mut stretch: Vec<(CoordinateId, Expr)> = slopes.collect();
         stretch.retain(|&(_, slope)| !slope.is_zero(g));
-        if !stiffness.is_zero(g) || !stretch.is_empty() {
+        let slopes = parts.inputs.iter();
+        let mut inputs: Vec<_> = slopes
+            .map(|&(input, force)| (input, force.derivative(g, &mut by)))
+            .collect();
+        inputs.retain(|(_, slope)| !slope.is_zero(g));
+        if !stiffness.is_zero(g) || !stretch.is_empty() || !inputs.is_empty() {
             changed.push(LinkChange {
                 link,
                 stiffness,
                 stretch,
+                inputs,
             });
         }
     }
@@ -374,8 +454,14 @@ fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], parameter: u16) -
         }
     }
     inertias.retain(|&(_, slope)| !slope.is_zero(g));
+    let mut slope = |load: &Load| -> Load {
+        let slopes = load.iter().map(|&(c, force)| (c, force.derivative(g, &mut by)));
+        slopes.collect()
+    };
+    let loads = loads.iter().map(&mut slope).collect();
     Change {
         links: changed,
         inertias,
+        loads,
     }
 }

@@ -114,8 +114,8 @@ pub enum Statement {
     Coordinate(Coordinate),
     /// `gravity NAME;`
     Gravity(Name),
-    /// `force NAME on point;`
-    Force(Name, Dotted),
+    /// `force NAME on point;` or `force NAME on upper - lower;`; `force NAME;` acts through laws alone.
+    Force(Name, Option<Expression>),
     /// `point NAME = point;`
     Point(Name, Dotted),
     /// `link NAME: stretch { … }`
@@ -362,6 +362,8 @@ pub enum LawStatement {
     Let(Let),
     /// `element(argument, …);` or `label: element(argument, …);`
     Use(ElementUse),
+    /// `active;`
+    Active,
     /// `rolling { … }`
     Rolling(Span, Vec<LawStatement>),
     /// `if option == value { … } else { … }`

@@ -80,6 +80,9 @@ fn change(model: &Checked, p: &[f64], which: usize) -> Reference<f64> {
         stretch: d(r.stretch),
         force: r.force.map(d),
         inner: r.inner,
+        push: d(r.push),
+        force_by_input: d(r.force_by_input),
+        rate_by_input: d(r.rate_by_input),
     }
 }
 

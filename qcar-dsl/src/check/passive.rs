@@ -21,10 +21,12 @@ const SPEED: f64 = 2.0;
 /// Angular frequencies of small vibrations, rad/s, from those of a car's body to those of sound.
 const FREQUENCIES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4];
 
-/// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion.
+/// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion while the
+/// force inputs are zero; but for links that the text calls active.
 pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (index, link) in scratch.model.links.iter().enumerate() {
+    let links = scratch.model.links.iter().enumerate();
+    for (index, link) in links.filter(|(_, link)| !link.law.active) {
         let rolling = link.rolling.iter().flatten();
         for term in link.law.terms.iter().chain(rolling) {
             found.extend(match *term {
@@ -101,7 +103,11 @@ fn centred(seed: u64, tag: u64) -> f64 {
 /// The force at a point; `None` where a parameter has neither range nor default.
 fn force_at(scratch: &Scratch, force: Expr, trial: u64, s: f64, v: f64) -> Option<f64> {
     let parameters = drawn(scratch, &[force], trial)?;
-    let motion = |symbol| if matches!(symbol, Symbol::Stretch(_)) { s } else { v };
+    let motion = |symbol| match symbol {
+        Symbol::Stretch(_) => s,
+        Symbol::Rate(_) => v,
+        _ => 0.0,
+    };
     let leaf = |symbol| parameters(symbol).unwrap_or_else(|| motion(symbol));
     Some(scratch.graph.evaluate(force, &leaf))
 }

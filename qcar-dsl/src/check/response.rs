@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::Scratch;
 use super::dual::{Complex, Dual, solve};
 use super::sample::{Kind, Point, Values};
-use super::stiffness::dynamic_stiffness;
+use super::slopes::Slopes;
+use super::stiffness::{driven, dynamic_stiffness};
 use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::model::{CoordinateKind, Quantity, Reference, Signal};
 
@@ -164,19 +165,40 @@ impl At<'_> {
             }
         }
         for (index, force) in self.scratch.model.forces.iter().enumerate() {
-            system.push(
-                Drive::Force(index),
-                usize::from(force.on.0),
-                &self.constant(Complex::real(1.0)),
-            );
+            for &(c, share) in &force.on {
+                system.push(Drive::Force(index), usize::from(c.0), &self.dual(share));
+            }
+        }
+        let driven: Vec<(usize, usize, Dual)> = self.driven(frequency);
+        for (link, input, force) in &driven {
+            for (c, own) in &stretches[*link] {
+                let resisted = own.times(force).scaled(Complex::real(-1.0));
+                system.push(Drive::Force(*input), *c, &resisted);
+            }
         }
         let excited = |(drive, mut motion): (Drive, BTreeMap<usize, Dual>)| {
             if let Drive::Motion(own) = drive {
                 motion.insert(own, self.constant(Complex::real(1.0)));
             }
-            (drive, self.excited(motion, &stretches, stiffnesses))
+            let mut excited = self.excited(motion, &stretches, stiffnesses);
+            for (link, _, force) in driven.iter().filter(|(_, input, _)| drive == Drive::Force(*input)) {
+                excited.forces[*link] = excited.forces[*link].plus(force);
+            }
+            (drive, excited)
         };
         system.solve().into_iter().map(excited).collect()
+    }
+
+    /// What force inputs do in laws: the link, the input, the force of the link for a unit of it.
+    fn driven(&self, frequency: f64) -> Vec<(usize, usize, Dual)> {
+        let laws = self.scratch.slopes.iter().enumerate();
+        let of = |(link, slopes): (usize, &Slopes)| {
+            let forces = driven(slopes, &|e| self.dual(e), frequency).into_iter();
+            forces
+                .map(move |(input, force)| (link, usize::from(input), force))
+                .collect::<Vec<_>>()
+        };
+        laws.flat_map(of).collect()
     }
 
     fn free(&self) -> Vec<usize> {

@@ -210,6 +210,10 @@ codes! {
     DuplicateLink = "duplicate_link",
     /// A prescribed motion that no link touches.
     MotionNotUsed = "motion_not_used",
+    /// A force input that acts on nothing.
+    ForceNotUsed = "force_not_used",
+    /// A motion of a massless node that would need the rate of a force input.
+    ForceRateNeeded = "force_rate_needed",
     /// A gravity in a direction without masses.
     GravityPullsNothing = "gravity_pulls_nothing",
     /// A model with nothing to see.

@@ -124,7 +124,9 @@ pub fn negative_damping(span: Span, link: &str, what: &str, lowest: f64, at: &[S
         format!("the {what} of link `{link}` can be {lowest}{place}"),
     )
     .label(span, "would give energy instead of taking it")
-    .hint("write ranges within which it stays at zero or above, such as `in 0..5000`")
+    .hint(
+        "write ranges within which it stays at zero or above, such as `in 0..5000`; or `active;` into the link, where it is meant to give energy",
+    )
 }
 
 /// A law that pushes along with the motion.
@@ -132,7 +134,7 @@ pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
     let message = format!("the law of link `{link}` gives energy at s = {s:.3}, v = {v:.3}");
     Diagnostic::error(Code::LawGivesEnergy, message)
         .label(span, "pushes along with the motion there")
-        .hint("write the force that resists, `force = c*v` with a positive `c`")
+        .hint("write the force that resists, `force = c*v` with a positive `c`; or `active;` beside it, where it is meant to give energy")
 }
 
 /// A law with inner states that pushes small vibrations on.
@@ -140,7 +142,7 @@ pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnosti
     let message = format!("the law of link `{link}` gives energy to vibrations about rest at {frequency} rad/s");
     Diagnostic::error(Code::LawGivesEnergy, message)
         .label(span, "gives more in a cycle than it takes")
-        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`")
+        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or `active;` beside it, where it is meant to give energy")
 }
 
 /// Two links that are one.
@@ -159,6 +161,26 @@ pub fn motion_not_used(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(Code::MotionNotUsed, format!("`{name}` moves nothing"))
         .label(span, "no link touches it")
         .hint(format!("write `link tire: wheel - {name} {{ … }}`, or remove the line"))
+}
+
+/// A force input that has no point, and that no law uses.
+pub fn force_not_used(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error(Code::ForceNotUsed, format!("force `{name}` acts on nothing"))
+        .label(span, "no point, and no law uses it")
+        .hint(format!(
+            "write `force {name} on body - wheel;`, or use it in a law, `force = -{name};`"
+        ))
+}
+
+/// A motion of a massless node that follows a force input at once.
+pub fn force_rate_needed((span, node): (Span, &str), (force_span, force): (Span, &str), motion: &str) -> Diagnostic {
+    let message = format!("the {motion} of the massless node `{node}` would need the rate of force `{force}`");
+    Diagnostic::error(Code::ForceRateNeeded, message)
+        .label(force_span, "pushes it; its rate is no input")
+        .label(span, format!("its {motion} is shown, or a state of a law needs it"))
+        .hint(format!(
+            "write `mass {node} = …;` with the mass of the real part, or a damper beside its spring"
+        ))
 }
 
 /// A gravity in a direction without masses.

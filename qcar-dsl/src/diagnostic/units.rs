@@ -98,14 +98,21 @@ pub fn stretch_has_constant(span: Span) -> Diagnostic {
         .hint("write the free length or gap into the law: `force = k*(s + preload);`")
 }
 
-/// A stretch in which all coordinates cancel.
-pub fn stretch_vanishes(span: Span, name: &str) -> Diagnostic {
+/// A stretch of a link or force in which all coordinates cancel.
+pub fn stretch_vanishes(span: Span, kind: &str, name: &str) -> Diagnostic {
+    let does = if kind == "force" {
+        "moves nothing"
+    } else {
+        "never stretches"
+    };
     Diagnostic::error(
         Code::StretchVanishes,
-        format!("link `{name}` never stretches: both ends are the same point"),
+        format!("{kind} `{name}` {does}: both ends are the same point"),
     )
     .label(span, "always 0")
-    .hint("write two different points, or leave the link out by an `if`")
+    .hint(format!(
+        "write two different points, or leave the {kind} out by an `if`"
+    ))
 }
 
 /// A stretch that is neither a length nor an angle.

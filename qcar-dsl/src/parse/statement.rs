@@ -272,13 +272,16 @@ fn gravity(tokens: &mut Tokens) -> Parsed<Statement> {
 }
 
 fn force(tokens: &mut Tokens) -> Parsed<Statement> {
-    const EXAMPLE: &str = "force f_wheel_z on wheel;";
+    const EXAMPLE: &str = "force f_wheel_z on wheel;` or `force lift on body - wheel;";
     tokens.take_word("force");
     let name = tokens.new_name("the name of a force input", EXAMPLE)?;
-    if !tokens.take_word("on") {
+    let on = if tokens.take_word("on") {
+        Some(expression(tokens)?)
+    } else if tokens.sees(";") {
+        None
+    } else {
         return tokens.expected("`on`", EXAMPLE);
-    }
-    let on = dotted(tokens, "what the force acts on", EXAMPLE)?;
+    };
     tokens.expect(";", EXAMPLE)?;
     Ok(Statement::Force(name, on))
 }

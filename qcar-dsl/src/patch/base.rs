@@ -202,6 +202,10 @@ fn change_all(body: &mut [Statement], change: &mut dyn FnMut(&Expression) -> Exp
                 let Ok(changed) = rewrite::coordinate(coordinate, &mut safe);
                 *coordinate = changed;
             }
+            Statement::Force(_, Some(on)) => {
+                let Ok(changed) = safe(on);
+                *on = changed;
+            }
             Statement::Link(link) => {
                 let (Ok(stretch), Ok(law)) = (safe(&link.stretch), rewrite::law(&link.body, &mut safe));
                 (link.stretch, link.body) = (stretch, law);

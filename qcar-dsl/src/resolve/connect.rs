@@ -1,12 +1,13 @@
 //! What acts between and on the coordinates: points, forces, links.
 
 use super::declare::declared;
+use super::law::force_unit;
 use super::names::Thing;
 use super::{Known, Placed, Reported, Resolver};
 use crate::diagnostic::{Diagnostic, names, units as mistakes};
-use crate::expr::LinkId;
+use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::model::{CoordinateKind, Direction, ForceInput, Law, Link, Term};
-use crate::syntax::{self, Dotted, LawStatement, Name, Statement};
+use crate::syntax::{self, Expression, LawStatement, Name, Statement};
 use crate::units::Unit;
 
 impl Resolver<'_> {
@@ -36,7 +37,7 @@ impl Resolver<'_> {
             let Statement::Force(name, on) = statement else {
                 continue;
             };
-            let thing = match self.force(name, on, direction, statement) {
+            let thing = match self.force(name, on.as_ref(), direction, statement) {
                 Ok(force) => {
                     self.model.forces.push(force);
                     Thing::Force(self.model.forces.len() as u16 - 1)
@@ -47,15 +48,37 @@ impl Resolver<'_> {
         }
     }
 
-    fn force(&mut self, name: &Name, on: &Dotted, direction: &str, statement: &Statement) -> Known<ForceInput> {
-        let coordinate = self.coordinate(on, direction, &format!("force {} on wheel;", name.text))?;
-        let kind = self.model.coordinates[usize::from(coordinate.0)].kind;
-        if matches!(kind, CoordinateKind::Road | CoordinateKind::Motion) {
-            return Err(self.report(names::force_on_prescribed(on.span(), &on.to_string())));
+    fn force(
+        &mut self,
+        name: &Name,
+        on: Option<&Expression>,
+        direction: &str,
+        statement: &Statement,
+    ) -> Known<ForceInput> {
+        let Some(on) = on else {
+            return Ok(ForceInput {
+                name: name.text.clone(),
+                direction: Direction(direction.to_string()),
+                on: Vec::new(),
+                unit: Unit::NEWTON,
+                declared: declared(name, statement),
+            });
+        };
+        let (terms, unit) = self.travel(on, direction, ("force", &name.text))?;
+        let moving = |(coordinate, _): &(CoordinateId, Expr)| {
+            let kind = self.model.coordinates[usize::from(coordinate.0)].kind;
+            !matches!(kind, CoordinateKind::Road | CoordinateKind::Motion)
+        };
+        if !terms.iter().any(moving) {
+            return Err(self.report(names::force_on_prescribed(on.span, &on.to_string())));
         }
+        let home = terms.iter().find(|term| moving(term));
+        let home = home.map(|(coordinate, _)| self.model.coordinates[usize::from(coordinate.0)].direction.clone());
         Ok(ForceInput {
             name: name.text.clone(),
-            on: coordinate,
+            direction: home.unwrap_or_else(|| Direction(direction.to_string())),
+            on: terms,
+            unit: force_unit(unit),
             declared: declared(name, statement),
         })
     }
@@ -79,8 +102,8 @@ impl Resolver<'_> {
         let id = LinkId(self.model.links.len() as u16);
         let stretch = self.stretch(link, direction);
         let law = match &stretch {
-            Ok((_, unit)) => self.law(&link.body, id, *unit),
-            Err(Reported) => self.law_of_unknown(&link.body, id),
+            Ok((_, unit)) => self.law(&link.body, direction, id, *unit),
+            Err(Reported) => self.law_of_unknown(&link.body, direction, id),
         };
         let ((stretch, unit), (law, rolling)) = (stretch?, law?);
         if law.terms.is_empty() {
@@ -104,12 +127,17 @@ impl Resolver<'_> {
     }
 
     /// The law of a stretch that is mistaken: as that of a length, unless its units are right for an angle alone.
-    fn law_of_unknown(&mut self, body: &[LawStatement], id: LinkId) -> Known<(Law, Option<Vec<Term>>)> {
+    fn law_of_unknown(
+        &mut self,
+        body: &[LawStatement],
+        direction: &str,
+        id: LinkId,
+    ) -> Known<(Law, Option<Vec<Term>>)> {
         let before = self.found.len();
-        let law = self.law(body, id, Unit::METER);
+        let law = self.law(body, direction, id, Unit::METER);
         let of_length = self.found.split_off(before);
         // Its other mistakes are known by now.
-        let _ = self.law(body, id, Unit::ONE);
+        let _ = self.law(body, direction, id, Unit::ONE);
         let of_angle = self.found.split_off(before);
         let is_angle = !of_angle.iter().any(|mistake| mistake.code.is_of_units());
         let stands = |mistake: &Diagnostic| !(is_angle && mistake.code.is_of_units());
@@ -118,19 +146,24 @@ impl Resolver<'_> {
     }
 
     fn stretch(&mut self, link: &syntax::Link, direction: &str) -> Known<(Stretch, Unit)> {
-        let combination = self.combination(&link.stretch, direction)?;
+        self.travel(&link.stretch, direction, ("link", &link.name.text))
+    }
+
+    /// A length or an angle by which something moves; `of` is the kind and the name of what it belongs to.
+    fn travel(&mut self, expression: &Expression, direction: &str, of: (&str, &str)) -> Known<(Stretch, Unit)> {
+        let combination = self.combination(expression, direction)?;
         let unit = combination.unit.unwrap_or(Unit::METER);
         if combination.terms.is_empty() {
-            return Err(self.report(mistakes::stretch_vanishes(link.stretch.span, &link.name.text)));
+            return Err(self.report(mistakes::stretch_vanishes(expression.span, of.0, of.1)));
         }
         if unit != Unit::METER && unit != Unit::ONE {
-            return Err(self.report(mistakes::stretch_unit(link.stretch.span, &unit.to_string())));
+            return Err(self.report(mistakes::stretch_unit(expression.span, &unit.to_string())));
         }
         Ok((combination.terms, unit))
     }
 }
 
-type Stretch = Vec<(crate::expr::CoordinateId, crate::expr::Expr)>;
+type Stretch = Vec<(CoordinateId, Expr)>;
 
 fn rolling_block(body: &[LawStatement]) -> Option<crate::source::Span> {
     body.iter().find_map(|statement| match statement {

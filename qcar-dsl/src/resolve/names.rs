@@ -147,6 +147,9 @@ impl Resolver<'_> {
 
     /// The value of a name in an expression.
     pub fn named(&mut self, name: &Dotted, locals: &Locals) -> Known<Value> {
+        if let Some(input) = self.input(name, locals) {
+            return Ok(input);
+        }
         let [single] = name.names.as_slice() else {
             return Err(self.no_value(name, locals));
         };
@@ -169,6 +172,23 @@ impl Resolver<'_> {
             Some((_, Global::Broken)) => Err(Reported),
             None => Err(self.no_value(name, locals)),
         }
+    }
+
+    /// The force input of a name, in a law that sees it; what the law or the model calls so comes first.
+    fn input(&mut self, name: &Dotted, locals: &Locals) -> Option<Value> {
+        let home = locals.home.as_ref().filter(|_| !locals.closed)?;
+        if let [single] = name.names.as_slice()
+            && (locals.get(&single.text).is_some() || self.names.globals.contains_key(&single.text))
+        {
+            return None;
+        }
+        let Some((_, Thing::Force(place))) = self.names.find(name, home) else {
+            return None;
+        };
+        Some(Value {
+            expr: self.model.graph.symbol(Symbol::Force(place)),
+            unit: Some(self.model.forces[usize::from(place)].unit),
+        })
     }
 
     /// Says why a name has no value here.

@@ -11,7 +11,7 @@ use qcar_dsl::model::{
     Coordinate, CoordinateKind, Declared, Default, Direction, ForceInput, Gravity, Inner, Law, Link, Model, Output,
     Parameter, Quantity, Signal, Term,
 };
-use qcar_dsl::source::Span;
+use qcar_dsl::source::{Source, Span};
 use qcar_dsl::units::Unit;
 
 const UNIT: Unit = Unit { sixths: [0; 3] };
@@ -22,6 +22,14 @@ pub fn cases(cases: u32) -> proptest::test_runner::Config {
         cases,
         failure_persistence: None,
         ..std::default::Default::default()
+    }
+}
+
+/// A model file of this text.
+pub fn text(model: &str) -> Source {
+    Source {
+        name: "test.axle".to_string(),
+        text: model.to_string(),
     }
 }
 
@@ -105,9 +113,17 @@ impl Builder {
     }
 
     pub fn force(&mut self, name: &str, on: CoordinateId) {
+        let one = self.number(1.0);
+        self.force_along(name, vec![(on, one)]);
+    }
+
+    /// A force that makes a combination of coordinates grow; of none, one that acts through laws alone.
+    pub fn force_along(&mut self, name: &str, on: Vec<(CoordinateId, Expr)>) {
         self.model.forces.push(ForceInput {
             name: name.into(),
+            direction: Direction("z".into()),
             on,
+            unit: UNIT,
             declared: declared(),
         });
     }
@@ -152,6 +168,7 @@ impl Builder {
             law: Law {
                 terms,
                 inner: inner.iter().enumerate().map(state).collect(),
+                active: false,
             },
             rolling: None,
             doc: String::new(),

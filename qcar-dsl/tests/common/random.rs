@@ -17,6 +17,8 @@ pub enum Parts {
     SpringMaxwell,
     /// A law written out as an expression, with two inner states.
     Written,
+    /// A spring beside an actuator that follows a force input, at once and by a lag.
+    Actuated,
 }
 
 /// A coordinate and the link that holds it.
@@ -44,6 +46,7 @@ fn parts() -> impl Strategy<Value = Parts> {
         Just(Parts::SpringDamperInerter),
         Just(Parts::SpringMaxwell),
         Just(Parts::Written),
+        Just(Parts::Actuated),
     ]
 }
 
@@ -99,6 +102,16 @@ fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
             let behind = g.sub(first, second);
             let second_rate = g.mul(a, behind);
             (vec![Term::Force(force)], vec![first_rate, second_rate])
+        }
+        Parts::Actuated => {
+            let (k, a, r) = (p("k"), p("a"), p("r"));
+            let g = &mut b.model.graph;
+            let (lagged, demand) = (g.symbol(Symbol::Inner(l, 0)), g.symbol(Symbol::Force(1)));
+            let direct = g.mul(a, demand);
+            let force = g.sub(direct, lagged);
+            let behind = g.sub(demand, lagged);
+            let rate = g.mul(r, behind);
+            (vec![Term::Spring(k), Term::Force(force)], vec![rate])
         }
     }
 }
@@ -167,6 +180,9 @@ impl Plan {
             b.link_with_states("z", &format!("l{n}"), &stretch, terms, &inner);
         }
         b.force("f", coordinates[1]);
+        b.force_along("demand", Vec::new());
+        let (lever, minus) = (b.parameter("lever"), b.number(-1.0));
+        b.force_along("between", vec![(coordinates[1], lever), (last, minus)]);
         self.outputs(&mut b, &coordinates, links.len());
         let model = b.build();
         let mut p: Vec<f64> = (0..model.parameters.len())
