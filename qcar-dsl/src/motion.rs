@@ -90,6 +90,8 @@ struct Derivation<'a> {
     g: &'a mut Graph,
     tyre: Option<&'a RollingTyre>,
     laws: Vec<Law>,
+    /// The links that hold each coordinate, with its coefficient in their stretch.
+    held_by: Vec<Vec<(LinkId, Expr)>>,
     roles: Vec<Role>,
     /// Which node a node keeps its offset from, where a group of them has no other damper.
     leaders: BTreeMap<CoordinateId, CoordinateId>,
@@ -115,6 +117,7 @@ impl<'a> Derivation<'a> {
             g,
             tyre,
             laws,
+            held_by: held_by(model),
             roles: Vec::new(),
             leaders: BTreeMap::new(),
             reduced: Vec::new(),
@@ -164,15 +167,10 @@ impl<'a> Derivation<'a> {
     }
 
     /// The acting links that hold a coordinate, with its coefficient in their stretch.
-    fn links_of(&self, c: CoordinateId) -> impl Iterator<Item = (LinkId, Expr)> + use<'a> {
-        let model = self.model;
-        self.acting_links().filter_map(move |l| {
-            let stretch = &model.links[l.0 as usize].stretch;
-            stretch
-                .iter()
-                .find(|&&(other, _)| other == c)
-                .map(|&(_, coefficient)| (l, coefficient))
-        })
+    fn links_of(&self, c: CoordinateId) -> impl Iterator<Item = (LinkId, Expr)> + use<> {
+        let rolling = self.tyre.map(|tyre| tyre.link);
+        let held = self.held_by[c.0 as usize].clone();
+        held.into_iter().filter(move |&(l, _)| Some(l) != rolling)
     }
 
     fn with_role(&self, role: Role) -> Vec<CoordinateId> {
@@ -291,6 +289,16 @@ impl<'a> Derivation<'a> {
             outputs,
         }
     }
+}
+
+fn held_by(model: &Checked) -> Vec<Vec<(LinkId, Expr)>> {
+    let mut held_by = vec![Vec::new(); model.coordinates.len()];
+    for (l, link) in (0..).map(LinkId).zip(&model.links) {
+        for &(c, coefficient) in &link.stretch {
+            held_by[c.0 as usize].push((l, coefficient));
+        }
+    }
+    held_by
 }
 
 /// Of each direction its motions (with acceleration where it is used), its forces, its gravity.

@@ -1,13 +1,16 @@
 //! `qcar frf`: the frequency response of every channel and its parameter Jacobian.
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use clap::Args;
 use nalgebra::Complex;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Channel, Model, Signal};
+use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::response::ratio::{Ratio, between};
 use serde::Serialize;
 
 use crate::catalogue;
@@ -83,17 +86,26 @@ impl Frequencies {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let model = catalogue::load(&arguments.model.model)?;
+    let wanted = match arguments.format {
+        TableFormat::Json => Wanted::Jacobian,
+        TableFormat::Text | TableFormat::Csv => Wanted::Values,
+    };
+    let model = catalogue::load_wanted(&arguments.model.model, wanted)?;
     let values = parameters::resolve(model.about(), arguments.model.params.as_deref(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
     let frequency = arguments.frequencies.values();
     let channels = chosen(model.about(), &arguments.channels)?;
-    let responses = channels
-        .into_iter()
-        .map(|channel| respond(&*model, &values, channel, &frequency));
+    let mut excited = Excited {
+        model: &*model,
+        values: &values,
+        frequency: &frequency,
+        wanted,
+        responses: BTreeMap::new(),
+    };
+    let responses = channels.into_iter().map(|channel| excited.respond(channel));
     let response = FrequencyResponse {
-        model: model.about().name.to_string(),
         channels: responses.collect::<Result<_, Failure>>()?,
+        model: model.about().name.to_string(),
     };
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(
@@ -156,39 +168,61 @@ fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Fa
     Ok(InputError::unless_empty(problems, Some(chosen))?)
 }
 
-fn respond(
-    model: &dyn Model,
-    values: &Values,
-    channel: &Channel,
-    frequency: &[f64],
-) -> Result<(String, ChannelResponse), Failure> {
-    let about = model.about();
-    let ratio = ratio(
-        model,
-        values,
-        excitation(about, channel)?,
-        &channel.numerator,
-        &channel.denominator,
-        frequency,
-    )
-    .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
-    let leaders = (0..about.parameters.len()).filter(|&k| values.leader(k) == k);
-    let derivatives = |part: fn(&Complex<f64>) -> f64| {
+/// A model under each of its excitations, each evaluated once for all channels.
+struct Excited<'a> {
+    model: &'a dyn Model,
+    values: &'a Values,
+    frequency: &'a [f64],
+    wanted: Wanted,
+    responses: BTreeMap<usize, Response<'a, dyn Model + 'a>>,
+}
+
+impl<'a> Excited<'a> {
+    fn respond(&mut self, channel: &Channel) -> Result<(String, ChannelResponse), Failure> {
+        let about = self.model.about();
+        let excitation = excitation(about, channel)?;
+        let values = self.values;
+        let ratio = between(
+            self.response(excitation),
+            values,
+            &channel.numerator,
+            &channel.denominator,
+        )
+        .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
+        let response = ChannelResponse {
+            frequency: self.frequency.into(),
+            re: ratio.value.iter().map(|value| value.re).collect(),
+            im: ratio.value.iter().map(|value| value.im).collect(),
+            d_re: self.derivatives(&ratio, |value| value.re),
+            d_im: self.derivatives(&ratio, |value| value.im),
+        };
+        Ok((channel.name.to_string(), response))
+    }
+
+    fn response(&mut self, excitation: usize) -> &Response<'a, dyn Model + 'a> {
+        let (model, values, frequency, wanted) = (self.model, self.values, self.frequency, self.wanted);
+        self.responses.entry(excitation).or_insert_with(|| {
+            let mut response = Response::new(model, excitation, frequency);
+            match wanted {
+                Wanted::Values => response.evaluate_values(values.as_slice()),
+                Wanted::Jacobian => response.evaluate(values.as_slice()),
+            }
+            response
+        })
+    }
+
+    /// By every parameter that leads its ties; nothing where derivatives are not wanted.
+    fn derivatives(&self, ratio: &Ratio, part: fn(&Complex<f64>) -> f64) -> Ordered<Vec<f64>> {
+        let about = self.model.about();
         let row = |k: usize| {
             let seen = ratio.jacobian.iter().find(|(parameter, _)| *parameter == k);
-            let row = seen.map_or(vec![0.0; frequency.len()], |(_, row)| row.iter().map(part).collect());
+            let still = || vec![0.0; self.frequency.len()];
+            let row = seen.map_or_else(still, |(_, row)| row.iter().map(part).collect());
             (about.parameters[k].name.to_string(), row)
         };
-        leaders.clone().map(row).collect()
-    };
-    let response = ChannelResponse {
-        frequency: frequency.into(),
-        re: ratio.value.iter().map(|value| value.re).collect(),
-        im: ratio.value.iter().map(|value| value.im).collect(),
-        d_re: derivatives(|value| value.re),
-        d_im: derivatives(|value| value.im),
-    };
-    Ok((channel.name.to_string(), response))
+        let leaders = (0..about.parameters.len()).filter(|&k| self.values.leader(k) == k);
+        leaders.filter(|_| self.wanted == Wanted::Jacobian).map(row).collect()
+    }
 }
 
 /// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.

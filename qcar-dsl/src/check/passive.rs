@@ -82,7 +82,7 @@ fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagno
         let parameters = drawn(scratch, &laws, trial)?;
         let leaf = |symbol| parameters(symbol).unwrap_or(0.0);
         let values = Values::new(&scratch.graph, &leaf);
-        let constant = |e| Dual::constant(Complex::real(values.of(e)), 0);
+        let constant = |e| Dual::constant(Complex::real(values.of(e)));
         let feeds = |frequency: &&f64| {
             let stiffness = dynamic_stiffness(slopes, &constant, **frequency).value;
             stiffness.im < -1e-9 * stiffness.abs()

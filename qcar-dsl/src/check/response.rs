@@ -22,7 +22,7 @@ const ROUNDOFF: f64 = 1e-12;
 pub struct Seen {
     /// Its size.
     pub value: f64,
-    /// Its derivatives.
+    /// Its derivatives; empty where it depends on none.
     pub gradient: Vec<Complex>,
 }
 
@@ -36,7 +36,7 @@ impl Seen {
 }
 
 /// Everything that can be seen of a model at one parameter set: responses of outputs and channels to each input, and
-/// for laws that are not linear the change of the force itself, in so many motions.
+/// for laws that are not linear the change of the force itself, in so many motions. The parameters are in order.
 pub fn sensitivities(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Vec<Seen> {
     let motions = if scratch.slopes.iter().any(|slopes| slopes.nonlinear) {
         motions
@@ -77,17 +77,14 @@ struct Excited {
 
 impl At<'_> {
     fn dual(&self, e: Expr) -> Dual {
-        let mut dual = self.constant(Complex::real(self.values.of(e)));
+        let mut dual = Dual::constant(Complex::real(self.values.of(e)));
         for &(parameter, derivative) in self.scratch.gradient(e) {
-            if let Some(place) = self.estimated.iter().position(|&other| other == parameter) {
+            if let Ok(place) = self.estimated.binary_search(&parameter) {
+                dual.gradient.resize(self.estimated.len(), Complex::default());
                 dual.gradient[place] = Complex::real(self.values.of(derivative));
             }
         }
         dual
-    }
-
-    fn constant(&self, value: Complex) -> Dual {
-        Dual::constant(value, self.estimated.len())
     }
 
     /// Adds what is seen at a frequency.
@@ -149,7 +146,7 @@ impl At<'_> {
     /// The answers to a unit of each input, and to a unit of force inside each link that asks for it.
     fn excite(&self, stiffnesses: &[Dual], frequency: f64) -> Vec<(Drive, Excited)> {
         let stretches = self.stretches();
-        let mut system = System::new(self.free(), self.drives(), &self.constant(Complex::default()));
+        let mut system = System::new(self.free(), self.drives(), &Dual::constant(Complex::default()));
         for (c, coordinate) in self.scratch.model.coordinates.iter().enumerate() {
             if let CoordinateKind::Mass(mass) = coordinate.kind {
                 system.add(c, c, &self.dual(mass).scaled(Complex::real(-frequency * frequency)));
@@ -178,7 +175,7 @@ impl At<'_> {
         }
         let excited = |(drive, mut motion): (Drive, BTreeMap<usize, Dual>)| {
             if let Drive::Motion(own) = drive {
-                motion.insert(own, self.constant(Complex::real(1.0)));
+                motion.insert(own, Dual::constant(Complex::real(1.0)));
             }
             let mut excited = self.excited(motion, &stretches, stiffnesses);
             for (link, _, force) in driven.iter().filter(|(_, input, _)| drive == Drive::Force(*input)) {
@@ -238,7 +235,7 @@ impl At<'_> {
     }
 
     fn excited(&self, motion: BTreeMap<usize, Dual>, stretches: &[Stretch], stiffnesses: &[Dual]) -> Excited {
-        let still = self.constant(Complex::default());
+        let still = Dual::constant(Complex::default());
         let moved = |c: usize| motion.get(&c).unwrap_or(&still).clone();
         let coordinates: Vec<Dual> = (0..self.scratch.model.coordinates.len()).map(moved).collect();
         let stretch = |parts: &Stretch| {

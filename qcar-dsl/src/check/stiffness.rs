@@ -31,11 +31,9 @@ pub fn driven(slopes: &Slopes, dual: &dyn Fn(Expr) -> Dual, frequency: f64) -> V
 /// A force with what the inner states add to it when something drives their rates.
 fn with_states(slopes: &Slopes, dual: &dyn Fn(Expr) -> Dual, frequency: f64, force: Dual, drive: Vec<Dual>) -> Dual {
     let rate = Complex::imaginary(frequency);
-    let parameters = force.gradient.len();
     let row = |(own, inner): (usize, &super::slopes::InnerSlopes)| {
         let on_diagonal = |other: usize| if other == own { rate } else { Complex::default() };
-        let entry =
-            |(other, &slope): (usize, &Expr)| Dual::constant(on_diagonal(other), parameters).minus(&dual(slope));
+        let entry = |(other, &slope): (usize, &Expr)| Dual::constant(on_diagonal(other)).minus(&dual(slope));
         inner.by_inner.iter().enumerate().map(entry).collect()
     };
     let matrix: Vec<Vec<Dual>> = slopes.inner.iter().enumerate().map(row).collect();

@@ -273,8 +273,10 @@ impl Derivation<'_> {
 }
 
 /// Where the coordinates of a stretch stand in a list, with their coefficients.
+///
+/// The list is in the order of the coordinates.
 pub(super) fn places(list: &[CoordinateId], stretch: &[(CoordinateId, Expr)]) -> Vec<(usize, Expr)> {
-    let place = |c| list.iter().position(|&other| other == c);
+    let place = |c| list.binary_search(&c).ok();
     stretch
         .iter()
         .filter_map(|&(c, coefficient)| Some((place(c)?, coefficient)))

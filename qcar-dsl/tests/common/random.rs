@@ -37,6 +37,8 @@ pub struct Plan {
     pub cross: Vec<(prop::sample::Index, prop::sample::Index, Parts)>,
     /// What the parameters are made of.
     pub seed: u64,
+    /// How many outputs are kept.
+    pub outputs: usize,
 }
 
 fn parts() -> impl Strategy<Value = Parts> {
@@ -63,10 +65,25 @@ fn member() -> impl Strategy<Value = Member> {
 }
 
 pub fn plan() -> impl Strategy<Value = Plan> {
+    plan_of(1..6, Just(usize::MAX))
+}
+
+/// So large a model that its responses are solved for one by one, with many outputs or with few.
+pub fn large_plan() -> impl Strategy<Value = Plan> {
+    plan_of(30..34, prop_oneof![Just(usize::MAX), Just(7)])
+}
+
+fn plan_of(members: std::ops::Range<usize>, outputs: impl Strategy<Value = usize>) -> impl Strategy<Value = Plan> {
     let cross = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), parts());
-    let members = prop::collection::vec(member(), 1..6);
+    let members = prop::collection::vec(member(), members);
     let cross = prop::collection::vec(cross, 0..3);
-    (members, cross, any::<u64>()).prop_map(|(members, cross, seed)| Plan { members, cross, seed })
+    let plan = |(members, cross, seed, outputs)| Plan {
+        members,
+        cross,
+        seed,
+        outputs,
+    };
+    (members, cross, any::<u64>(), outputs).prop_map(plan)
 }
 
 fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
@@ -202,6 +219,10 @@ impl Plan {
             b.output(Signal::LinkForce(l));
             b.output(Signal::LinkStretch(l));
         }
+        // The last ones have forces of links among them.
+        let all = std::mem::take(&mut b.model.outputs);
+        let skipped = all.len().saturating_sub(self.outputs);
+        b.model.outputs = all.into_iter().skip(skipped).collect();
     }
 }
 
