@@ -209,6 +209,14 @@ fn signal(model: &Checked, signal: &model::Signal) -> Signal {
     match *signal {
         model::Signal::LinkForce(l) => of_link(l, SignalKind::Force),
         model::Signal::LinkStretch(l) => of_link(l, SignalKind::Stretch),
+        model::Signal::Point(place, quantity) => {
+            let point = &model.points[usize::from(place)];
+            Signal {
+                location: point.name.clone(),
+                axis: point.direction.0.clone(),
+                kind: SignalKind::Motion(quantity),
+            }
+        }
         model::Signal::Motion(c, quantity) => {
             let c = coordinate(model, c);
             Signal {

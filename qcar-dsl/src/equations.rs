@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Node, Symbol};
 use crate::model::{
-    Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Quantity, Reference, Signal, Term,
+    Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Point, Quantity, Reference, Signal, Term,
 };
 
 use crate::notation::{Notation, Summand, Writer};
@@ -27,6 +27,8 @@ pub struct Sheet {
     pub names: Vec<Equation>,
     /// Forces that a tyre has while it rolls.
     pub rolling: Vec<Equation>,
+    /// Where points are that several coordinates move.
+    pub points: Vec<Equation>,
     /// What is seen.
     pub outputs: Vec<Equation>,
     /// Ratios of what is seen.
@@ -43,6 +45,7 @@ impl Sheet {
         let balances: Vec<Balance> = moving(model)
             .map(|coordinate| Balance::new(model, &mut graph, &laws, coordinate))
             .collect();
+        let points: Vec<Vec<Summand>> = model.points.iter().map(|point| place(&mut graph, point)).collect();
         let mut writer = Writer::new(model, &graph, notation);
         let named = named_quantities(model);
         named.iter().for_each(|(name, value)| writer.name(*value, name));
@@ -60,6 +63,7 @@ impl Sheet {
             inner: inner_states(model, &writer),
             names: names(&writer, &laws, &named),
             rolling: rolling(&writer, &laws),
+            points: self::points(&writer, &points),
             outputs: outputs(model, &writer),
             channels: channels(model, &writer),
         }
@@ -75,6 +79,7 @@ impl Sheet {
             ("Inner states", self.inner),
             ("where", self.names),
             ("While the tyre rolls", self.rolling),
+            ("Points", self.points),
             ("Outputs", self.outputs),
             ("Channels", self.channels),
         ];
@@ -223,11 +228,20 @@ fn uses(graph: &Graph, id: LinkId, law: &Law) -> [bool; 2] {
 
 /// The stretch or one of its derivatives, term by term.
 fn combination(graph: &mut Graph, link: &Link, kind: fn(CoordinateId) -> Symbol) -> Vec<Summand> {
+    along(graph, &link.stretch, kind)
+}
+
+/// Where a point is, term by term.
+fn place(graph: &mut Graph, point: &Point) -> Vec<Summand> {
+    along(graph, &point.combination, Symbol::Position)
+}
+
+fn along(graph: &mut Graph, held: &[(CoordinateId, Expr)], kind: fn(CoordinateId) -> Symbol) -> Vec<Summand> {
     let term = |&(coordinate, coefficient): &(CoordinateId, Expr)| {
         let motion = graph.symbol(kind(coordinate));
         Summand::signed(graph, false, coefficient, &[motion])
     };
-    let mut terms: Vec<Summand> = link.stretch.iter().map(term).collect();
+    let mut terms: Vec<Summand> = held.iter().map(term).collect();
     terms.sort_by_key(|term| term.negative);
     terms
 }
@@ -386,6 +400,14 @@ fn rolling(writer: &Writer, laws: &[LawWritten]) -> Vec<Equation> {
     laws.iter().filter_map(force).collect()
 }
 
+fn points(writer: &Writer, points: &[Vec<Summand>]) -> Vec<Equation> {
+    let written = |(place, terms): (u16, &Vec<Summand>)| Equation {
+        left: writer.of_point(place, Quantity::Position),
+        right: writer.sum(terms),
+    };
+    (0..).zip(points).map(written).collect()
+}
+
 fn outputs(model: &Model, writer: &Writer) -> Vec<Equation> {
     let written = |output: &Output| Equation {
         left: writer.identifier(&output.name),
@@ -414,9 +436,8 @@ fn reference(writer: &Writer, reference: &Reference) -> String {
 
 fn signal(writer: &Writer, signal: &Signal) -> String {
     match *signal {
-        Signal::Motion(c, Quantity::Position) => writer.symbol(Symbol::Position(c)),
-        Signal::Motion(c, Quantity::Velocity) => writer.symbol(Symbol::Velocity(c)),
-        Signal::Motion(c, Quantity::Acceleration) => writer.symbol(Symbol::Acceleration(c)),
+        Signal::Motion(c, quantity) => writer.symbol(quantity.of(c)),
+        Signal::Point(place, quantity) => writer.of_point(place, quantity),
         Signal::LinkForce(l) => writer.of_link("F", l),
         Signal::LinkStretch(l) => writer.of_link("s", l),
     }

@@ -28,6 +28,8 @@ pub struct Model {
     pub definitions: Vec<Definition>,
     /// Masses, nodes, roads and motions, in the order of the text.
     pub coordinates: Vec<Coordinate>,
+    /// Points that several coordinates move, in the order of the text.
+    pub points: Vec<Point>,
     /// Force inputs, in the order of the text.
     pub forces: Vec<ForceInput>,
     /// At most one for a direction.
@@ -115,6 +117,21 @@ pub struct Coordinate {
     pub angle: bool,
     /// The sentence; may be empty.
     pub doc: String,
+    /// Where.
+    pub declared: Declared,
+}
+
+/// A point that coordinates move together, such as the nose of a body that pitches.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The name, unique in its direction.
+    pub name: String,
+    /// z, x, ...
+    pub direction: Direction,
+    /// Coordinates with their coefficients (functions of parameters only), each coordinate once.
+    pub combination: Vec<(CoordinateId, Expr)>,
+    /// True for an angle, false for a position.
+    pub angle: bool,
     /// Where.
     pub declared: Declared,
 }
@@ -238,6 +255,8 @@ pub struct Inner {
 pub enum Signal {
     /// The position, velocity or acceleration of a coordinate.
     Motion(CoordinateId, Quantity),
+    /// That of a point, by its place in `Model::points`.
+    Point(u16, Quantity),
     /// The resisting force of a link, positive in tension.
     LinkForce(LinkId),
     /// The stretch of a link.
@@ -251,6 +270,17 @@ pub enum Quantity {
     Position,
     Velocity,
     Acceleration,
+}
+
+impl Quantity {
+    /// The symbol of a coordinate's motion.
+    pub fn of(self, c: CoordinateId) -> Symbol {
+        match self {
+            Quantity::Position => Symbol::Position(c),
+            Quantity::Velocity => Symbol::Velocity(c),
+            Quantity::Acceleration => Symbol::Acceleration(c),
+        }
+    }
 }
 
 /// An output of the model.

@@ -19,7 +19,7 @@ use crate::check::Checked;
 use crate::combination::combine;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Substitution, Symbol};
 use crate::law::{self, Law};
-use crate::model::{CoordinateKind, Direction, Quantity, Signal};
+use crate::model::{CoordinateKind, Direction, Signal};
 
 pub use tyre::{RollingTyre, rolling_tyre};
 
@@ -254,9 +254,13 @@ impl<'a> Derivation<'a> {
 
     fn signal(&mut self, signal: &Signal) -> Expr {
         match *signal {
-            Signal::Motion(c, Quantity::Position) => self.g.symbol(Symbol::Position(c)),
-            Signal::Motion(c, Quantity::Velocity) => self.g.symbol(Symbol::Velocity(c)),
-            Signal::Motion(c, Quantity::Acceleration) => self.g.symbol(Symbol::Acceleration(c)),
+            Signal::Motion(c, quantity) => self.g.symbol(quantity.of(c)),
+            Signal::Point(point, quantity) => {
+                let combination = self.model.points[usize::from(point)].combination.iter();
+                let motions = combination.map(|&(c, coefficient)| (coefficient, self.g.symbol(quantity.of(c))));
+                let motions: Vec<(Expr, Expr)> = motions.collect();
+                combine(self.g, motions)
+            }
             Signal::LinkStretch(l) => self.g.symbol(Symbol::Stretch(l)),
             Signal::LinkForce(l) => {
                 let acceleration = self.along(l, |g, c| Some(g.symbol(Symbol::Acceleration(c))));

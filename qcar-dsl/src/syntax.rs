@@ -116,8 +116,8 @@ pub enum Statement {
     Gravity(Name),
     /// `force NAME on point;` or `force NAME on upper - lower;`; `force NAME;` acts through laws alone.
     Force(Name, Option<Expression>),
-    /// `point NAME = point;`
-    Point(Name, Dotted),
+    /// `point NAME = point;` or `point NAME = body + arm*pitch;`
+    Point(Name, Expression),
     /// `link NAME: stretch { … }`
     Link(Link),
     /// `output point.acceleration;` or `output NAME = point.acceleration;`

@@ -33,6 +33,7 @@ fn see(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f64], u: &[f64]) 
     for (output, value) in model.outputs.iter().zip(y) {
         match output.signal {
             Signal::Motion(c, quantity) => seen.motion[c.0 as usize][quantity as usize] = value,
+            Signal::Point(..) => {}
             Signal::LinkForce(l) => seen.force[l.0 as usize] = value,
             Signal::LinkStretch(l) => seen.stretch[l.0 as usize] = value,
         }

@@ -189,3 +189,44 @@ fn a_model_with_forces_of_every_kind_reads_back_and_shows_them() {
         insta::assert_snapshot!(format!("forces_{}", stage.name()), show(&compiled, stage));
     }
 }
+
+/// A rigid body on two springs, seen at a point ahead of its centre: heave and pitch by hand, the point's equation from both.
+#[test]
+fn a_point_moves_as_its_coordinates_do() {
+    let model = "axle body {
+        known param m: kg = 300;
+        known param j: kg m^2 = 500;
+        param k: N/m = 2e4 in 1e3..1e5;
+        param arm: m = 1.3 in 1..2;
+        direction z {
+            motion ground;
+            mass body = m;
+            inertia pitch = j;
+            point front = body + arm*pitch;
+            point rear = body - arm*pitch;
+            point nose = front + 0.5*(front - body);
+            force f on nose;
+            link left: front - ground { spring k; damper 0.01 s*k; }
+            link right: rear - ground { spring 2*k; damper 0.02 s*k; }
+            output nose.acceleration;
+            output pitch.position;
+        }
+    }";
+    close(&response(model, "f"), |s| {
+        let (front, rear) = ((s * 0.01 + 1.0) * 2e4, (s * 0.01 + 1.0) * 4e4);
+        let arm = 1.3;
+        let heave = s * s * 300.0 + front + rear;
+        let pitch = s * s * 500.0 + (front + rear) * arm * arm;
+        let both = (front - rear) * arm;
+        let determinant = heave * pitch - both * both;
+        let lever = 1.5 * arm;
+        // A unit force at the nose: 1 on heave, `lever` on pitch.
+        let body = (pitch - both * lever) / determinant;
+        let angle = (heave * lever - both) / determinant;
+        s * s * (body + angle * lever)
+    });
+    let unlike = model.replace("body + arm*pitch", "body + pitch");
+    assert_eq!(codes(&unlike), [Code::UnitsDiffer]);
+    let constant = model.replace("point rear = body - arm*pitch", "point rear = body - arm");
+    assert_eq!(codes(&constant), [Code::StretchHasConstant]);
+}

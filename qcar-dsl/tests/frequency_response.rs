@@ -83,6 +83,7 @@ fn change(model: &Checked, p: &[f64], which: usize) -> Reference<f64> {
         push: d(r.push),
         force_by_input: d(r.force_by_input),
         rate_by_input: d(r.rate_by_input),
+        points: d(r.points),
     }
 }
 

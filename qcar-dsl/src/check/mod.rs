@@ -210,6 +210,7 @@ fn expressions(model: &Model, slopes: &[Slopes]) -> Vec<Expr> {
         .flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
     let stretches = model.links.iter().map(|link| &link.stretch);
     let stretches = stretches.chain(model.forces.iter().map(|force| &force.on));
+    let stretches = stretches.chain(model.points.iter().map(|point| &point.combination));
     let stretches = stretches.flatten().map(|(_, coefficient)| *coefficient);
     let inertias = model.coordinates.iter().filter_map(|coordinate| match coordinate.kind {
         CoordinateKind::Mass(inertia) => Some(inertia),

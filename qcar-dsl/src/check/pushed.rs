@@ -82,6 +82,13 @@ fn needs_velocity(scratch: &Scratch, node: CoordinateId) -> bool {
 }
 
 fn shows(scratch: &Scratch, node: CoordinateId, quantity: Quantity) -> bool {
-    let mut outputs = scratch.model.outputs.iter();
-    outputs.any(|output| output.signal == Signal::Motion(node, quantity))
+    let moves = |point: u16| {
+        let mut combination = scratch.model.points[usize::from(point)].combination.iter();
+        combination.any(|(c, _)| *c == node)
+    };
+    scratch.model.outputs.iter().any(|output| match output.signal {
+        Signal::Motion(c, own) => c == node && own == quantity,
+        Signal::Point(point, own) => own == quantity && moves(point),
+        Signal::LinkForce(_) | Signal::LinkStretch(_) => false,
+    })
 }

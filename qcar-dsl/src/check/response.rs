@@ -71,6 +71,7 @@ struct At<'a> {
 /// The motion of every coordinate, and what each link does, under one input.
 struct Excited {
     coordinates: Vec<Dual>,
+    points: Vec<Dual>,
     stretches: Vec<Dual>,
     forces: Vec<Dual>,
 }
@@ -210,13 +211,13 @@ impl At<'_> {
     }
 
     fn stretches(&self) -> Vec<Stretch> {
+        let links = self.scratch.model.links.iter();
+        links.map(|link| self.along(&link.stretch)).collect()
+    }
+
+    fn along(&self, combination: &[(CoordinateId, Expr)]) -> Stretch {
         let of = |(id, coefficient): &(CoordinateId, Expr)| (usize::from(id.0), self.dual(*coefficient));
-        self.scratch
-            .model
-            .links
-            .iter()
-            .map(|link| link.stretch.iter().map(of).collect())
-            .collect()
+        combination.iter().map(of).collect()
     }
 
     /// The inputs, and the insides of laws that are looked at.
@@ -243,6 +244,9 @@ impl At<'_> {
                 sum.plus(&coefficient.times(&coordinates[*c]))
             })
         };
+        let points = self.scratch.model.points.iter();
+        let points = points.map(|point| stretch(&self.along(&point.combination)));
+        let points = points.collect();
         let stretches: Vec<Dual> = stretches.iter().map(stretch).collect();
         let forces = stretches
             .iter()
@@ -251,6 +255,7 @@ impl At<'_> {
             .collect();
         Excited {
             coordinates,
+            points,
             stretches,
             forces,
         }
@@ -329,16 +334,23 @@ enum Drive {
 
 impl Excited {
     fn response(&self, signal: &Signal, frequency: f64) -> Dual {
-        let rate = Complex::imaginary(frequency);
         match signal {
-            Signal::Motion(CoordinateId(c), Quantity::Position) => self.coordinates[usize::from(*c)].clone(),
-            Signal::Motion(CoordinateId(c), Quantity::Velocity) => self.coordinates[usize::from(*c)].scaled(rate),
-            Signal::Motion(CoordinateId(c), Quantity::Acceleration) => {
-                self.coordinates[usize::from(*c)].scaled(rate * rate)
+            Signal::Motion(CoordinateId(c), quantity) => {
+                differentiated(&self.coordinates[usize::from(*c)], *quantity, frequency)
             }
+            Signal::Point(place, quantity) => differentiated(&self.points[usize::from(*place)], *quantity, frequency),
             Signal::LinkForce(LinkId(l)) => self.forces[usize::from(*l)].clone(),
             Signal::LinkStretch(LinkId(l)) => self.stretches[usize::from(*l)].clone(),
         }
+    }
+}
+
+fn differentiated(position: &Dual, quantity: Quantity, frequency: f64) -> Dual {
+    let rate = Complex::imaginary(frequency);
+    match quantity {
+        Quantity::Position => position.clone(),
+        Quantity::Velocity => position.scaled(rate),
+        Quantity::Acceleration => position.scaled(rate * rate),
     }
 }
 

@@ -98,12 +98,12 @@ pub fn stretch_has_constant(span: Span) -> Diagnostic {
         .hint("write the free length or gap into the law: `force = k*(s + preload);`")
 }
 
-/// A stretch of a link or force in which all coordinates cancel.
+/// A stretch of a link or force, or a point, in which all coordinates cancel.
 pub fn stretch_vanishes(span: Span, kind: &str, name: &str) -> Diagnostic {
-    let does = if kind == "force" {
-        "moves nothing"
-    } else {
-        "never stretches"
+    let does = match kind {
+        "force" => "moves nothing",
+        "point" => "never moves",
+        _ => "never stretches",
     };
     Diagnostic::error(
         Code::StretchVanishes,

@@ -287,11 +287,11 @@ fn force(tokens: &mut Tokens) -> Parsed<Statement> {
 }
 
 fn point(tokens: &mut Tokens) -> Parsed<Statement> {
-    const EXAMPLE: &str = "point seat = body;";
+    const EXAMPLE: &str = "point seat = body;` or `point nose = body + arm*pitch;";
     tokens.take_word("point");
     let name = tokens.new_name("the name of a point", EXAMPLE)?;
     tokens.expect("=", EXAMPLE)?;
-    let target = dotted(tokens, "a mass, node, road or motion", EXAMPLE)?;
+    let target = expression(tokens)?;
     tokens.expect(";", EXAMPLE)?;
     Ok(Statement::Point(name, target))
 }

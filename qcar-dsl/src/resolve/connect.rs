@@ -2,33 +2,49 @@
 
 use super::declare::declared;
 use super::law::force_unit;
-use super::names::Thing;
+use super::names::{Moving, Thing};
 use super::{Known, Placed, Reported, Resolver};
 use crate::diagnostic::{Diagnostic, names, units as mistakes};
 use crate::expr::{CoordinateId, Expr, LinkId};
-use crate::model::{CoordinateKind, Direction, ForceInput, Law, Link, Term};
-use crate::syntax::{self, Expression, LawStatement, Name, Statement};
+use crate::model::{CoordinateKind, Direction, ForceInput, Law, Link, Point, Term};
+use crate::syntax::{self, Expression, ExpressionKind, LawStatement, Name, Statement};
 use crate::units::Unit;
 
 impl Resolver<'_> {
-    /// Other names of coordinates, each of what is named above it.
+    /// Other names of coordinates, and what several of them move, each of what is named above it.
     pub fn points(&mut self, placed: &[Placed]) {
         for (direction, statement) in placed {
             let Statement::Point(name, target) = statement else {
                 continue;
             };
-            let thing = match self.coordinate(target, direction, &format!("point {} = body;", name.text)) {
-                Ok(coordinate) => {
-                    let meant = &mut self.model.coordinates[usize::from(coordinate.0)];
-                    if meant.direction.0 == *direction {
-                        meant.also.push(name.text.clone());
-                    }
-                    Thing::Coordinate(coordinate)
-                }
+            let thing = match self.point(name, target, direction, statement) {
+                Ok(Moving::Coordinate(coordinate)) => Thing::Coordinate(coordinate),
+                Ok(Moving::Point(place)) => Thing::Point(place),
                 Err(_) => Thing::Broken,
             };
             self.declare_thing(name, direction, thing);
         }
+    }
+
+    fn point(&mut self, name: &Name, target: &Expression, direction: &str, statement: &Statement) -> Known<Moving> {
+        if let ExpressionKind::Name(own) = &target.kind
+            && let Some(Moving::Coordinate(coordinate)) = self.moving_of(own, direction)?
+        {
+            let meant = &mut self.model.coordinates[usize::from(coordinate.0)];
+            if meant.direction.0 == *direction {
+                meant.also.push(name.text.clone());
+            }
+            return Ok(Moving::Coordinate(coordinate));
+        }
+        let (combination, unit) = self.travel(target, direction, ("point", &name.text))?;
+        self.model.points.push(Point {
+            name: name.text.clone(),
+            direction: Direction(direction.to_string()),
+            combination,
+            angle: unit == Unit::ONE,
+            declared: declared(name, statement),
+        });
+        Ok(Moving::Point(self.model.points.len() as u16 - 1))
     }
 
     /// Inputs that push coordinates.

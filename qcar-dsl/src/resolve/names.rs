@@ -25,6 +25,8 @@ pub enum Global {
 pub enum Thing {
     /// A mass, node, road or motion, or a point of it.
     Coordinate(CoordinateId),
+    /// A point that several coordinates move, by its place in `Model::points`.
+    Point(u16),
     /// A link.
     Link(LinkId),
     /// A force input, by its place in `Model::forces`.
@@ -35,10 +37,19 @@ pub enum Thing {
     Broken,
 }
 
+/// What a name in a stretch means.
+#[derive(Clone, Copy, Debug)]
+pub enum Moving {
+    /// A mass, node, road or motion.
+    Coordinate(CoordinateId),
+    /// A point that several of them move, by its place in `Model::points`.
+    Point(u16),
+}
+
 impl Thing {
     fn kind(self) -> &'static str {
         match self {
-            Thing::Coordinate(_) => "a point that moves",
+            Thing::Coordinate(_) | Thing::Point(_) => "a point that moves",
             Thing::Link(_) => "a link",
             Thing::Force(_) => "a force input",
             Thing::Gravity => "a gravity",
@@ -121,7 +132,7 @@ impl Resolver<'_> {
             .direction(direction)
             .and_then(|names| names.get(&name.text))
             .map(|(span, _)| *span);
-        let moves = matches!(thing, Thing::Coordinate(_));
+        let moves = matches!(thing, Thing::Coordinate(_) | Thing::Point(_));
         let global = self
             .names
             .globals
@@ -206,7 +217,7 @@ impl Resolver<'_> {
             mistakes::element_is_closed(span, &text, &self.unit_of(global))
         } else if text == "s" || text == "v" {
             mistakes::law_variable_outside(span, &text)
-        } else if let Some((_, Thing::Coordinate(_))) = self.names.find(name, "") {
+        } else if let Some((_, Thing::Coordinate(_) | Thing::Point(_))) = self.names.find(name, "") {
             mistakes::coordinate_in_expression(span, &text)
         } else if let Some(options) = self.names.off.get(&text) {
             mistakes::switched_off(span, &text, options)
@@ -236,20 +247,13 @@ impl Resolver<'_> {
         local.chain(global).collect()
     }
 
-    /// The coordinate of a name in a stretch; `None` for a parameter or derived quantity.
-    pub fn coordinate_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<CoordinateId>> {
+    /// What moves by a name in a stretch; `None` for a parameter or derived quantity.
+    pub fn moving_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<Moving>> {
         match self.names.find(name, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(coordinate)),
+            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(Moving::Coordinate(coordinate))),
+            Some((_, Thing::Point(point))) => Ok(Some(Moving::Point(point))),
             None if name.names.len() == 1 && self.names.globals.contains_key(&name.names[0].text) => Ok(None),
             _ => Err(self.no_thing(name, direction, "a point that moves", "link spring: body - wheel { … }")),
-        }
-    }
-
-    /// The coordinate that something acts on or is another name of.
-    pub fn coordinate(&mut self, name: &Dotted, direction: &str, example: &str) -> Known<CoordinateId> {
-        match self.names.find(name, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => Ok(coordinate),
-            _ => Err(self.no_thing(name, direction, "a point that moves", example)),
         }
     }
 

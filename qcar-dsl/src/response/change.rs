@@ -15,6 +15,8 @@ pub(super) struct Change {
     pub(super) inertias: Vec<(usize, Expr)>,
     /// The loads of the force inputs.
     pub(super) loads: Vec<Load>,
+    /// Where points are, by their places.
+    points: Vec<(usize, Vec<(CoordinateId, Expr)>)>,
 }
 
 /// How a link changes with a parameter.
@@ -27,6 +29,12 @@ pub(super) struct LinkChange {
 }
 
 impl Change {
+    /// How the combination of a point changes.
+    pub(super) fn point(&self, place: usize) -> &[(CoordinateId, Expr)] {
+        let found = self.points.iter().find(|(own, _)| *own == place);
+        found.map_or(&[], |(_, slopes)| slopes)
+    }
+
     /// How what a source pushes by itself changes.
     pub(super) fn pushed(&self, source: Source) -> &[(usize, Complex)] {
         match source {
@@ -73,7 +81,17 @@ pub(super) fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], loads:
         slopes.collect()
     };
     let loads = loads.iter().map(&mut slope).collect();
+    let mut points = Vec::new();
+    for (place, point) in model.points.iter().enumerate() {
+        let mut slopes = point.combination.clone();
+        slopes.iter_mut().for_each(|(_, share)| *share = by.of(g, *share));
+        slopes.retain(|(_, slope)| !slope.is_zero(g));
+        if !slopes.is_empty() {
+            points.push((place, slopes));
+        }
+    }
     Change {
+        points,
         links: changed,
         inertias,
         loads,

@@ -16,10 +16,18 @@ pub(super) struct Functional {
     /// (jω)ⁿ or the dynamic stiffness of a link.
     pub(super) factor: Complex,
     pub(super) combination: Vec<(CoordinateId, Expr)>,
-    /// The link whose stretch the combination is.
-    pub(super) stretch_of: Option<usize>,
-    /// True where the factor is the dynamic stiffness of that link.
-    pub(super) is_force: bool,
+    /// What the combination is.
+    of: Of,
+}
+
+/// What the combination of an output is.
+#[derive(Clone, Copy, PartialEq)]
+enum Of {
+    Coordinate,
+    Point(usize),
+    Stretch(usize),
+    /// The stretch of a link whose dynamic stiffness is the factor.
+    Force(usize),
 }
 
 impl Functional {
@@ -27,41 +35,29 @@ impl Functional {
     pub(super) fn of(model: &Checked, g: &mut Graph, links: &[Stiffness], signal: &Signal) -> Self {
         let stretch = |l: LinkId| model.links[l.0 as usize].stretch.clone();
         let one = Complex::one(g);
-        match *signal {
-            Signal::Motion(c, quantity) => {
-                let combination = vec![(c, one.re)];
-                Functional {
-                    factor: order(g, quantity),
-                    combination,
-                    stretch_of: None,
-                    is_force: false,
-                }
+        let (factor, combination, of) = match *signal {
+            Signal::Motion(c, quantity) => (order(g, quantity), vec![(c, one.re)], Of::Coordinate),
+            Signal::Point(place, quantity) => {
+                let place = usize::from(place);
+                let combination = model.points[place].combination.clone();
+                (order(g, quantity), combination, Of::Point(place))
             }
-            Signal::LinkStretch(l) => {
-                let stretch_of = Some(l.0 as usize);
-                Functional {
-                    factor: one,
-                    combination: stretch(l),
-                    stretch_of,
-                    is_force: false,
-                }
-            }
-            Signal::LinkForce(l) => {
-                let (factor, stretch_of) = (links[l.0 as usize].total, Some(l.0 as usize));
-                Functional {
-                    factor,
-                    combination: stretch(l),
-                    stretch_of,
-                    is_force: true,
-                }
-            }
+            Signal::LinkStretch(l) => (one, stretch(l), Of::Stretch(l.0 as usize)),
+            Signal::LinkForce(l) => (links[l.0 as usize].total, stretch(l), Of::Force(l.0 as usize)),
+        };
+        Functional {
+            factor,
+            combination,
+            of,
         }
     }
 
     /// What a force input adds to the force of a link by itself.
     pub(super) fn input(&self, links: &[Stiffness], source: Source) -> Option<Complex> {
-        let link = self.stretch_of.filter(|_| self.is_force)?;
-        by_source(&links[link].inputs, source)
+        match self.of {
+            Of::Force(link) => by_source(&links[link].inputs, source),
+            _ => None,
+        }
     }
 
     /// How the output changes because its own factor and combination do.
@@ -73,11 +69,16 @@ impl Functional {
         scaled: &[Complex],
         change: &Change,
     ) -> Complex {
-        let Some(own) = change.links.iter().find(|link| Some(link.link) == self.stretch_of) else {
+        let link = match self.of {
+            Of::Coordinate => return Complex::zero(g),
+            Of::Point(place) => return along(g, change.point(place), scaled),
+            Of::Stretch(link) | Of::Force(link) => link,
+        };
+        let Some(own) = change.links.iter().find(|own| own.link == link) else {
             return Complex::zero(g);
         };
         let turned = along(g, &own.stretch, scaled);
-        if !self.is_force {
+        if self.of == Of::Stretch(link) {
             return turned;
         }
         let stiffened = along(g, &self.combination, amplitudes).mul(g, own.stiffness);

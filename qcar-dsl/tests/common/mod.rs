@@ -9,7 +9,7 @@ use qcar_dsl::check::Checked;
 use qcar_dsl::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use qcar_dsl::model::{
     Coordinate, CoordinateKind, Declared, Default, Direction, ForceInput, Gravity, Inner, Law, Link, Model, Output,
-    Parameter, Quantity, Signal, Term,
+    Parameter, Point, Quantity, Signal, Term,
 };
 use qcar_dsl::source::{Source, Span};
 use qcar_dsl::units::Unit;
@@ -67,6 +67,7 @@ impl Builder {
                 parameters: vec![],
                 definitions: vec![],
                 coordinates: vec![],
+                points: vec![],
                 forces: vec![],
                 gravities: vec![],
                 links: vec![],
@@ -126,6 +127,18 @@ impl Builder {
             unit: UNIT,
             declared: declared(),
         });
+    }
+
+    /// A point that a combination of coordinates moves.
+    pub fn point(&mut self, name: &str, combination: Vec<(CoordinateId, Expr)>) -> u16 {
+        self.model.points.push(Point {
+            name: name.into(),
+            direction: Direction("z".into()),
+            combination,
+            angle: false,
+            declared: declared(),
+        });
+        self.model.points.len() as u16 - 1
     }
 
     pub fn gravity(&mut self, direction: &str) {

@@ -200,6 +200,7 @@ impl Plan {
         b.force_along("demand", Vec::new());
         let (lever, minus) = (b.parameter("lever"), b.number(-1.0));
         b.force_along("between", vec![(coordinates[1], lever), (last, minus)]);
+        b.point("nose", vec![(coordinates[1], lever), (last, minus), (road, lever)]);
         self.outputs(&mut b, &coordinates, links.len());
         let model = b.build();
         let mut p: Vec<f64> = (0..model.parameters.len())
@@ -214,6 +215,9 @@ impl Plan {
             b.output(Signal::Motion(c, Quantity::Acceleration));
             b.output(Signal::Motion(c, Quantity::Velocity));
             b.output(Signal::Motion(c, Quantity::Position));
+        }
+        for quantity in [Quantity::Acceleration, Quantity::Velocity, Quantity::Position] {
+            b.output(Signal::Point(0, quantity));
         }
         for l in (0..links as u16).map(qcar_dsl::expr::LinkId) {
             b.output(Signal::LinkForce(l));

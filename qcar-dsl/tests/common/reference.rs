@@ -60,6 +60,8 @@ pub struct Reference<T: nalgebra::Scalar> {
     pub push: DMatrix<T>,
     pub force_by_input: DMatrix<T>,
     pub rate_by_input: DMatrix<T>,
+    /// Rows: a point's coefficients of q.
+    pub points: DMatrix<T>,
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
@@ -125,6 +127,12 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
                 push[(c.0 as usize, i)] += value(graph, coefficient, p);
             }
         }
+        let mut points = DMatrix::zeros(model.points.len(), n);
+        for (row, point) in model.points.iter().enumerate() {
+            for &(c, coefficient) in &point.combination {
+                points[(row, c.0 as usize)] += value(graph, coefficient, p);
+            }
+        }
         let mut pull = DVector::zeros(n);
         for (i, coordinate) in model.coordinates.iter().enumerate() {
             if let CoordinateKind::Mass(inertia) = coordinate.kind {
@@ -150,6 +158,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
             push,
             force_by_input,
             rate_by_input,
+            points,
         }
     }
 
@@ -267,11 +276,18 @@ impl<T: nalgebra::Scalar + Copy> Instant<T> {
         }
     }
 
-    pub fn signal(&self, signal: &Signal) -> T {
+    pub fn signal(&self, signal: &Signal, points: &DMatrix<T>) -> T
+    where
+        T: ComplexField,
+    {
+        let of = |quantity| match quantity {
+            Quantity::Position => &self.q,
+            Quantity::Velocity => &self.qd,
+            Quantity::Acceleration => &self.qdd,
+        };
         match *signal {
-            Signal::Motion(c, Quantity::Position) => self.q[c.0 as usize],
-            Signal::Motion(c, Quantity::Velocity) => self.qd[c.0 as usize],
-            Signal::Motion(c, Quantity::Acceleration) => self.qdd[c.0 as usize],
+            Signal::Motion(c, quantity) => of(quantity)[c.0 as usize],
+            Signal::Point(place, quantity) => (points.row(place as usize) * of(quantity))[0],
             Signal::LinkForce(l) => self.force[l.0 as usize],
             Signal::LinkStretch(l) => self.stretch[l.0 as usize],
         }
@@ -356,6 +372,16 @@ pub fn response(
         Signal::Motion(c, quantity) => {
             let factor = [Complex::new(1.0, 0.0), jw, jw * jw][quantity as usize];
             (factor * x[c.0 as usize], factor * dx[c.0 as usize])
+        }
+        Signal::Point(place, quantity) => {
+            let factor = [Complex::new(1.0, 0.0), jw, jw * jw][quantity as usize];
+            let row = |r: &Reference<f64>| {
+                let mut row = DVector::zeros(n + z);
+                let point = full(&r.points).row(place as usize).transpose();
+                row.rows_mut(0, n).copy_from(&point);
+                row
+            };
+            (factor * row(r).dot(&x), factor * (row(r).dot(&dx) + row(d).dot(&x)))
         }
         Signal::LinkForce(l) => {
             let l = l.0 as usize;
