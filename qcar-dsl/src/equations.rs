@@ -39,8 +39,9 @@ impl Sheet {
     /// Sets up the equations of a model.
     pub fn new(model: &Model, notation: Notation) -> Sheet {
         let mut graph = model.graph.clone();
+        let elsewhere = used_elsewhere(model);
         let laws: Vec<LawWritten> = links(model)
-            .map(|link| LawWritten::new(model, &mut graph, link))
+            .map(|link| LawWritten::new(model, &mut graph, &elsewhere, link))
             .collect();
         let balances: Vec<Balance> = moving(model)
             .map(|coordinate| Balance::new(model, &mut graph, &laws, coordinate))
@@ -159,7 +160,7 @@ struct LawWritten {
 }
 
 impl LawWritten {
-    fn new(model: &Model, graph: &mut Graph, id: LinkId) -> LawWritten {
+    fn new(model: &Model, graph: &mut Graph, elsewhere: &BTreeSet<Symbol>, id: LinkId) -> LawWritten {
         let link = link(model, id);
         let short = is_short(graph, link) && !is_seen(model, id);
         let [s, v, a] = match short {
@@ -178,7 +179,9 @@ impl LawWritten {
             let [s, v] = [Symbol::Stretch(id), Symbol::Rate(id)].map(|symbol| graph.symbol(symbol));
             summands(graph, terms, [s, v, a])
         });
-        let [by_stretch, by_rate] = uses(graph, id, &link.law).map(|used| used && !short);
+        let [own_stretch, own_rate] = uses(graph, id, &link.law).map(|used| used && !short);
+        let by_stretch = own_stretch || elsewhere.contains(&Symbol::Stretch(id));
+        let by_rate = own_rate || elsewhere.contains(&Symbol::Rate(id));
         let stretch = by_stretch.then(|| combination(graph, link, Symbol::Position));
         let rate = by_rate.then(|| combination(graph, link, Symbol::Velocity));
         LawWritten {
@@ -224,6 +227,15 @@ fn uses(graph: &Graph, id: LinkId, law: &Law) -> [bool; 2] {
         springs || symbols.contains(&Symbol::Stretch(id)),
         dampers || symbols.contains(&Symbol::Rate(id)),
     ]
+}
+
+/// The stretches and rates that laws of other links use.
+fn used_elsewhere(model: &Model) -> BTreeSet<Symbol> {
+    let of_others = |id: LinkId| {
+        let leaves = link(model, id).law.leaves(&model.graph).into_iter();
+        leaves.filter(move |leaf| matches!(*leaf, Symbol::Stretch(other) | Symbol::Rate(other) if other != id))
+    };
+    links(model).flat_map(of_others).collect()
 }
 
 /// The stretch or one of its derivatives, term by term.

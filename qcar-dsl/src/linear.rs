@@ -7,14 +7,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use crate::about::{Entry, Matrix};
 use crate::check::Checked;
-use crate::expr::{Differential, Expr, Graph, Symbol};
+use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
 use crate::motion::Motion;
 
 /// The Jacobians of the equations of motion, nonzeros only, in states, inputs, parameters and the definitions of the
 /// equations.
 #[derive(Clone, Debug)]
 pub struct Linear {
-    /// True where A, B, C and D depend on the parameters alone.
+    /// True where A, B, C and D depend on the parameters alone, and each law on the stretch of its own link: the impedance of
+    /// the model is symmetric.
     pub linear: bool,
     /// A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x and D = ∂h/∂u, matrix after matrix, row after row.
     pub matrices: Vec<(Entry, Expr)>,
@@ -61,13 +62,18 @@ pub fn linearise(model: &Checked, motion: &Motion, graph: &mut Graph) -> Linear 
     }
     parameter_jacobian.sort_by_key(|&(is_output, row, p, _)| (is_output, row, p));
     let leaves = graph.symbols(matrices.iter().map(|&(_, value)| value));
-    let linear = leaves.iter().all(|leaf| matches!(leaf, Symbol::Parameter(_)));
+    let linear = leaves.iter().all(|leaf| matches!(leaf, Symbol::Parameter(_))) && !is_coupled(model);
     Linear {
         linear,
         matrices,
         sensitivities,
         parameter_jacobian,
     }
+}
+
+fn is_coupled(model: &Checked) -> bool {
+    let mut links = (0..).map(LinkId).zip(&model.links);
+    links.any(|(id, link)| !link.law.other_links(&model.graph, id).is_empty())
 }
 
 /// For each leaf, the places of what depends on it.

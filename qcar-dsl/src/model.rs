@@ -7,6 +7,8 @@
 //! `f(s, v)`, positive in tension (`k s + c v` for a spring and damper). A coordinate `q` of the stretch receives
 //! the generalised force `-(∂s/∂q) f` (virtual work).
 
+use std::collections::BTreeSet;
+
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::source::Span;
 use crate::units::Unit;
@@ -200,7 +202,7 @@ pub struct Link {
 }
 
 /// The constitutive law of a link: the sum of its terms.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Law {
     /// In the order of the text, elements expanded.
     pub terms: Vec<Term>,
@@ -211,18 +213,31 @@ pub struct Law {
 }
 
 impl Law {
+    /// The other links whose stretch or rate the terms and the rates use.
+    pub fn other_links(&self, graph: &Graph, own: LinkId) -> BTreeSet<LinkId> {
+        let link = |leaf| match leaf {
+            Symbol::Stretch(link) | Symbol::Rate(link) => Some(link).filter(|link| *link != own),
+            _ => None,
+        };
+        self.leaves(graph).into_iter().filter_map(link).collect()
+    }
+
     /// The force inputs that the terms and the rates use, by their places in `Model::forces`.
     pub fn force_inputs(&self, graph: &Graph) -> Vec<u16> {
-        let forces = self.terms.iter().filter_map(|term| match *term {
-            Term::Force(force) => Some(force),
-            _ => None,
-        });
-        let leaves = graph.symbols(forces.chain(self.inner.iter().map(|inner| inner.rate)));
         let input = |leaf| match leaf {
             Symbol::Force(place) => Some(place),
             _ => None,
         };
-        leaves.into_iter().filter_map(input).collect()
+        self.leaves(graph).into_iter().filter_map(input).collect()
+    }
+
+    /// What the written forces and the rates depend on.
+    pub fn leaves(&self, graph: &Graph) -> BTreeSet<Symbol> {
+        let forces = self.terms.iter().filter_map(|term| match *term {
+            Term::Force(force) => Some(force),
+            _ => None,
+        });
+        graph.symbols(forces.chain(self.inner.iter().map(|inner| inner.rate)))
     }
 }
 
@@ -235,7 +250,8 @@ pub enum Term {
     Damper(Expr),
     /// `b dv/dt`
     Inerter(Expr),
-    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, force inputs and parameters.
+    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, stretches and rates of others, force inputs
+    /// and parameters.
     Force(Expr),
 }
 
@@ -246,7 +262,7 @@ pub struct Inner {
     pub name: String,
     /// Its unit.
     pub unit: Unit,
-    /// Its time derivative, in stretch, rate, inner states, force inputs and parameters.
+    /// Its time derivative, of what a force may depend on.
     pub rate: Expr,
 }
 

@@ -21,6 +21,7 @@ mod stiffness;
 // The model about a point.
 mod response;
 // The rules.
+mod coupled;
 mod duplicates;
 mod held;
 mod inertia;
@@ -103,6 +104,7 @@ pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>
     found.extend(duplicates::links_are_distinct(&model, &scratch.graph));
     found.extend(inertia::inertias_are_positive(&scratch));
     found.extend(passive::links_are_passive(&scratch));
+    found.extend(coupled::couplings_are_sound(&scratch));
     found.extend(nodes::nodes_are_solvable(&scratch));
     found.extend(pushed::rates_of_forces_are_not_needed(&scratch));
     found.extend(held::masses_are_held(&scratch));

@@ -6,7 +6,7 @@ use super::Scratch;
 use super::dual::{Complex, Dual, solve};
 use super::sample::{Kind, Point, Values};
 use super::slopes::Slopes;
-use super::stiffness::{driven, dynamic_stiffness};
+use super::stiffness::{coupled, driven, dynamic_stiffness};
 use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::model::{CoordinateKind, Quantity, Reference, Signal};
 
@@ -162,6 +162,14 @@ impl At<'_> {
                 system.push(Drive::Inside(link), *c, &own.scaled(Complex::real(-1.0)));
             }
         }
+        let coupled = self.coupled(frequency);
+        for (link, other, stiffness) in &coupled {
+            for (c, own) in &stretches[*link] {
+                let pull = own.times(stiffness);
+                let others = stretches[*other].iter();
+                others.for_each(|(moved, coefficient)| system.add(*c, *moved, &pull.times(coefficient)));
+            }
+        }
         for (index, force) in self.scratch.model.forces.iter().enumerate() {
             for &(c, share) in &force.on {
                 system.push(Drive::Force(index), usize::from(c.0), &self.dual(share));
@@ -182,6 +190,10 @@ impl At<'_> {
             for (link, _, force) in driven.iter().filter(|(_, input, _)| drive == Drive::Force(*input)) {
                 excited.forces[*link] = excited.forces[*link].plus(force);
             }
+            for (link, other, stiffness) in &coupled {
+                let force = stiffness.times(&excited.stretches[*other]);
+                excited.forces[*link] = excited.forces[*link].plus(&force);
+            }
             (drive, excited)
         };
         system.solve().into_iter().map(excited).collect()
@@ -194,6 +206,18 @@ impl At<'_> {
             let forces = driven(slopes, &|e| self.dual(e), frequency).into_iter();
             forces
                 .map(move |(input, force)| (link, usize::from(input), force))
+                .collect::<Vec<_>>()
+        };
+        laws.flat_map(of).collect()
+    }
+
+    /// What stretches of other links do in laws: the link, the other, the force of the link for a unit of that stretch.
+    fn coupled(&self, frequency: f64) -> Vec<(usize, usize, Dual)> {
+        let laws = self.scratch.slopes.iter().enumerate();
+        let of = |(link, slopes): (usize, &Slopes)| {
+            let forces = coupled(slopes, &|e| self.dual(e), frequency).into_iter();
+            forces
+                .map(move |(other, force)| (link, other, force))
                 .collect::<Vec<_>>()
         };
         laws.flat_map(of).collect()

@@ -2,7 +2,7 @@
 //! derivatives by the parameters.
 
 use super::dual::{Complex, Dual, solve};
-use super::slopes::Slopes;
+use super::slopes::{OtherSlopes, Slopes};
 use crate::expr::Expr;
 
 /// `stiffness + iω damping - ω² inertance + Σ ∂f/∂z (iω - ∂ż/∂z)⁻¹ (∂ż/∂s + iω ∂ż/∂v)`
@@ -26,6 +26,18 @@ pub fn driven(slopes: &Slopes, dual: &dyn Fn(Expr) -> Dual, frequency: f64) -> V
         (input, force)
     };
     slopes.inputs.iter().enumerate().map(response).collect()
+}
+
+/// The force for a unit stretch of each other link whose motion the law uses.
+pub fn coupled(slopes: &Slopes, dual: &dyn Fn(Expr) -> Dual, frequency: f64) -> Vec<(usize, Dual)> {
+    let rate = Complex::imaginary(frequency);
+    let by = |stretch: Expr, rate_of: Expr| dual(stretch).plus(&dual(rate_of).scaled(rate));
+    let response = |other: &OtherSlopes| {
+        let drive = other.inner.iter().map(|&[stretch, rate]| by(stretch, rate)).collect();
+        let force = with_states(slopes, dual, frequency, by(other.stiffness, other.damping), drive);
+        (usize::from(other.link.0), force)
+    };
+    slopes.others.iter().map(response).collect()
 }
 
 /// A force with what the inner states add to it when something drives their rates.

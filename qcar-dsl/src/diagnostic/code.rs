@@ -210,6 +210,8 @@ codes! {
     DuplicateLink = "duplicate_link",
     /// A prescribed motion that no link touches.
     MotionNotUsed = "motion_not_used",
+    /// A law of several stretches at a massless node.
+    CoupledAtNode = "coupled_at_node",
     /// A force input that acts on nothing.
     ForceNotUsed = "force_not_used",
     /// A motion of a massless node that would need the rate of a force input.

@@ -145,6 +145,37 @@ pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnosti
         .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or `active;` beside it, where it is meant to give energy")
 }
 
+/// Links whose laws use each other, and that together push along with the motion.
+pub fn links_give_energy(links: &Named, span: Span) -> Diagnostic {
+    let message = format!("the laws of {} together give energy", names(links));
+    Diagnostic::error(Code::LawGivesEnergy, message)
+        .label(span, "pushes along with the motion of the others")
+        .hint("write forces that resist the rates together; or `active;` beside one of them, where they are meant to give energy")
+}
+
+/// Two links whose elastic forces have no common potential.
+pub fn no_potential(links: &Named) -> Diagnostic {
+    let message = format!(
+        "the laws of {} give energy along a closed path of their stretches",
+        names(links)
+    );
+    let diagnostic = Diagnostic::error(Code::LawGivesEnergy, message);
+    label_all(diagnostic, links, "pulls otherwise with the other's stretch than the other with this one's")
+        .hint("write both forces as slopes of one energy, ∂E/∂s of each stretch; or `active;` beside one of them, where it is meant to give energy")
+}
+
+/// A law of several stretches at a massless node.
+pub fn coupled_at_node(link: (Span, &str), node: (Span, &str)) -> Diagnostic {
+    let message = format!(
+        "link `{}` uses the stretch of another link, and ends at the massless node `{}`",
+        link.1, node.1
+    );
+    Diagnostic::error(Code::CoupledAtNode, message)
+        .label(link.0, "the balance of the node would need both stretches at once")
+        .label(node.0, "has no mass")
+        .hint(format!("write `mass {} = …;` with the mass of the real part", node.1))
+}
+
 /// Two links that are one.
 pub fn duplicate_link((span, first_span): (Span, Span), name: &str, first: &str, kind: &str) -> Diagnostic {
     let message = format!("link `{name}` repeats the {kind} of link `{first}`");

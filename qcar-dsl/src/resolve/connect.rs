@@ -99,56 +99,61 @@ impl Resolver<'_> {
         })
     }
 
-    /// Links with their laws.
+    /// Links with their laws: first all stretches, since a law may use those of other links.
     pub fn links(&mut self, placed: &[Placed]) {
+        let mut laws = Vec::new();
         for (direction, statement) in placed {
             let Statement::Link(link) = statement else { continue };
-            let thing = match self.link(link, direction, statement) {
-                Ok(resolved) => {
-                    self.model.links.push(resolved);
-                    Thing::Link(LinkId(self.model.links.len() as u16 - 1))
+            let id = LinkId(self.model.links.len() as u16);
+            let thing = match self.stretch(link, direction) {
+                Ok((stretch, unit)) => {
+                    self.model.links.push(Link {
+                        name: link.name.text.clone(),
+                        direction: Direction(direction.to_string()),
+                        stretch,
+                        unit,
+                        law: Law::default(),
+                        rolling: None,
+                        doc: link.doc.clone(),
+                        declared: declared(&link.name, statement),
+                    });
+                    Thing::Link(id)
                 }
-                Err(_) => Thing::Broken,
+                Err(Reported) => Thing::Broken,
             };
+            let stretched = matches!(thing, Thing::Link(_)).then_some(id);
             self.declare_thing(&link.name, direction, thing);
+            laws.push((*direction, link, stretched));
+        }
+        for (direction, link, stretched) in laws {
+            // Mistakes of a law are reported by the callees.
+            let _ = match stretched {
+                Some(id) => self.law_of_link(link, direction, id),
+                None => self.law_of_unknown(&link.body, direction).map(drop),
+            };
         }
     }
 
-    fn link(&mut self, link: &syntax::Link, direction: &str, statement: &Statement) -> Known<Link> {
-        let id = LinkId(self.model.links.len() as u16);
-        let stretch = self.stretch(link, direction);
-        let law = match &stretch {
-            Ok((_, unit)) => self.law(&link.body, direction, id, *unit),
-            Err(Reported) => self.law_of_unknown(&link.body, direction, id),
-        };
-        let ((stretch, unit), (law, rolling)) = (stretch?, law?);
+    fn law_of_link(&mut self, link: &syntax::Link, direction: &str, id: LinkId) -> Known<()> {
+        let unit = self.model.links[usize::from(id.0)].unit;
+        let (law, rolling) = self.law(&link.body, direction, id, unit)?;
         if law.terms.is_empty() {
             return Err(self.report(mistakes::empty_law(link.name.span, &link.name.text)));
         }
         let is_road = |coordinate: usize| self.model.coordinates[coordinate].kind == CoordinateKind::Road;
-        let on_road = stretch.iter().any(|(coordinate, _)| is_road(usize::from(coordinate.0)));
+        let mut stretch = self.model.links[usize::from(id.0)].stretch.iter();
+        let on_road = stretch.any(|(coordinate, _)| is_road(usize::from(coordinate.0)));
         if let Some(span) = rolling_block(&link.body).filter(|_| !on_road) {
             return Err(self.report(mistakes::rolling_without_road(span, &link.name.text)));
         }
-        Ok(Link {
-            name: link.name.text.clone(),
-            direction: Direction(direction.to_string()),
-            stretch,
-            unit,
-            law,
-            rolling,
-            doc: link.doc.clone(),
-            declared: declared(&link.name, statement),
-        })
+        let resolved = &mut self.model.links[usize::from(id.0)];
+        (resolved.law, resolved.rolling) = (law, rolling);
+        Ok(())
     }
 
     /// The law of a stretch that is mistaken: as that of a length, unless its units are right for an angle alone.
-    fn law_of_unknown(
-        &mut self,
-        body: &[LawStatement],
-        direction: &str,
-        id: LinkId,
-    ) -> Known<(Law, Option<Vec<Term>>)> {
+    fn law_of_unknown(&mut self, body: &[LawStatement], direction: &str) -> Known<(Law, Option<Vec<Term>>)> {
+        let id = LinkId(self.model.links.len() as u16);
         let before = self.found.len();
         let law = self.law(body, direction, id, Unit::METER);
         let of_length = self.found.split_off(before);

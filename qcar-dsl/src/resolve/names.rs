@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, names as mistakes};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::source::Span;
 use crate::syntax::{Dotted, Name};
+use crate::units::Unit;
 
 /// What a name without direction means.
 #[derive(Clone, Copy, Debug)]
@@ -161,6 +162,9 @@ impl Resolver<'_> {
         if let Some(input) = self.input(name, locals) {
             return Ok(input);
         }
+        if let Some(motion) = self.motion_of_link(name, locals) {
+            return motion;
+        }
         let [single] = name.names.as_slice() else {
             return Err(self.no_value(name, locals));
         };
@@ -200,6 +204,28 @@ impl Resolver<'_> {
             expr: self.model.graph.symbol(Symbol::Force(place)),
             unit: Some(self.model.forces[usize::from(place)].unit),
         })
+    }
+
+    /// `x.bushing.stretch` or `x.bushing.rate`, in a law that sees the links of the model.
+    fn motion_of_link(&mut self, name: &Dotted, locals: &Locals) -> Option<Known<Value>> {
+        let home = locals.home.as_ref().filter(|_| !locals.closed)?;
+        let (quantity, owner) = name.names.split_last()?;
+        let owner = Dotted { names: owner.to_vec() };
+        let (_, Thing::Link(id)) = self.names.find(&owner, home)? else {
+            return None;
+        };
+        let unit = self.model.links[usize::from(id.0)].unit;
+        let (symbol, unit) = match quantity.text.as_str() {
+            "stretch" => (Symbol::Stretch(id), unit),
+            "rate" => (Symbol::Rate(id), unit.per(Unit::SECOND)),
+            other => {
+                let known = ["stretch", "rate"];
+                let mistake = mistakes::unknown_quantity(quantity.span, other, &owner.to_string(), &known);
+                return Some(Err(self.report(mistake)));
+            }
+        };
+        let expr = self.model.graph.symbol(symbol);
+        Some(Ok(Value { expr, unit: Some(unit) }))
     }
 
     /// Says why a name has no value here.
