@@ -7,7 +7,7 @@ use clap::Args;
 use nalgebra::Complex;
 use qcar_dsl::response::Wanted;
 use qcar_runtime::error::InputError;
-use qcar_runtime::model::{About, Channel, Model, Signal};
+use qcar_runtime::model::{About, Channel, Input, InputKind, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::{Ratio, between};
@@ -129,6 +129,8 @@ struct FrequencyResponse {
 /// The ratio of a channel's two signals, and its derivatives by every parameter.
 #[derive(Serialize)]
 struct ChannelResponse {
+    /// Of the ratio.
+    unit: String,
     /// Hz.
     frequency: Vec<f64>,
     re: Vec<f64>,
@@ -190,6 +192,7 @@ impl<'a> Excited<'a> {
         )
         .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
         let response = ChannelResponse {
+            unit: unit(about, channel),
             frequency: self.frequency.into(),
             re: ratio.value.iter().map(|value| value.re).collect(),
             im: ratio.value.iter().map(|value| value.im).collect(),
@@ -240,13 +243,79 @@ pub(crate) fn excitation(about: &About, channel: &Channel) -> Result<usize, Fail
     })
 }
 
+/// The heading of decibels, which are of a plain number or of so many units.
+fn decibels(name: &str, unit: &str) -> String {
+    match unit {
+        "1" => format!("{name}_dB"),
+        unit => format!("{name}_dB({unit})"),
+    }
+}
+
+/// The unit of a channel, such as `(m/s^2)/N`.
+fn unit(about: &About, channel: &Channel) -> String {
+    let [above, below] = [&channel.numerator, &channel.denominator].map(|signal| unit_of(about, signal));
+    let grouped = |unit: String| {
+        if unit.contains(['/', ' ']) {
+            format!("({unit})")
+        } else {
+            unit
+        }
+    };
+    match (above, below) {
+        (above, below) if above == below => "1".to_string(),
+        (above, below) if below == "1" => above,
+        (above, below) => format!("{}/{}", grouped(above), grouped(below)),
+    }
+}
+
+/// The unit of a signal: that of its output or input, or what follows from another derivative of the same motion.
+fn unit_of(about: &About, signal: &Signal) -> String {
+    let here = |other: &Signal| other.location == signal.location && other.axis == signal.axis;
+    let outputs = about.outputs.iter().filter(|output| here(&output.signal));
+    let inputs = about
+        .inputs
+        .iter()
+        .filter(|input| driven(about, input).as_ref().is_some_and(here));
+    let known = outputs.map(|output| (output.signal.kind, &output.unit));
+    let known = known.chain(inputs.filter_map(|input| Some((driven(about, input)?.kind, &input.unit))));
+    let known: Vec<_> = known.collect();
+    if let Some((_, unit)) = known.iter().find(|(kind, _)| *kind == signal.kind) {
+        return unit.to_string();
+    }
+    let turns = known.iter().any(|(_, unit)| !unit.starts_with('m'));
+    let unit = match (signal.kind, turns) {
+        (SignalKind::Motion(Quantity::Position), false) => "m",
+        (SignalKind::Motion(Quantity::Velocity), false) => "m/s",
+        (SignalKind::Motion(Quantity::Acceleration), false) => "m/s^2",
+        (SignalKind::Motion(Quantity::Velocity), true) => "1/s",
+        (SignalKind::Motion(Quantity::Acceleration), true) => "1/s^2",
+        _ => "1",
+    };
+    unit.to_string()
+}
+
+/// What an input is as a signal.
+fn driven(about: &About, input: &Input) -> Option<Signal> {
+    let (place, kind) = match input.kind {
+        InputKind::Motion(place, quantity) => (place, SignalKind::Motion(quantity)),
+        InputKind::Force(place) => (place, SignalKind::Force),
+        InputKind::Gravity => return None,
+    };
+    let excitation = about.excitations.get(usize::from(place))?;
+    Some(Signal {
+        location: excitation.name.clone(),
+        axis: excitation.axis.clone(),
+        kind,
+    })
+}
+
 fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
     let mut headings = vec!["frequency_Hz".to_string()];
     headings.extend(
         of.channels
             .0
             .iter()
-            .flat_map(|(name, _)| [format!("{name}_dB"), format!("{name}_deg")]),
+            .flat_map(|(name, channel)| [decibels(name, &channel.unit), format!("{name}_deg")]),
     );
     let mut table = Table::with_headings(headings);
     for (line, frequency) in frequency.iter().enumerate() {

@@ -217,13 +217,3 @@ pub fn default_outside_range(span: Span, name: &str) -> Diagnostic {
     .label(span, "not between the bounds")
     .hint("write a default between the bounds, or wider bounds")
 }
-
-/// A ratio of unlike things in a channel.
-pub fn channel_units_differ(span: Span, above: &str, below: &str) -> Diagnostic {
-    Diagnostic::error(
-        Code::ChannelUnitsDiffer,
-        format!("a channel compares like with like, not {above} with {below}"),
-    )
-    .label(span, format!("{above} over {below}"))
-    .hint("write two accelerations, two positions or two forces, such as `body.acceleration / pad.acceleration`")
-}

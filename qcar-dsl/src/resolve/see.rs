@@ -4,7 +4,7 @@ use super::declare::declared;
 use super::law::force_unit;
 use super::names::Thing;
 use super::{Known, Placed, Reported, Resolver};
-use crate::diagnostic::{names, units as mistakes};
+use crate::diagnostic::names;
 use crate::expr::CoordinateId;
 use crate::model::{Channel, CoordinateKind, Declared, Output, Quantity, Reference, Signal};
 use crate::syntax::{Dotted, Name, Statement};
@@ -110,14 +110,6 @@ impl Resolver<'_> {
             let (Ok(above), Ok(below)) = (above, below) else {
                 continue;
             };
-            if let Below::Signal(below) = &below
-                && let (Some(a), Some(b)) = (quantity(&above.signal), quantity(&below.signal))
-                && a != b
-            {
-                let span = numerator.span().join(denominator.span());
-                let mistake = mistakes::channel_units_differ(span, quantity_name(a), quantity_name(b));
-                self.report(mistake);
-            }
             let declared = declared(name, statement);
             let channel = Channel {
                 name: name.text.clone(),
@@ -245,21 +237,5 @@ fn motion_unit(angle: bool, quantity: Quantity) -> Unit {
         Quantity::Position => position,
         Quantity::Velocity => position.per(Unit::SECOND),
         Quantity::Acceleration => position.per(Unit::SECOND).per(Unit::SECOND),
-    }
-}
-
-/// Which derivative of a motion a signal is.
-fn quantity(signal: &Signal) -> Option<Quantity> {
-    match *signal {
-        Signal::Motion(_, quantity) | Signal::Point(_, quantity) => Some(quantity),
-        Signal::LinkForce(_) | Signal::LinkStretch(_) => None,
-    }
-}
-
-fn quantity_name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Position => "position",
-        Quantity::Velocity => "velocity",
-        Quantity::Acceleration => "acceleration",
     }
 }
