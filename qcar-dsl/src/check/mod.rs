@@ -21,7 +21,6 @@ mod stiffness;
 // The model about a point.
 mod response;
 // The rules.
-mod coupled;
 mod duplicates;
 mod held;
 mod inertia;
@@ -30,6 +29,8 @@ mod nodes;
 mod passive;
 mod pushed;
 mod visible;
+// The rule of passive links, for several that use each other.
+mod coupled;
 
 use slopes::{Slopes, slopes};
 pub use visible::Unseen;
