@@ -6,6 +6,7 @@ use std::path::Path;
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::resolve::options::Choices;
+use qcar_dsl::response::Wanted;
 
 use crate::catalogue;
 use crate::completion;
@@ -56,7 +57,7 @@ fn verdict(name: &str) -> Result<(bool, String), Failure> {
     if Path::new(name).is_dir() {
         return campaign::verdict(Path::new(name));
     }
-    Ok(match catalogue::compile(name)? {
+    Ok(match catalogue::compile(name, Wanted::Values)? {
         Err(report) => (false, format!("{name}: refused\n{report}\n")),
         Ok(compiled) => match compiled.model.warnings() {
             warnings if warnings.diagnostics.is_empty() => (true, format!("{name}: ok\n")),

@@ -1,6 +1,7 @@
 //! `qcar matrices`: the state-space matrices and their parameter Jacobians.
 
 use clap::Args;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
@@ -30,7 +31,7 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let model = catalogue::load(&arguments.model.model)?;
+    let model = catalogue::load_wanted(&arguments.model.model, Wanted::Values)?;
     let about = model.about();
     check_axis(about, arguments.axis.as_deref())?;
     let values = parameters::resolve(about, arguments.model.params.as_deref(), &arguments.model.set)?;

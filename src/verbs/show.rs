@@ -2,6 +2,7 @@
 
 use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::response::Wanted;
 use qcar_dsl::show;
 
 use crate::catalogue;
@@ -45,8 +46,21 @@ enum Stage {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     match &arguments.model {
-        Some(model) => Ok(show::show(&catalogue::compiled(model)?, arguments.stage.into())),
+        Some(model) => {
+            let compiled = catalogue::compiled_wanted(model, arguments.stage.wants())?;
+            Ok(show::show(&compiled, arguments.stage.into()))
+        }
         None => list(),
+    }
+}
+
+impl Stage {
+    /// The generated module alone shows derivatives of responses.
+    fn wants(self) -> Wanted {
+        match self {
+            Stage::Rust => Wanted::Jacobian,
+            _ => Wanted::Values,
+        }
     }
 }
 
