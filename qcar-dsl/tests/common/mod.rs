@@ -91,6 +91,7 @@ impl Builder {
             default: Default::None,
             range: None,
             known: false,
+            clock: false,
             declared: declared(),
         });
         self.model.graph.symbol(Symbol::Parameter(place))
