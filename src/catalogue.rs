@@ -5,10 +5,11 @@ use std::path::Path;
 
 use models::Shipped;
 use qcar_dsl::check::Unseen;
-use qcar_dsl::compile::compile as compile_text;
+use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
-use qcar_dsl::disk::compile_file;
+use qcar_dsl::disk::compile_file_wanted;
 use qcar_dsl::front::{Member, check_members};
+use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
 use qcar_runtime::campaign::Campaign;
@@ -82,7 +83,15 @@ fn listed() -> String {
 /// # Errors
 /// As [`compiled`].
 pub fn load(model: &str) -> Result<Loaded, Failure> {
-    let compiled = compiled(model)?;
+    load_wanted(model, Wanted::Jacobian)
+}
+
+/// The same with what is wanted of the responses; a shipped model has all of them.
+///
+/// # Errors
+/// As [`compiled`].
+pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
+    let compiled = compiled_wanted(model, wanted)?;
     let program = match models::find(model) {
         Some(shipped) => Program::Shipped(shipped.model),
         None => Program::File(Box::new(Evaluated::new(&compiled))),
@@ -135,18 +144,26 @@ pub fn named_by(campaign: &Campaign, wanted: Option<&str>) -> Result<String, Fai
 /// # Errors
 /// As [`compile`], and a model that the compiler refuses.
 pub fn compiled(model: &str) -> Result<Compiled, Failure> {
-    compile(model)?.map_err(|report| Failure::Input(report.to_string()))
+    compiled_wanted(model, Wanted::Jacobian)
 }
 
-/// Compiles a shipped model or a file, or gives the compiler's report.
+/// The same with what is wanted of the responses.
+///
+/// # Errors
+/// As [`compiled`].
+pub fn compiled_wanted(model: &str, wanted: Wanted) -> Result<Compiled, Failure> {
+    compile(model, wanted)?.map_err(|report| Failure::Input(report.to_string()))
+}
+
+/// Compiles a shipped model or a file, with what is wanted of the responses, or gives the compiler's report.
 ///
 /// # Errors
 /// A name that is not shipped and is no file, or a file that cannot be read.
-pub fn compile(model: &str) -> Result<Result<Compiled, Report>, Failure> {
+pub fn compile(model: &str, wanted: Wanted) -> Result<Result<Compiled, Report>, Failure> {
     match models::find(model) {
-        Some(shipped) => Ok(compile_shipped(shipped)),
+        Some(shipped) => Ok(compile_shipped(shipped, wanted)),
         None if looks_like_a_path(model) => {
-            let from_disk = compile_file(Path::new(""), model).map_err(|reason| {
+            let from_disk = compile_file_wanted(Path::new(""), model, wanted).map_err(|reason| {
                 let remedy = "correct the path, put the file there, or save it as UTF-8";
                 Problem::new(Path::new(model), Place::File, reason, "a model file", remedy)
             })?;
@@ -172,19 +189,20 @@ pub fn members(file: &str) -> Result<Vec<Member>, Failure> {
     .map_err(|report| Failure::Input(report.to_string()))
 }
 
-fn compile_shipped(shipped: &Shipped) -> Result<Compiled, Report> {
+fn compile_shipped(shipped: &Shipped, wanted: Wanted) -> Result<Compiled, Report> {
     let source = Source {
         name: shipped.file.into(),
         text: shipped.text.into(),
     };
-    compile_text(source, &|_, written| {
+    let family = |_: &str, written: &str| {
         let family = shipped.families.iter().find(|(path, _)| *path == written);
         let (path, text) = family.ok_or("it is not shipped with the model")?;
         Ok(Source {
             name: path.to_string(),
             text: text.to_string(),
         })
-    })
+    };
+    compile_wanted(source, &family, wanted)
 }
 
 /// True for what can be no shipped name.

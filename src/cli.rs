@@ -3,6 +3,8 @@
 use clap::{CommandFactory, Parser, Subcommand};
 
 use crate::failure::Failure;
+use crate::terminal::{self, Color};
+use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
     score, show, simulate, study,
@@ -17,6 +19,20 @@ use crate::verbs::{
 // The same width everywhere, so that help reads in a terminal as it does in the tests.
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
+    /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
+    #[arg(long, global = true, value_name = "UNITS", display_order = 900)]
+    units: Option<Units>,
+    /// When to colour: auto (on a terminal, unless NO_COLOR is set), always or never
+    #[arg(
+        long,
+        global = true,
+        value_name = "WHEN",
+        default_value = "auto",
+        hide_default_value = true,
+        hide_possible_values = true,
+        display_order = 901
+    )]
+    color: Color,
     #[command(subcommand)]
     verb: Verb,
 }
@@ -47,6 +63,10 @@ enum Verb {
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
+        terminal::look(self.color);
+        if let Some(units) = self.units {
+            units::choose(units);
+        }
         match self.verb {
             Verb::New(arguments) => new::run(&arguments),
             Verb::Inspect(arguments) => inspect::run(&arguments),
@@ -66,7 +86,7 @@ impl Cli {
             Verb::Patch(arguments) => patch::run(&arguments),
             Verb::Diff(arguments) => diff::run(&arguments),
             Verb::Export(arguments) => export::run(&arguments),
-            Verb::Completions(arguments) => Ok(completions::run(&arguments, Cli::command())),
+            Verb::Completions(arguments) => completions::run(&arguments, &Cli::command()),
         }
     }
 }

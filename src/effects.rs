@@ -1,5 +1,6 @@
 //! Effects by the name of a shipped one or by the path of a file.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use qcar_dsl::parse::parse_text;
@@ -70,6 +71,17 @@ pub fn of_name(name: &str) -> Option<Result<Patch, Failure>> {
     }
     let text = read_text(Path::new(name)).ok().filter(|_| looks_like_a_path(name))?;
     holds_effect(name, &text).then(|| read(name, &text))
+}
+
+/// The units of the parameters of a shipped effect, by name; none of an effect that is not shipped.
+pub fn units(effect: &str) -> BTreeMap<String, String> {
+    let Some(Ok(patch)) = of_name(effect) else {
+        return BTreeMap::new();
+    };
+    let effect = patch.effect();
+    let all = effect.parameters().into_iter();
+    let all = all.chain(effect.forms.iter().flat_map(|form| form.parameters()));
+    all.map(|own| (own.name.text.clone(), own.unit.to_string())).collect()
 }
 
 fn shipped(name: &str) -> Option<&'static models::ShippedEffect> {

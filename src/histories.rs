@@ -9,11 +9,12 @@ use qcar_signals::mat::write::{Array, v5};
 use qcar_signals::mdf::write::{Channel, Group, v4};
 
 use crate::files::put;
+use crate::units;
 
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// A table: time, and a column for each channel
+    /// A table: time, and a column for each channel, with units in brackets
     Csv,
     /// MAT version 5: a structure with X (time) and Y, each with Name, Unit and Data
     Mat,
@@ -48,13 +49,13 @@ impl History {
         let names: String = self
             .channels
             .iter()
-            .map(|channel| format!(",{}", channel.name))
+            .map(|channel| format!(",{}", units::heading(&channel.name, &channel.unit)))
             .collect();
-        let mut out = format!("time{names}\n");
+        let mut out = format!("{}{names}\n", units::heading("time", "s"));
         for (at, time) in self.time.iter().enumerate() {
-            let _ = write!(out, "{time}");
+            let _ = write!(out, "{}", units::value(*time, "s"));
             for channel in &self.channels {
-                let _ = write!(out, ",{}", channel.samples[at]);
+                let _ = write!(out, ",{}", units::value(channel.samples[at], &channel.unit));
             }
             out.push('\n');
         }

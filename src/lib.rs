@@ -5,6 +5,10 @@
 pub mod failure;
 // Reading and writing.
 pub mod files;
+// How wide a terminal is, and whether it shows colours.
+pub mod terminal;
+// The units in which results are shown.
+pub mod units;
 // Results for people, programs and eyes.
 pub mod table;
 // The same for other programs.
@@ -15,6 +19,8 @@ pub mod figure;
 pub mod histories;
 // And all of it on one page.
 pub mod report;
+// Results as workbooks.
+pub mod spreadsheet;
 // Signs of life meanwhile.
 pub mod progress;
 // What becomes of both when the user stops the work.
@@ -29,6 +35,8 @@ pub mod inertias;
 pub mod catalogue;
 // Effects that a model may miss.
 pub mod effects;
+// Names that a shell completes.
+pub mod completion;
 // How far and how hard the parts of a model move in a campaign.
 pub mod scales;
 // Models with effects in them.

@@ -3,12 +3,15 @@
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::{CommandFactory, Parser};
+use clap_complete::CompleteEnv;
 use qcar::cli::Cli;
 use qcar::failure::Failure;
-use qcar::interruption;
+use qcar::verbs::completions::VARIABLE;
+use qcar::{interruption, terminal};
 
 fn main() -> ExitCode {
+    CompleteEnv::with_factory(Cli::command).var(VARIABLE).complete();
     interruption::listen();
     match Cli::parse().run() {
         Ok(text) => print(&text, 0),
@@ -17,7 +20,7 @@ fn main() -> ExitCode {
             match failure {
                 Failure::Finding(text) => print(&text, status),
                 Failure::Input(text) => {
-                    eprintln!("{}", text.trim_end());
+                    eprintln!("{}", terminal::complaint(text.trim_end()));
                     ExitCode::from(status)
                 }
             }

@@ -9,21 +9,26 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use qcar_runtime::campaign::{self, Campaign, FACTS, dimension};
+use qcar_runtime::campaign::{self, Campaign, Declared, FACTS, dimension, examples};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::roles::{RoleError, Roles};
 use qcar_runtime::spelling;
 
+use crate::failure;
+use crate::units;
 use file::{ParameterFile, numbers};
 use fitted::Answer;
 
-/// `name=value`, as `--set` takes it.
+/// `name=value`, as `--set` takes it; the value may have a unit behind it.
 #[derive(Clone, Debug)]
 pub struct Setting {
     name: String,
+    /// SI.
     value: f64,
+    /// The coherent unit of what was declared.
+    unit: Option<String>,
 }
 
 impl FromStr for Setting {
@@ -32,10 +37,14 @@ impl FromStr for Setting {
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = text.split_once('=').ok_or("expected name=value, such as k_tm=6e5")?;
         let number = value.trim().parse::<f64>().ok().filter(|v| v.is_finite());
-        let value = number.ok_or_else(|| format!("expected a number after `=`, found `{value}`"))?;
+        let quantity = || Declared::quantity(value).map(|(value, unit)| (value, Some(unit.coherent)));
+        let (value, unit) = number.map(|value| (value, None)).or_else(quantity).ok_or_else(|| {
+            format!("expected a number after `=`, and perhaps its unit such as N/mm, found `{value}`")
+        })?;
         Ok(Setting {
             name: name.trim().into(),
             value,
+            unit,
         })
     }
 }
@@ -58,6 +67,7 @@ fn resolved(about: &About, file: ParameterFile, settings: &[Setting]) -> Result<
     let mut given = numbers(&file.parameters);
     given.extend(settings.iter().map(|setting| (setting.name.clone(), setting.value)));
     let mut problems = wrong_units(about, &file);
+    problems.extend(wrong_settings(about, settings));
     problems.extend(unknown_facts(about, &file));
     let resolved = Values::resolve(about, &given, &numbers(&file.vehicle));
     let values = resolved.map_err(|errors| problems.extend(errors.iter().map(|error| problem(error, &file))));
@@ -158,9 +168,13 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
     let all = about.parameters.iter().zip(p);
     let beyond = all.filter_map(|(parameter, &value)| {
         let (low, high) = parameter.range?;
-        let (name, unit, model) = (&parameter.name, &parameter.unit, &about.name);
+        let shown = |value| units::value(value, &parameter.unit);
+        let (name, unit, model) = (&parameter.name, units::name(&parameter.unit), &about.name);
         let sentence = format!(
-            "{name} = {value} {unit} is outside {low} to {high} {unit}, which model {model} takes for plausible"
+            "{name} = {} {unit} is outside {} to {} {unit}, which model {model} takes for plausible",
+            shown(value),
+            shown(low),
+            shown(high)
         );
         (!(low..=high).contains(&value)).then_some(sentence)
     });
@@ -260,6 +274,14 @@ fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
             ..of_file
         };
     }
+    if let Some((workbook, place)) = file.blanks.get(error.name()) {
+        return Problem {
+            file: workbook.clone(),
+            place: place.clone(),
+            remedy: "fill in the cell, with its unit to the right".into(),
+            ..of_file
+        };
+    }
     match error {
         ParameterError::Missing { name, .. } if file.path.as_os_str().is_empty() => Problem {
             file: PathBuf::from("command line"),
@@ -277,15 +299,35 @@ fn problem(error: &ParameterError, file: &ParameterFile) -> Problem {
 
 fn wrong_units(about: &About, file: &ParameterFile) -> Vec<Problem> {
     let declared = about.parameters.iter().filter_map(|parameter| {
-        let stated = file.parameters.get(&*parameter.name)?;
+        let stated = [&file.parameters, &file.vehicle]
+            .into_iter()
+            .find_map(|own| own.get(&*parameter.name))?;
         Some((parameter, stated, stated.unit.as_ref()?))
     });
     let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
     wrong
         .map(|(parameter, stated, unit)| {
-            let (found, expected) = (format!("the unit \"{unit}\""), format!("\"{}\"", parameter.unit));
-            let remedy = "convert the value to that unit and declare it";
+            let (found, expected) = (format!("the unit \"{unit}\""), examples(&parameter.unit));
+            let remedy = "declare the unit in which the value is";
             Problem::new(&stated.file, stated.place.clone(), found, expected, remedy)
+        })
+        .collect()
+}
+
+fn wrong_settings(about: &About, settings: &[Setting]) -> Vec<Problem> {
+    let declared = settings.iter().filter_map(|own| {
+        let parameter = about.parameters.iter().find(|parameter| *parameter.name == own.name)?;
+        Some((parameter, own, own.unit.as_ref()?))
+    });
+    let wrong = declared.filter(|(parameter, _, unit)| dimension(unit) != dimension(&parameter.unit));
+    wrong
+        .map(|(parameter, own, unit)| {
+            let (name, found) = (
+                format!("--set {}", own.name),
+                format!("a value in \"{unit}\" or a multiple of it"),
+            );
+            let remedy = "correct the unit, or leave it out for a value in SI";
+            failure::flag(&name, found, &examples(&parameter.unit), remedy)
         })
         .collect()
 }

@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::units;
+
 // Numbers as a page needs them.
 pub mod rounded;
 
@@ -115,7 +117,7 @@ fn filled(slot: &str, report: Report, title: &str, data: &impl Serialize) -> Str
         "style" => UPLOT[0].to_string() + "\n" + &STYLE.join("\n"),
         "uplot" => UPLOT[1].to_string(),
         "data" => inert(data),
-        "script" => [&SCRIPTS, report.sections()].concat().join("\n"),
+        "script" => [SCRIPTS.join("\n"), units::script(), report.sections().join("\n")].join("\n"),
         other => unreachable!("the template has no slot {other}"),
     }
 }

@@ -1,5 +1,10 @@
 //! Tables and numbers as text for people.
 
+use crate::terminal;
+
+// Tables that are wider than the terminal.
+mod narrow;
+
 /// Rows under a heading, columns aligned: text to the left, numbers to the right.
 pub struct Table {
     rows: Vec<Vec<String>>,
@@ -24,11 +29,18 @@ impl Table {
         self.rows.push(cells);
     }
 
-    /// The text, each line ended.
+    /// The text, each line ended; no wider than the terminal.
     pub fn text(&self) -> String {
+        self.within(terminal::width())
+    }
+
+    fn within(&self, width: Option<usize>) -> String {
         let columns = 0..self.rows[0].len();
         let shapes: Vec<_> = columns.map(|at| (self.width(at), self.is_numeric(at))).collect();
-        self.rows.iter().map(|row| line(row, &shapes)).collect()
+        match width {
+            Some(width) if narrow::total(&shapes) > width => narrow::text(&self.rows, &shapes, width),
+            _ => lines(&self.rows, &shapes, 1),
+        }
     }
 
     fn width(&self, column: usize) -> usize {
@@ -48,12 +60,25 @@ impl Table {
     }
 }
 
-fn line(row: &[String], shapes: &[(usize, bool)]) -> String {
+/// The width of a column, and whether it holds numbers.
+type Shape = (usize, bool);
+
+/// Between two columns.
+const SPACE: &str = "  ";
+
+/// Rows below each other, of which the first `head` are headings.
+fn lines(rows: &[Vec<String>], shapes: &[Shape], head: usize) -> String {
+    let lines = rows.iter().map(|row| line(row, shapes)).enumerate();
+    let styled = lines.map(|(at, line)| if at < head { terminal::heading(&line) } else { line });
+    styled.map(|line| line + "\n").collect()
+}
+
+fn line(row: &[String], shapes: &[Shape]) -> String {
     let cells = row.iter().zip(shapes).map(|(cell, &(width, numeric))| match numeric {
         true => format!("{cell:>width$}"),
         false => format!("{cell:<width$}"),
     });
-    format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    cells.collect::<Vec<_>>().join(SPACE).trim_end().into()
 }
 
 /// A number with so many significant digits, plain where that is short, and without trailing zeros.

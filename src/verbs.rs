@@ -3,7 +3,9 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
 
+use crate::completion;
 use crate::parameters::Setting;
 
 // The verbs themselves.
@@ -49,6 +51,7 @@ pub mod compare;
 #[derive(Args)]
 pub struct ModelArguments {
     /// Name of a shipped model, or path of a model file
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     model: String,
     /// Parameter values: a TOML file with [parameters], or a campaign folder
     #[arg(long, value_name = "FILE")]

@@ -9,6 +9,8 @@ use qcar_runtime::model::{Contact, Model, Points, ResponseMut};
 
 /// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
 mod zoo {
+    qcar_derive::axle_file!("tests/zoo/coupled.axle");
+    qcar_derive::axle_file!("tests/zoo/forces.axle");
     qcar_derive::axle_file!("tests/zoo/laws.axle");
     qcar_derive::axle_file!("tests/zoo/mechanisms.axle");
     qcar_derive::axle_file!("tests/zoo/names.axle");
@@ -23,7 +25,9 @@ fn all() -> Vec<(String, &'static dyn Model)> {
     let shipped = models::all()
         .iter()
         .map(|shipped| (shipped.file.to_string(), shipped.model));
-    let zoo: [(&str, &'static dyn Model); 6] = [
+    let zoo: [(&str, &'static dyn Model); 8] = [
+        ("tests/zoo/coupled.axle", &zoo::coupled::Coupled),
+        ("tests/zoo/forces.axle", &zoo::forces::Forces),
         ("tests/zoo/laws.axle", &zoo::laws::Laws),
         ("tests/zoo/mechanisms.axle", &zoo::mechanisms::Mechanisms),
         ("tests/zoo/names.axle", &zoo::names::Names),

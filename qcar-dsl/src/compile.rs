@@ -6,6 +6,7 @@ use crate::check::Checked;
 use crate::describe::describe;
 use crate::diagnostic::Report;
 use crate::front::{check_text, check_tokens};
+use crate::response::Wanted;
 use crate::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
 use crate::{linear, motion, response};
@@ -15,7 +16,15 @@ use crate::{linear, motion, response};
 /// # Errors
 /// The report of every mistake that is found.
 pub fn compile(source: Source, load: Load) -> Result<Compiled, Report> {
-    check_text(source, load).map(derive)
+    compile_wanted(source, load, Wanted::Jacobian)
+}
+
+/// The same with what is wanted of the responses.
+///
+/// # Errors
+/// As [`compile`].
+pub fn compile_wanted(source: Source, load: Load, wanted: Wanted) -> Result<Compiled, Report> {
+    check_text(source, load).map(|checked| derive_wanted(checked, wanted))
 }
 
 /// Compiles the tokens of an inline macro.
@@ -28,12 +37,17 @@ pub fn compile_tokens(tokens: TokenStream, load: Load) -> Result<Compiled, Token
 
 /// Derives a model's equations, its matrices and its responses, and schedules them.
 pub fn derive(model: Checked) -> Compiled {
+    derive_wanted(model, Wanted::Jacobian)
+}
+
+/// The same with what is wanted of the responses: derivatives are most of the work for a model with many parameters and outputs.
+pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     let mut graph = model.graph.clone();
     let motion = motion::derive(&model, &mut graph);
     let rolling = motion::rolling_tyre(&model).map(|tyre| (motion::derive_rolling(&model, &mut graph, &tyre), tyre));
     let linear = linear::linearise(&model, &motion, &mut graph);
     let responses = if linear.linear {
-        response::responses(&model, &mut graph)
+        response::responses(&model, &mut graph, wanted)
     } else {
         Vec::new()
     };

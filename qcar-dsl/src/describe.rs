@@ -157,11 +157,10 @@ fn input(model: &Checked, sources: &[Source], symbol: Symbol) -> Option<Input> {
     let (name, unit, direction, kind) = match symbol {
         Symbol::Force(i) => {
             let force = &model.forces[i as usize];
-            let c = coordinate(model, force.on);
             (
                 force.name.clone(),
-                effort(c),
-                &c.direction,
+                force.unit,
+                &force.direction,
                 InputKind::Force(place(Source::Force(i))?),
             )
         }
@@ -190,13 +189,6 @@ fn input(model: &Checked, sources: &[Source], symbol: Symbol) -> Option<Input> {
     })
 }
 
-/// N, or N m on an angle.
-fn effort(c: &Coordinate) -> Unit {
-    Unit {
-        sixths: [6, if c.angle { 12 } else { 6 }, -12],
-    }
-}
-
 fn output(model: &Checked, output: &model::Output) -> Output {
     Output {
         name: output.name.clone(),
@@ -217,6 +209,14 @@ fn signal(model: &Checked, signal: &model::Signal) -> Signal {
     match *signal {
         model::Signal::LinkForce(l) => of_link(l, SignalKind::Force),
         model::Signal::LinkStretch(l) => of_link(l, SignalKind::Stretch),
+        model::Signal::Point(place, quantity) => {
+            let point = &model.points[usize::from(place)];
+            Signal {
+                location: point.name.clone(),
+                axis: point.direction.0.clone(),
+                kind: SignalKind::Motion(quantity),
+            }
+        }
         model::Signal::Motion(c, quantity) => {
             let c = coordinate(model, c);
             Signal {
@@ -256,7 +256,7 @@ fn excitation(model: &Checked, source: Source) -> Excitation {
         }
         Source::Force(i) => {
             let force = &model.forces[i as usize];
-            let axis = coordinate(model, force.on).direction.0.clone();
+            let axis = force.direction.0.clone();
             Excitation {
                 name: force.name.clone(),
                 axis,

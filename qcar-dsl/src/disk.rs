@@ -3,8 +3,9 @@
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
-use crate::compile::compile;
+use crate::compile::compile_wanted;
 use crate::diagnostic::Report;
+use crate::response::Wanted;
 use crate::schedule::Compiled;
 use crate::source::Source;
 
@@ -30,9 +31,17 @@ pub struct Read {
 /// # Errors
 /// The reason why the file itself cannot be read.
 pub fn compile_file(folder: &Path, path: &str) -> Result<FromDisk, String> {
+    compile_file_wanted(folder, path, Wanted::Jacobian)
+}
+
+/// The same with what is wanted of the responses.
+///
+/// # Errors
+/// As [`compile_file`].
+pub fn compile_file_wanted(folder: &Path, path: &str, wanted: Wanted) -> Result<FromDisk, String> {
     let files = Files::new(folder);
     let source = files.read(PathBuf::from(path), path)?;
-    let compiled = compile(source, &|asking, written| files.load(asking, written));
+    let compiled = compile_wanted(source, &|asking, written| files.load(asking, written), wanted);
     Ok(FromDisk {
         compiled,
         read: files.finish(),

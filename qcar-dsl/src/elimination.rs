@@ -4,6 +4,7 @@
 //! several the last, since what is excited and seen most comes first in a model.
 //! Zeros are structural: what is not there costs nothing.
 
+use std::cmp::Reverse;
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::expr::{Expr, Graph};
@@ -102,7 +103,8 @@ impl<S: Scalar> Symmetric<S> {
 
     /// The rows and columns of some unknowns, in their order.
     pub fn restricted(&self, unknowns: &[usize]) -> Self {
-        let place = |i| unknowns.iter().position(|&unknown| unknown == i);
+        let places: BTreeMap<usize, usize> = (0..).zip(unknowns).map(|(place, &unknown)| (unknown, place)).collect();
+        let place = |i| places.get(&i).copied();
         let kept = self
             .iter()
             .filter_map(|(i, j, value)| Some((place(i)?, place(j)?, value)));
@@ -153,11 +155,13 @@ struct Step<S> {
 impl<S: Scalar> Factors<S> {
     /// Factors a matrix.
     pub fn of(g: &mut Graph, mut matrix: Symmetric<S>) -> Self {
-        let mut left: BTreeSet<usize> = (0..matrix.size).collect();
+        let mut left = Left::of(&matrix);
         let mut steps = Vec::with_capacity(matrix.size);
-        while let Some(&unknown) = left.iter().rev().min_by_key(|&&k| neighbours(&matrix, &left, k).len()) {
-            left.remove(&unknown);
-            let row = neighbours(&matrix, &left, unknown);
+        while let Some((unknown, neighbours)) = left.take() {
+            let row: Vec<(usize, S)> = neighbours
+                .into_iter()
+                .filter_map(|i| Some((i, matrix.get(i, unknown)?)))
+                .collect();
             let pivot = matrix.get(unknown, unknown).unwrap_or_else(|| S::zero(g));
             let column: Vec<(usize, S)> = row.iter().map(|&(i, a)| (i, a.div(g, pivot))).collect();
             for (n, &(i, l)) in column.iter().enumerate() {
@@ -165,6 +169,7 @@ impl<S: Scalar> Factors<S> {
                     let product = l.mul(g, a);
                     let less = S::zero(g).sub(g, product);
                     matrix.add(g, i, j, less);
+                    left.join(i, j, matrix.get(i, j).is_some());
                 }
             }
             steps.push(Step { unknown, pivot, column });
@@ -219,10 +224,51 @@ impl<S: Scalar> Step<S> {
     }
 }
 
-/// The other unknowns of a row that are still there, with their entries.
-fn neighbours<S: Scalar>(matrix: &Symmetric<S>, left: &BTreeSet<usize>, k: usize) -> Vec<(usize, S)> {
-    left.iter()
-        .filter(|&&i| i != k)
-        .filter_map(|&i| Some((i, matrix.get(i, k)?)))
-        .collect()
+/// The unknowns that are still there, with those that they share an entry with.
+struct Left {
+    neighbours: Vec<BTreeSet<usize>>,
+    /// By how many neighbours they have, of as many the last first.
+    order: BTreeSet<(usize, Reverse<usize>)>,
+}
+
+impl Left {
+    fn of<S: Scalar>(matrix: &Symmetric<S>) -> Self {
+        let mut left = Left {
+            neighbours: vec![BTreeSet::new(); matrix.size],
+            order: (0..matrix.size).map(|unknown| (0, Reverse(unknown))).collect(),
+        };
+        for (i, j, _) in matrix.iter() {
+            left.join(i, j, true);
+        }
+        left
+    }
+
+    /// Takes the unknown with the fewest neighbours out, and gives these.
+    fn take(&mut self) -> Option<(usize, BTreeSet<usize>)> {
+        let (_, Reverse(unknown)) = self.order.pop_first()?;
+        let neighbours = std::mem::take(&mut self.neighbours[unknown]);
+        for &other in &neighbours {
+            self.change(other, |of_other| of_other.remove(&unknown));
+        }
+        Some((unknown, neighbours))
+    }
+
+    /// Two unknowns share an entry, or no longer do.
+    fn join(&mut self, i: usize, j: usize, joined: bool) {
+        for (one, other) in [(i, j), (j, i)].into_iter().filter(|_| i != j) {
+            self.change(one, |of_one| {
+                if joined {
+                    of_one.insert(other)
+                } else {
+                    of_one.remove(&other)
+                }
+            });
+        }
+    }
+
+    fn change(&mut self, unknown: usize, how: impl FnOnce(&mut BTreeSet<usize>) -> bool) {
+        self.order.remove(&(self.neighbours[unknown].len(), Reverse(unknown)));
+        how(&mut self.neighbours[unknown]);
+        self.order.insert((self.neighbours[unknown].len(), Reverse(unknown)));
+    }
 }

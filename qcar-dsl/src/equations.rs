@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Node, Symbol};
 use crate::model::{
-    Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Quantity, Reference, Signal, Term,
+    Channel, Coordinate, CoordinateKind, Direction, Law, Link, Model, Output, Point, Quantity, Reference, Signal, Term,
 };
 
 use crate::notation::{Notation, Summand, Writer};
@@ -27,6 +27,8 @@ pub struct Sheet {
     pub names: Vec<Equation>,
     /// Forces that a tyre has while it rolls.
     pub rolling: Vec<Equation>,
+    /// Where points are that several coordinates move.
+    pub points: Vec<Equation>,
     /// What is seen.
     pub outputs: Vec<Equation>,
     /// Ratios of what is seen.
@@ -37,12 +39,14 @@ impl Sheet {
     /// Sets up the equations of a model.
     pub fn new(model: &Model, notation: Notation) -> Sheet {
         let mut graph = model.graph.clone();
+        let elsewhere = used_elsewhere(model);
         let laws: Vec<LawWritten> = links(model)
-            .map(|link| LawWritten::new(model, &mut graph, link))
+            .map(|link| LawWritten::new(model, &mut graph, &elsewhere, link))
             .collect();
         let balances: Vec<Balance> = moving(model)
             .map(|coordinate| Balance::new(model, &mut graph, &laws, coordinate))
             .collect();
+        let points: Vec<Vec<Summand>> = model.points.iter().map(|point| place(&mut graph, point)).collect();
         let mut writer = Writer::new(model, &graph, notation);
         let named = named_quantities(model);
         named.iter().for_each(|(name, value)| writer.name(*value, name));
@@ -60,6 +64,7 @@ impl Sheet {
             inner: inner_states(model, &writer),
             names: names(&writer, &laws, &named),
             rolling: rolling(&writer, &laws),
+            points: self::points(&writer, &points),
             outputs: outputs(model, &writer),
             channels: channels(model, &writer),
         }
@@ -75,6 +80,7 @@ impl Sheet {
             ("Inner states", self.inner),
             ("where", self.names),
             ("While the tyre rolls", self.rolling),
+            ("Points", self.points),
             ("Outputs", self.outputs),
             ("Channels", self.channels),
         ];
@@ -154,7 +160,7 @@ struct LawWritten {
 }
 
 impl LawWritten {
-    fn new(model: &Model, graph: &mut Graph, id: LinkId) -> LawWritten {
+    fn new(model: &Model, graph: &mut Graph, elsewhere: &BTreeSet<Symbol>, id: LinkId) -> LawWritten {
         let link = link(model, id);
         let short = is_short(graph, link) && !is_seen(model, id);
         let [s, v, a] = match short {
@@ -173,7 +179,9 @@ impl LawWritten {
             let [s, v] = [Symbol::Stretch(id), Symbol::Rate(id)].map(|symbol| graph.symbol(symbol));
             summands(graph, terms, [s, v, a])
         });
-        let [by_stretch, by_rate] = uses(graph, id, &link.law).map(|used| used && !short);
+        let [own_stretch, own_rate] = uses(graph, id, &link.law).map(|used| used && !short);
+        let by_stretch = own_stretch || elsewhere.contains(&Symbol::Stretch(id));
+        let by_rate = own_rate || elsewhere.contains(&Symbol::Rate(id));
         let stretch = by_stretch.then(|| combination(graph, link, Symbol::Position));
         let rate = by_rate.then(|| combination(graph, link, Symbol::Velocity));
         LawWritten {
@@ -221,13 +229,31 @@ fn uses(graph: &Graph, id: LinkId, law: &Law) -> [bool; 2] {
     ]
 }
 
+/// The stretches and rates that laws of other links use.
+fn used_elsewhere(model: &Model) -> BTreeSet<Symbol> {
+    let of_others = |id: LinkId| {
+        let leaves = link(model, id).law.leaves(&model.graph).into_iter();
+        leaves.filter(move |leaf| matches!(*leaf, Symbol::Stretch(other) | Symbol::Rate(other) if other != id))
+    };
+    links(model).flat_map(of_others).collect()
+}
+
 /// The stretch or one of its derivatives, term by term.
 fn combination(graph: &mut Graph, link: &Link, kind: fn(CoordinateId) -> Symbol) -> Vec<Summand> {
+    along(graph, &link.stretch, kind)
+}
+
+/// Where a point is, term by term.
+fn place(graph: &mut Graph, point: &Point) -> Vec<Summand> {
+    along(graph, &point.combination, Symbol::Position)
+}
+
+fn along(graph: &mut Graph, held: &[(CoordinateId, Expr)], kind: fn(CoordinateId) -> Symbol) -> Vec<Summand> {
     let term = |&(coordinate, coefficient): &(CoordinateId, Expr)| {
         let motion = graph.symbol(kind(coordinate));
         Summand::signed(graph, false, coefficient, &[motion])
     };
-    let mut terms: Vec<Summand> = link.stretch.iter().map(term).collect();
+    let mut terms: Vec<Summand> = held.iter().map(term).collect();
     terms.sort_by_key(|term| term.negative);
     terms
 }
@@ -308,9 +334,10 @@ impl Balance {
             left = vec![inertia, graph.symbol(Symbol::Acceleration(id))];
             right.extend(weight(model, graph, id, inertia));
         }
-        for (place, _) in model.forces.iter().enumerate().filter(|(_, force)| force.on == id) {
-            let force = graph.symbol(Symbol::Force(place as u16));
-            right.push(Summand::signed(graph, false, force, &[]));
+        for (place, force) in model.forces.iter().enumerate() {
+            let own = graph.symbol(Symbol::Force(place as u16));
+            let shares = force.on.iter().filter(|(pushed, _)| *pushed == id);
+            right.extend(shares.map(|&(_, coefficient)| Summand::signed(graph, false, coefficient, &[own])));
         }
         Balance {
             coordinate: id,
@@ -385,6 +412,14 @@ fn rolling(writer: &Writer, laws: &[LawWritten]) -> Vec<Equation> {
     laws.iter().filter_map(force).collect()
 }
 
+fn points(writer: &Writer, points: &[Vec<Summand>]) -> Vec<Equation> {
+    let written = |(place, terms): (u16, &Vec<Summand>)| Equation {
+        left: writer.of_point(place, Quantity::Position),
+        right: writer.sum(terms),
+    };
+    (0..).zip(points).map(written).collect()
+}
+
 fn outputs(model: &Model, writer: &Writer) -> Vec<Equation> {
     let written = |output: &Output| Equation {
         left: writer.identifier(&output.name),
@@ -413,9 +448,8 @@ fn reference(writer: &Writer, reference: &Reference) -> String {
 
 fn signal(writer: &Writer, signal: &Signal) -> String {
     match *signal {
-        Signal::Motion(c, Quantity::Position) => writer.symbol(Symbol::Position(c)),
-        Signal::Motion(c, Quantity::Velocity) => writer.symbol(Symbol::Velocity(c)),
-        Signal::Motion(c, Quantity::Acceleration) => writer.symbol(Symbol::Acceleration(c)),
+        Signal::Motion(c, quantity) => writer.symbol(quantity.of(c)),
+        Signal::Point(place, quantity) => writer.of_point(place, quantity),
         Signal::LinkForce(l) => writer.of_link("F", l),
         Signal::LinkStretch(l) => writer.of_link("s", l),
     }

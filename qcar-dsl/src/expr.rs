@@ -123,6 +123,11 @@ pub struct Graph {
 }
 
 impl Graph {
+    /// How many expressions there are: the work that it took to derive them.
+    pub fn size(&self) -> usize {
+        self.nodes.len()
+    }
+
     /// The node behind a name.
     pub fn node(&self, e: Expr) -> Node {
         self.nodes[e.0 as usize]

@@ -7,7 +7,9 @@
 //! `f(s, v)`, positive in tension (`k s + c v` for a spring and damper). A coordinate `q` of the stretch receives
 //! the generalised force `-(∂s/∂q) f` (virtual work).
 
-use crate::expr::{CoordinateId, Expr, Graph, LinkId};
+use std::collections::BTreeSet;
+
+use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::source::Span;
 use crate::units::Unit;
 
@@ -28,6 +30,8 @@ pub struct Model {
     pub definitions: Vec<Definition>,
     /// Masses, nodes, roads and motions, in the order of the text.
     pub coordinates: Vec<Coordinate>,
+    /// Points that several coordinates move, in the order of the text.
+    pub points: Vec<Point>,
     /// Force inputs, in the order of the text.
     pub forces: Vec<ForceInput>,
     /// At most one for a direction.
@@ -121,6 +125,21 @@ pub struct Coordinate {
     pub declared: Declared,
 }
 
+/// A point that coordinates move together, such as the nose of a body that pitches.
+#[derive(Clone, Debug)]
+pub struct Point {
+    /// The name, unique in its direction.
+    pub name: String,
+    /// z, x, ...
+    pub direction: Direction,
+    /// Coordinates with their coefficients (functions of parameters only), each coordinate once.
+    pub combination: Vec<(CoordinateId, Expr)>,
+    /// True for an angle, false for a position.
+    pub angle: bool,
+    /// Where.
+    pub declared: Declared,
+}
+
 /// What moves a coordinate.
 #[derive(Clone, Copy, PartialEq, Debug)]
 pub enum CoordinateKind {
@@ -134,13 +153,19 @@ pub enum CoordinateKind {
     Motion,
 }
 
-/// An input that pushes a coordinate.
+/// An input that pushes a point, or two points apart.
 #[derive(Clone, Debug)]
 pub struct ForceInput {
     /// The name, unique in its direction.
     pub name: String,
-    /// What it pushes, in its positive direction.
-    pub on: CoordinateId,
+    /// The direction that its excitation counts to.
+    pub direction: Direction,
+    /// What it makes grow: coordinates with their coefficients (functions of parameters only), each coordinate once.
+    /// A coordinate `q` receives `∂on/∂q` times the force (virtual work), so that of a difference each end gets its own
+    /// sign. Empty for an input that acts through laws alone.
+    pub on: Vec<(CoordinateId, Expr)>,
+    /// N, or N m where it turns.
+    pub unit: Unit,
     /// Where.
     pub declared: Declared,
 }
@@ -179,12 +204,43 @@ pub struct Link {
 }
 
 /// The constitutive law of a link: the sum of its terms.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Law {
     /// In the order of the text, elements expanded.
     pub terms: Vec<Term>,
     /// Inner states of all terms, in the order of the text.
     pub inner: Vec<Inner>,
+    /// It may give energy: the text says `active`.
+    pub active: bool,
+}
+
+impl Law {
+    /// The other links whose stretch or rate the terms and the rates use.
+    pub fn other_links(&self, graph: &Graph, own: LinkId) -> BTreeSet<LinkId> {
+        let link = |leaf| match leaf {
+            Symbol::Stretch(link) | Symbol::Rate(link) => Some(link).filter(|link| *link != own),
+            _ => None,
+        };
+        self.leaves(graph).into_iter().filter_map(link).collect()
+    }
+
+    /// The force inputs that the terms and the rates use, by their places in `Model::forces`.
+    pub fn force_inputs(&self, graph: &Graph) -> Vec<u16> {
+        let input = |leaf| match leaf {
+            Symbol::Force(place) => Some(place),
+            _ => None,
+        };
+        self.leaves(graph).into_iter().filter_map(input).collect()
+    }
+
+    /// What the written forces and the rates depend on.
+    pub fn leaves(&self, graph: &Graph) -> BTreeSet<Symbol> {
+        let forces = self.terms.iter().filter_map(|term| match *term {
+            Term::Force(force) => Some(force),
+            _ => None,
+        });
+        graph.symbols(forces.chain(self.inner.iter().map(|inner| inner.rate)))
+    }
 }
 
 /// One summand of a law, a resisting force that is positive in tension.
@@ -196,7 +252,8 @@ pub enum Term {
     Damper(Expr),
     /// `b dv/dt`
     Inerter(Expr),
-    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, and parameters.
+    /// Any expression in `Symbol::Stretch`, `Symbol::Rate`, `Symbol::Inner` of this link, stretches and rates of others, force inputs
+    /// and parameters.
     Force(Expr),
 }
 
@@ -207,7 +264,7 @@ pub struct Inner {
     pub name: String,
     /// Its unit.
     pub unit: Unit,
-    /// Its time derivative, in stretch, rate, inner states and parameters.
+    /// Its time derivative, of what a force may depend on.
     pub rate: Expr,
 }
 
@@ -216,6 +273,8 @@ pub struct Inner {
 pub enum Signal {
     /// The position, velocity or acceleration of a coordinate.
     Motion(CoordinateId, Quantity),
+    /// That of a point, by its place in `Model::points`.
+    Point(u16, Quantity),
     /// The resisting force of a link, positive in tension.
     LinkForce(LinkId),
     /// The stretch of a link.
@@ -229,6 +288,17 @@ pub enum Quantity {
     Position,
     Velocity,
     Acceleration,
+}
+
+impl Quantity {
+    /// The symbol of a coordinate's motion.
+    pub fn of(self, c: CoordinateId) -> Symbol {
+        match self {
+            Quantity::Position => Symbol::Position(c),
+            Quantity::Velocity => Symbol::Velocity(c),
+            Quantity::Acceleration => Symbol::Acceleration(c),
+        }
+    }
 }
 
 /// An output of the model.

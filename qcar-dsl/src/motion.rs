@@ -19,7 +19,7 @@ use crate::check::Checked;
 use crate::combination::combine;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Substitution, Symbol};
 use crate::law::{self, Law};
-use crate::model::{CoordinateKind, Direction, Quantity, Signal};
+use crate::model::{CoordinateKind, Direction, Signal};
 
 pub use tyre::{RollingTyre, rolling_tyre};
 
@@ -90,6 +90,8 @@ struct Derivation<'a> {
     g: &'a mut Graph,
     tyre: Option<&'a RollingTyre>,
     laws: Vec<Law>,
+    /// The links that hold each coordinate, with its coefficient in their stretch.
+    held_by: Vec<Vec<(LinkId, Expr)>>,
     roles: Vec<Role>,
     /// Which node a node keeps its offset from, where a group of them has no other damper.
     leaders: BTreeMap<CoordinateId, CoordinateId>,
@@ -115,6 +117,7 @@ impl<'a> Derivation<'a> {
             g,
             tyre,
             laws,
+            held_by: held_by(model),
             roles: Vec::new(),
             leaders: BTreeMap::new(),
             reduced: Vec::new(),
@@ -164,15 +167,10 @@ impl<'a> Derivation<'a> {
     }
 
     /// The acting links that hold a coordinate, with its coefficient in their stretch.
-    fn links_of(&self, c: CoordinateId) -> impl Iterator<Item = (LinkId, Expr)> + use<'a> {
-        let model = self.model;
-        self.acting_links().filter_map(move |l| {
-            let stretch = &model.links[l.0 as usize].stretch;
-            stretch
-                .iter()
-                .find(|&&(other, _)| other == c)
-                .map(|&(_, coefficient)| (l, coefficient))
-        })
+    fn links_of(&self, c: CoordinateId) -> impl Iterator<Item = (LinkId, Expr)> + use<> {
+        let rolling = self.tyre.map(|tyre| tyre.link);
+        let held = self.held_by[c.0 as usize].clone();
+        held.into_iter().filter(move |&(l, _)| Some(l) != rolling)
     }
 
     fn with_role(&self, role: Role) -> Vec<CoordinateId> {
@@ -256,9 +254,13 @@ impl<'a> Derivation<'a> {
 
     fn signal(&mut self, signal: &Signal) -> Expr {
         match *signal {
-            Signal::Motion(c, Quantity::Position) => self.g.symbol(Symbol::Position(c)),
-            Signal::Motion(c, Quantity::Velocity) => self.g.symbol(Symbol::Velocity(c)),
-            Signal::Motion(c, Quantity::Acceleration) => self.g.symbol(Symbol::Acceleration(c)),
+            Signal::Motion(c, quantity) => self.g.symbol(quantity.of(c)),
+            Signal::Point(point, quantity) => {
+                let combination = self.model.points[usize::from(point)].combination.iter();
+                let motions = combination.map(|&(c, coefficient)| (coefficient, self.g.symbol(quantity.of(c))));
+                let motions: Vec<(Expr, Expr)> = motions.collect();
+                combine(self.g, motions)
+            }
             Signal::LinkStretch(l) => self.g.symbol(Symbol::Stretch(l)),
             Signal::LinkForce(l) => {
                 let acceleration = self.along(l, |g, c| Some(g.symbol(Symbol::Acceleration(c))));
@@ -293,6 +295,16 @@ impl<'a> Derivation<'a> {
     }
 }
 
+fn held_by(model: &Checked) -> Vec<Vec<(LinkId, Expr)>> {
+    let mut held_by = vec![Vec::new(); model.coordinates.len()];
+    for (l, link) in (0..).map(LinkId).zip(&model.links) {
+        for &(c, coefficient) in &link.stretch {
+            held_by[c.0 as usize].push((l, coefficient));
+        }
+    }
+    held_by
+}
+
 /// Of each direction its motions (with acceleration where it is used), its forces, its gravity.
 fn inputs(model: &Checked, used: &BTreeSet<Symbol>) -> Vec<Symbol> {
     let mut inputs = Vec::new();
@@ -306,12 +318,8 @@ fn inputs(model: &Checked, used: &BTreeSet<Symbol>) -> Vec<Symbol> {
                 inputs.extend(Some(Symbol::Acceleration(c)).filter(|symbol| used.contains(symbol)));
             }
         }
-        let on = |c: CoordinateId| &model.coordinates[c.0 as usize].direction;
-        let forces = model
-            .forces
-            .iter()
-            .enumerate()
-            .filter(|(_, force)| *on(force.on) == direction);
+        let forces = model.forces.iter().enumerate();
+        let forces = forces.filter(|(_, force)| force.direction == direction);
         inputs.extend(forces.map(|(i, _)| Symbol::Force(i as u16)));
         let gravities = model
             .gravities

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::expr::{CoordinateId, Curve, Expr, Function, Graph, LinkId, Node, Symbol};
-use crate::model::Model;
+use crate::model::{Direction, Model, Quantity};
 
 /// A way of writing mathematics.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -246,11 +246,21 @@ impl<'a> Writer<'a> {
     /// A coordinate or its derivative: `z_body`, `ż_body`, `z̈_body`; an angle has the letter φ.
     fn motion(&self, c: CoordinateId, order: usize) -> String {
         let coordinate = &self.model.coordinates[c.0 as usize];
+        self.moving(coordinate.angle, &coordinate.direction, &coordinate.name, order)
+    }
+
+    /// A motion of a point, by its place in the model.
+    pub fn of_point(&self, place: u16, quantity: Quantity) -> String {
+        let point = &self.model.points[usize::from(place)];
+        self.moving(point.angle, &point.direction, &point.name, quantity as usize)
+    }
+
+    fn moving(&self, angle: bool, direction: &Direction, name: &str, order: usize) -> String {
         let latex = self.notation == Notation::Latex;
-        let letter = match (coordinate.angle, latex) {
+        let letter = match (angle, latex) {
             (true, true) => r"\varphi",
             (true, false) => "φ",
-            _ => &coordinate.direction.0,
+            _ => &direction.0,
         };
         match latex {
             true => {
@@ -259,9 +269,9 @@ impl<'a> Writer<'a> {
                     format!(r"\dot{{{letter}}}"),
                     format!(r"\ddot{{{letter}}}"),
                 ];
-                format!("{}_{{{}}}", dotted[order], upright(&coordinate.name))
+                format!("{}_{{{}}}", dotted[order], upright(name))
             }
-            false => format!("{letter}{}_{}", ["", "\u{307}", "\u{308}"][order], coordinate.name),
+            false => format!("{letter}{}_{}", ["", "\u{307}", "\u{308}"][order], name),
         }
     }
 

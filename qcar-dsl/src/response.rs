@@ -3,17 +3,33 @@
 //! The unknowns are the amplitudes of all coordinates that are not prescribed, Z(ω) = K + jωC - ω²M is symmetric, and
 //! one factorisation gives every response H and, by its adjoint, every parameter derivative. For the dynamic stiffness
 //! κ of a link with stretch s, `∂H(y,u)/∂κ = -H(y,F) H(s,u)`: the response of the output to a pair of forces on the
-//! link's ends, times the stretch that the excitation causes.
+//! link's ends, times the stretch that the excitation causes. A large model with fewer parameters than outputs is solved for the
+//! derivative of all amplitudes by each parameter instead.
+
+// What force inputs push.
+mod load;
+// What a parameter changes.
+mod change;
+// What outputs make of amplitudes.
+mod functional;
+// What moves under which forces.
+mod compliance;
+
+use std::collections::BTreeMap;
 
 use crate::about::Source;
 use crate::check::Checked;
-use crate::combination::combine;
 use crate::complex::Complex;
-use crate::elimination::{Factors, Scalar, Symmetric, outer};
-use crate::expr::{CoordinateId, Differential, Expr, Graph, LinkId, Symbol};
-use crate::model::{CoordinateKind, Quantity, Signal};
+use crate::elimination::{Scalar, Symmetric, outer};
+use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
+use crate::model::CoordinateKind;
 use crate::motion::directions;
 use crate::stiffness::{self, Stiffness};
+
+use change::{Change, LinkChange, change, inertia};
+use compliance::Compliance;
+use functional::{Functional, along};
+use load::{Load, load, through_load};
 
 /// The response of the outputs to one excitation of unit amplitude, nonzeros only.
 #[derive(Clone, Debug)]
@@ -26,9 +42,18 @@ pub struct Response {
     pub jacobian: Vec<(u16, u16, Complex)>,
 }
 
+/// What is wanted of a response.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Wanted {
+    /// Its values alone: no entry of the Jacobian.
+    Values,
+    /// Its derivatives by the parameters, too.
+    Jacobian,
+}
+
 /// The response of a linear model to each of its excitations.
-pub fn responses(model: &Checked, graph: &mut Graph) -> Vec<Response> {
-    let system = System::assemble(model, graph);
+pub fn responses(model: &Checked, graph: &mut Graph, wanted: Wanted) -> Vec<Response> {
+    let system = System::assemble(model, graph, wanted);
     sources(model)
         .into_iter()
         .map(|source| system.respond(graph, source))
@@ -46,11 +71,8 @@ pub fn sources(model: &Checked) -> Vec<Source> {
                 && matches!(coordinate(c).kind, CoordinateKind::Road | CoordinateKind::Motion)
         });
         sources.extend(prescribed.map(Source::Motion));
-        let forces = model
-            .forces
-            .iter()
-            .enumerate()
-            .filter(|(_, force)| coordinate(force.on).direction == direction);
+        let forces = model.forces.iter().enumerate();
+        let forces = forces.filter(|(_, force)| force.direction == direction);
         sources.extend(forces.map(|(i, _)| Source::Force(i as u16)));
     }
     sources
@@ -62,68 +84,65 @@ struct System<'a> {
     links: Vec<Stiffness>,
     /// Over all coordinates, prescribed ones included.
     impedance: Symmetric<Complex>,
-    /// The amplitude of each coordinate for a unit force on each; zero for prescribed ones.
-    compliance: Vec<Vec<Complex>>,
-    /// What changes with each parameter.
+    compliance: Compliance,
+    /// What each force input does to the coordinates.
+    loads: Vec<Load>,
+    /// What changes with each parameter; nothing where no derivative is wanted.
     changes: Vec<Change>,
 }
 
-/// What changes with one parameter.
-struct Change {
-    links: Vec<LinkChange>,
-    inertias: Vec<(usize, Expr)>,
-}
-
-/// How a link changes with a parameter.
-struct LinkChange {
-    link: usize,
-    stiffness: Complex,
-    stretch: Vec<(CoordinateId, Expr)>,
-}
-
-/// An output: a factor times a combination of amplitudes.
-struct Functional {
-    /// (jω)ⁿ or the dynamic stiffness of a link.
-    factor: Complex,
-    combination: Vec<(CoordinateId, Expr)>,
-    /// The link whose stretch the combination is.
-    stretch_of: Option<usize>,
-    /// True where the factor is the dynamic stiffness of that link.
-    is_force: bool,
-}
-
 impl<'a> System<'a> {
-    fn assemble(model: &'a Checked, g: &mut Graph) -> Self {
+    fn assemble(model: &'a Checked, g: &mut Graph, wanted: Wanted) -> Self {
         let links = (0..model.links.len()).map(|l| stiffness::of_link(model, g, LinkId(l as u16)));
         let links: Vec<Stiffness> = links.collect();
         let impedance = impedance(model, g, &links);
-        let compliance = compliance(model, g, &impedance);
-        let changes = (0..model.parameters.len())
-            .map(|p| change(model, g, &links, p as u16))
+        let parameters = match wanted {
+            Wanted::Values => 0,
+            Wanted::Jacobian => model.parameters.len(),
+        };
+        let compliance = Compliance::of(model, g, &impedance, parameters > model.outputs.len());
+        let loads: Vec<Load> = (0..model.forces.len())
+            .map(|i| load(model, g, &links, i as u16))
+            .collect();
+        let changes = (0..parameters)
+            .map(|p| change(model, g, &links, &loads, p as u16))
             .collect();
         System {
             model,
             links,
             impedance,
             compliance,
+            loads,
             changes,
         }
     }
 
     fn respond(&self, g: &mut Graph, source: Source) -> Response {
         let amplitudes = self.amplitudes(g, source);
+        let moved = self.moved_by_parameters(g, source, &amplitudes);
+        let mut scaled = vec![Complex::zero(g); amplitudes.len()];
         let (mut outputs, mut jacobian) = (Vec::new(), Vec::new());
         for (y, output) in self.model.outputs.iter().enumerate() {
-            let functional = self.functional(g, &output.signal);
-            let scaled: Vec<Complex> = amplitudes.iter().map(|a| functional.factor.mul(g, *a)).collect();
+            let functional = Functional::of(self.model, g, &self.links, &output.signal);
+            self.scale(g, &functional, &amplitudes, &mut scaled);
             let value = along(g, &functional.combination, &scaled);
+            let value = match functional.input(&self.links, source) {
+                Some(force) => value.add(g, force),
+                None => value,
+            };
             if value.is_zero(g) {
                 continue;
             }
-            let adjoint = self.adjoint(g, &functional);
+            let adjoint = match self.changes.as_slice() {
+                [] => None,
+                _ => self.compliance.adjoint(g, &functional.combination),
+            };
             for (p, change) in self.changes.iter().enumerate() {
-                let indirect = self.derivative(g, &adjoint, &scaled, change);
-                let direct = functional.derivative(g, &amplitudes, &scaled, change);
+                let indirect = match &adjoint {
+                    Some(adjoint) => self.by_adjoint(g, source, &functional, adjoint, &scaled, change),
+                    None => along(g, &functional.combination, &moved[p]).mul(g, functional.factor),
+                };
+                let direct = functional.derivative(g, source, &amplitudes, &scaled, change);
                 let derivative = indirect.add(g, direct);
                 if !derivative.is_zero(g) {
                     jacobian.push((outputs.len() as u16, p as u16, derivative));
@@ -138,69 +157,86 @@ impl<'a> System<'a> {
         }
     }
 
+    /// The derivatives of all amplitudes by each parameter, where no adjoint gives those of the outputs.
+    fn moved_by_parameters(&self, g: &mut Graph, source: Source, amplitudes: &[Complex]) -> Vec<Vec<Complex>> {
+        let moved = |change| self.moved(g, source, amplitudes, change);
+        match self.compliance.has_adjoints() {
+            true => Vec::new(),
+            false => self.changes.iter().map(moved).collect(),
+        }
+    }
+
+    /// The amplitudes times the factor of an output, as far as they are used: all of them by an adjoint, else those that are
+    /// seen.
+    fn scale(&self, g: &mut Graph, functional: &Functional, amplitudes: &[Complex], scaled: &mut [Complex]) {
+        let mut scale = |g: &mut Graph, c: usize| scaled[c] = functional.factor.mul(g, amplitudes[c]);
+        match self.changes.is_empty() || !self.compliance.has_adjoints() {
+            true => functional.combination.iter().for_each(|(c, _)| scale(g, c.0 as usize)),
+            false => (0..amplitudes.len()).for_each(|c| scale(g, c)),
+        }
+    }
+
     fn amplitudes(&self, g: &mut Graph, source: Source) -> Vec<Complex> {
-        let all = 0..self.compliance.len();
         match source {
-            Source::Force(i) => self.compliance[self.model.forces[i as usize].on.0 as usize].clone(),
+            Source::Force(i) => self.compliance.apply(g, &self.loads[i as usize]),
             Source::Motion(CoordinateId(r)) => {
                 let r = r as usize;
-                let forces: Vec<_> = all
-                    .clone()
-                    .filter_map(|c| Some((c, self.impedance.get(c, r)?)))
-                    .collect();
-                let mut amplitudes = Vec::with_capacity(self.compliance.len());
-                for c in all {
-                    let start = if c == r { Complex::one(g) } else { Complex::zero(g) };
-                    amplitudes.push(forces.iter().fold(start, |sum, &(k, force)| {
-                        let share = self.compliance[c][k].mul(g, force);
-                        sum.sub(g, share)
-                    }));
-                }
-                amplitudes
+                let all = 0..self.model.coordinates.len();
+                let forces: Load = all.filter_map(|c| Some((c, self.impedance.get(c, r)?))).collect();
+                self.compliance.moved_by(g, r, &forces)
             }
         }
     }
 
-    fn functional(&self, g: &mut Graph, signal: &Signal) -> Functional {
-        let stretch = |l: LinkId| self.model.links[l.0 as usize].stretch.clone();
-        let one = Complex::one(g);
-        match *signal {
-            Signal::Motion(c, quantity) => {
-                let combination = vec![(c, one.re)];
-                Functional {
-                    factor: order(g, quantity),
-                    combination,
-                    stretch_of: None,
-                    is_force: false,
-                }
+    /// The derivative of all amplitudes by a parameter: what moves under the forces by which the balance changes.
+    fn moved(&self, g: &mut Graph, source: Source, amplitudes: &[Complex], change: &Change) -> Vec<Complex> {
+        let mut forces = BTreeMap::new();
+        let mut push = |g: &mut Graph, c: usize, force: Complex| {
+            let sum = forces.entry(c).or_insert_with(|| Complex::zero(g));
+            *sum = sum.add(g, force);
+        };
+        for link in &change.links {
+            let stretch = &self.model.links[link.link].stretch;
+            let total = self.links[link.link].total;
+            let pull = along(g, stretch, amplitudes);
+            let turned = along(g, &link.stretch, amplitudes).mul(g, total);
+            let force = pull.mul(g, link.stiffness).add(g, turned).neg(g);
+            for &(c, coefficient) in stretch {
+                let share = force.scale(g, coefficient);
+                push(g, c.0 as usize, share);
             }
-            Signal::LinkStretch(l) => {
-                let stretch_of = Some(l.0 as usize);
-                Functional {
-                    factor: one,
-                    combination: stretch(l),
-                    stretch_of,
-                    is_force: false,
-                }
-            }
-            Signal::LinkForce(l) => {
-                let (factor, stretch_of) = (self.links[l.0 as usize].total, Some(l.0 as usize));
-                Functional {
-                    factor,
-                    combination: stretch(l),
-                    stretch_of,
-                    is_force: true,
-                }
+            let held = total.mul(g, pull).neg(g);
+            for &(c, slope) in &link.stretch {
+                let share = held.scale(g, slope);
+                push(g, c.0 as usize, share);
             }
         }
+        let omega = g.symbol(Symbol::Frequency);
+        let square = g.powi(omega, 2);
+        for &(c, inertia) in &change.inertias {
+            let force = amplitudes[c].scale(g, square).scale(g, inertia);
+            push(g, c, force);
+        }
+        for &(c, force) in change.pushed(source) {
+            push(g, c, force);
+        }
+        let forces: Load = forces.into_iter().filter(|(_, force)| !force.is_zero(g)).collect();
+        self.compliance.apply(g, &forces)
     }
 
-    /// The combination's response to a unit force on each coordinate.
-    fn adjoint(&self, g: &mut Graph, functional: &Functional) -> Vec<Complex> {
-        self.compliance
-            .iter()
-            .map(|row| along(g, &functional.combination, row))
-            .collect()
+    /// How an output changes because the amplitudes do, by its adjoint.
+    fn by_adjoint(
+        &self,
+        g: &mut Graph,
+        source: Source,
+        functional: &Functional,
+        adjoint: &[Complex],
+        scaled: &[Complex],
+        change: &Change,
+    ) -> Complex {
+        let indirect = self.derivative(g, adjoint, scaled, change);
+        let loaded = through_load(g, adjoint, change.pushed(source)).mul(g, functional.factor);
+        indirect.add(g, loaded)
     }
 
     /// How the scaled amplitudes under the adjoint change because links and inertias do.
@@ -236,50 +272,6 @@ impl<'a> System<'a> {
         let first = along(g, &change.stretch, adjoint).mul(g, force);
         let second = opening.mul(g, stiffened);
         first.add(g, second)
-    }
-}
-
-impl Functional {
-    /// How the output changes because its own factor and combination do.
-    fn derivative(&self, g: &mut Graph, amplitudes: &[Complex], scaled: &[Complex], change: &Change) -> Complex {
-        let Some(own) = change.links.iter().find(|link| Some(link.link) == self.stretch_of) else {
-            return Complex::zero(g);
-        };
-        let turned = along(g, &own.stretch, scaled);
-        if !self.is_force {
-            return turned;
-        }
-        let stiffened = along(g, &self.combination, amplitudes).mul(g, own.stiffness);
-        turned.add(g, stiffened)
-    }
-}
-
-/// (jω)ⁿ
-fn order(g: &mut Graph, quantity: Quantity) -> Complex {
-    let omega = g.symbol(Symbol::Frequency);
-    let (zero, square) = (g.constant(0.0), g.powi(omega, 2));
-    match quantity {
-        Quantity::Position => Complex::one(g),
-        Quantity::Velocity => Complex { re: zero, im: omega },
-        Quantity::Acceleration => Complex {
-            re: g.neg(square),
-            im: zero,
-        },
-    }
-}
-
-/// `Σ coefficient value(coordinate)`
-fn along(g: &mut Graph, combination: &[(CoordinateId, Expr)], values: &[Complex]) -> Complex {
-    let terms = combination
-        .iter()
-        .map(|&(c, coefficient)| (coefficient, values[c.0 as usize]));
-    combine(g, terms)
-}
-
-fn inertia(model: &Checked, c: usize) -> Option<Expr> {
-    match model.coordinates[c].kind {
-        CoordinateKind::Mass(inertia) => Some(inertia),
-        _ => None,
     }
 }
 
@@ -327,55 +319,4 @@ fn impedance(model: &Checked, g: &mut Graph, links: &[Stiffness]) -> Symmetric<C
         }
     }
     impedance
-}
-
-fn compliance(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>) -> Vec<Vec<Complex>> {
-    let n = model.coordinates.len();
-    let free = |c: &usize| {
-        !matches!(
-            model.coordinates[*c].kind,
-            CoordinateKind::Road | CoordinateKind::Motion
-        )
-    };
-    let unknowns: Vec<usize> = (0..n).filter(free).collect();
-    let inverse = Factors::of(g, impedance.restricted(&unknowns)).inverse(g);
-    let mut compliance = vec![vec![Complex::zero(g); n]; n];
-    for (row, &i) in unknowns.iter().enumerate() {
-        for (column, &j) in unknowns.iter().enumerate() {
-            compliance[i][j] = inverse[row][column];
-        }
-    }
-    compliance
-}
-
-fn change(model: &Checked, g: &mut Graph, links: &[Stiffness], parameter: u16) -> Change {
-    let mut by = Differential::by(g, Symbol::Parameter(parameter));
-    let mut changed = Vec::new();
-    for (link, parts) in links.iter().enumerate() {
-        let stiffness = parts.total.derivative(g, &mut by);
-        let slopes = model.links[link]
-            .stretch
-            .iter()
-            .map(|&(c, coefficient)| (c, by.of(g, coefficient)));
-        let mut stretch: Vec<(CoordinateId, Expr)> = slopes.collect();
-        stretch.retain(|&(_, slope)| !slope.is_zero(g));
-        if !stiffness.is_zero(g) || !stretch.is_empty() {
-            changed.push(LinkChange {
-                link,
-                stiffness,
-                stretch,
-            });
-        }
-    }
-    let mut inertias = Vec::new();
-    for c in 0..model.coordinates.len() {
-        if let Some(inertia) = inertia(model, c) {
-            inertias.push((c, by.of(g, inertia)));
-        }
-    }
-    inertias.retain(|&(_, slope)| !slope.is_zero(g));
-    Change {
-        links: changed,
-        inertias,
-    }
 }

@@ -86,11 +86,10 @@ fn response(graph: &mut Graph, constants: &mut Constants, response: &response::R
     let both: Vec<Expr> = values.into_iter().chain(slopes).collect();
     let mut writer = Writer::prepared(graph, constants);
     writer.share_divisors(&both);
+    let mut jacobian = response.jacobian.chunk_by(|(a, ..), (b, ..)| a == b).peekable();
     for (place, &(_, value)) in response.outputs.iter().enumerate() {
-        let slopes = response
-            .jacobian
-            .iter()
-            .filter(|&&(output, ..)| usize::from(output) == place);
+        let slopes = jacobian.next_if(|slopes| usize::from(slopes[0].0) == place);
+        let slopes = slopes.into_iter().flatten();
         for part in [value].into_iter().chain(slopes.map(|&(.., slope)| slope)) {
             writer.value(part.re);
             writer.value(part.im);

@@ -114,10 +114,10 @@ pub enum Statement {
     Coordinate(Coordinate),
     /// `gravity NAME;`
     Gravity(Name),
-    /// `force NAME on point;`
-    Force(Name, Dotted),
-    /// `point NAME = point;`
-    Point(Name, Dotted),
+    /// `force NAME on point;` or `force NAME on upper - lower;`; `force NAME;` acts through laws alone.
+    Force(Name, Option<Expression>),
+    /// `point NAME = point;` or `point NAME = body + arm*pitch;`
+    Point(Name, Expression),
     /// `link NAME: stretch { … }`
     Link(Link),
     /// `output point.acceleration;` or `output NAME = point.acceleration;`
@@ -364,6 +364,8 @@ pub enum LawStatement {
     Let(Let),
     /// `element(argument, …);` or `label: element(argument, …);`
     Use(ElementUse),
+    /// `active;`
+    Active,
     /// `rolling { … }`
     Rolling(Span, Vec<LawStatement>),
     /// `if option == value { … } else { … }`

@@ -33,6 +33,7 @@ fn see(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f64], u: &[f64]) 
     for (output, value) in model.outputs.iter().zip(y) {
         match output.signal {
             Signal::Motion(c, quantity) => seen.motion[c.0 as usize][quantity as usize] = value,
+            Signal::Point(..) => {}
             Signal::LinkForce(l) => seen.force[l.0 as usize] = value,
             Signal::LinkStretch(l) => seen.stretch[l.0 as usize] = value,
         }
@@ -49,7 +50,7 @@ fn judge(model: &Checked, p: &[f64]) {
     let now = see(model, &evaluator, p, &x, &u);
     let inner = |symbol| x[about.states.iter().position(|state| state.symbol == symbol).unwrap()];
     let gravity = u[at(Symbol::Gravity(0)).unwrap()];
-    let force = u[at(Symbol::Force(0)).unwrap()];
+    let force = |i: u16| at(Symbol::Force(i)).map_or(0.0, |place| u[place]);
     let parameter = |e: Expr| {
         model.graph.evaluate(e, &|symbol| match symbol {
             Symbol::Parameter(i) => p[i as usize],
@@ -58,7 +59,11 @@ fn judge(model: &Checked, p: &[f64]) {
     };
 
     let mut balance = vec![0.0; model.coordinates.len()];
-    balance[model.forces[0].on.0 as usize] += force;
+    for (i, input) in (0..).zip(&model.forces) {
+        for &(c, coefficient) in &input.on {
+            balance[c.0 as usize] += parameter(coefficient) * force(i);
+        }
+    }
     for (l, link) in model.links.iter().enumerate() {
         let along = |order: usize| -> f64 {
             link.stretch
@@ -72,6 +77,7 @@ fn judge(model: &Checked, p: &[f64]) {
                 Symbol::Parameter(i) => p[i as usize],
                 Symbol::Stretch(_) => s,
                 Symbol::Rate(_) => v,
+                Symbol::Force(i) => force(i),
                 state => inner(state),
             })
         };

@@ -42,7 +42,7 @@ fn equations<T: ComplexField<RealField = f64> + Copy>(
         model
             .outputs
             .iter()
-            .map(|output| instant.signal(&output.signal))
+            .map(|output| instant.signal(&output.signal, &reference.points))
             .collect(),
     )
 }

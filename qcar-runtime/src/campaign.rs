@@ -27,6 +27,8 @@ mod recorded;
 mod history;
 // What they show to be wrong beside each other.
 mod findings;
+// The values, curves and cleats of a vehicle in a workbook.
+pub mod workbook;
 // From `campaign.toml` to the types.
 mod manifest;
 // Quasi-static curves and roads.
@@ -35,11 +37,11 @@ mod curve;
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side, Spacing, Sweep,
-    Tap, Test, Trigger, Window,
+    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side,
+    Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
 };
 pub use curve::{Curve, DynamicCurve, RoadSamples};
 pub use finding::Finding;
 pub use history::History;
 pub use truth::{Effect, Truth};
-pub use unit::{Dimension, dimension};
+pub use unit::{Declared, Dimension, dimension, examples};

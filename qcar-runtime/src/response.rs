@@ -50,8 +50,7 @@ impl<'m, M: Model + ?Sized> Response<'m, M> {
             None => about.responses[excitation].clone(),
             Some(_) => linearized::layout(about),
         };
-        let lines = frequency.len();
-        let (rows, entries) = (layout.outputs.len() * lines, layout.jacobian.len() * lines);
+        let rows = layout.outputs.len() * frequency.len();
         Self {
             model,
             excitation,
@@ -61,18 +60,36 @@ impl<'m, M: Model + ?Sized> Response<'m, M> {
             constants: vec![0.0; about.constants],
             re: vec![0.0; rows],
             im: vec![0.0; rows],
-            jacobian_re: vec![0.0; entries],
-            jacobian_im: vec![0.0; entries],
+            jacobian_re: Vec::new(),
+            jacobian_im: Vec::new(),
         }
     }
 
     /// Computes all rows and their Jacobian for the parameters `p`.
     pub fn evaluate(&mut self, p: &[f64]) {
-        let jacobian = Some((&mut self.jacobian_re[..], &mut self.jacobian_im[..]));
+        let entries = self.layout.jacobian.len() * self.omega.len();
+        self.jacobian_re.resize(entries, 0.0);
+        self.jacobian_im.resize(entries, 0.0);
+        self.compute(p, true);
+    }
+
+    /// Computes all rows for the parameters `p`, and no Jacobian.
+    pub fn evaluate_values(&mut self, p: &[f64]) {
+        self.jacobian_re.clear();
+        self.jacobian_im.clear();
+        self.compute(p, false);
+    }
+
+    /// Whether the Jacobian has been computed, too.
+    pub fn has_jacobian(&self) -> bool {
+        self.jacobian_re.len() == self.layout.jacobian.len() * self.omega.len()
+    }
+
+    fn compute(&mut self, p: &[f64], jacobian: bool) {
         let into = ResponseMut {
             re: &mut self.re,
             im: &mut self.im,
-            jacobian,
+            jacobian: jacobian.then_some((&mut self.jacobian_re[..], &mut self.jacobian_im[..])),
         };
         match &self.about {
             None => {

@@ -250,7 +250,27 @@ const MISTAKES: &[(&str, (&str, &str, &str))] = &[
     ("wrong type", ("campaign.toml", "fit = true", "fit = \"yes\"")),
     (
         "text for a number",
-        ("campaign.toml", "m_corner = 400", "m_corner = \"400 kg\""),
+        ("campaign.toml", "m_corner = 400", "m_corner = \"four hundred\""),
+    ),
+    (
+        "fact in a unit of another kind",
+        ("campaign.toml", "m_corner = 400", "m_corner = \"400 mm\""),
+    ),
+    (
+        "speed in a unit of another kind",
+        ("campaign.toml", "speed = 8.3333", "speed = \"30 km\""),
+    ),
+    (
+        "column in a unit of another kind",
+        ("bounce.csv", "displacement,force", "displacement [mm/s],force [kN]"),
+    ),
+    (
+        "axle without a workbook",
+        ("campaign.toml", "format = 1", "format = 1\naxle = \"front\""),
+    ),
+    (
+        "missing workbook",
+        ("campaign.toml", "format = 1", "format = 1\nworkbook = \"vehicle.xlsx\""),
     ),
     ("infinite number", ("campaign.toml", "value = 150.0", "value = inf")),
     (
@@ -276,8 +296,8 @@ const MISTAKES: &[(&str, (&str, &str, &str))] = &[
         ("campaign.toml", "unit = \"m/s^2\"", "unit = \"m/s\""),
     ),
     (
-        "parameter in a unit that is not SI",
-        ("campaign.toml", "unit = \"N/m\"", "unit = \"N/mm\""),
+        "parameter in a unit that nobody knows",
+        ("campaign.toml", "unit = \"N/m\"", "unit = \"N/mmm\""),
     ),
     (
         "start outside its range",

@@ -1,9 +1,12 @@
-//! A file of parameter values: TOML with `[parameters]`, each `name = value` or a campaign's table with its unit, and
-//! `[vehicle]`, whose facts a model may or may not use. A campaign folder stands for its `campaign.toml`.
+//! A file of parameter values: TOML with `[parameters]`, each `name = value`, `name = "value unit"` or a campaign's table with its
+//! unit, and `[vehicle]`, whose facts a model may or may not use. A campaign folder stands for its `campaign.toml`. Or the
+//! workbook of a vehicle.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
+use qcar_runtime::campaign::workbook::{Entry, Workbook, is_workbook};
+use qcar_runtime::campaign::{Declared, examples, unit_of_fact};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::spelling;
 use toml::Spanned;
@@ -12,8 +15,10 @@ use toml::de::{DeTable, DeValue};
 use crate::files::read_text;
 
 /// What may stand beside `[parameters]`: the keys of campaigns and of their answers.
-const NEIGHBOURS: [&str; 11] = [
+const NEIGHBOURS: [&str; 13] = [
     "format",
+    "workbook",
+    "axle",
     "name",
     "description",
     "model",
@@ -38,13 +43,15 @@ pub struct ParameterFile {
     pub parameters: BTreeMap<String, Stated>,
     /// Below `[vehicle]`.
     pub vehicle: BTreeMap<String, Stated>,
+    /// Where in a workbook a value could stand that is not given.
+    pub blanks: BTreeMap<String, (PathBuf, Place)>,
 }
 
 /// A value and where it stands.
 pub struct Stated {
-    /// A finite number.
+    /// A finite number, SI.
     pub value: f64,
-    /// Where the file declares one.
+    /// The coherent SI unit of what the file declares, where it does.
     pub unit: Option<String>,
     /// Standard error, where the file knows it.
     pub stderr: Option<f64>,
@@ -60,11 +67,14 @@ pub fn numbers(of: &BTreeMap<String, Stated>) -> BTreeMap<String, f64> {
 }
 
 impl ParameterFile {
-    /// Reads a file, or the `campaign.toml` of a folder.
+    /// Reads a file, or the `campaign.toml` of a folder; below what it states, what the workbook says that it names.
     ///
     /// # Errors
     /// All problems of the file together.
     pub fn read(path: &Path) -> Result<ParameterFile, InputError> {
+        if is_workbook(path) {
+            return Ok(ParameterFile::from(Workbook::read(path, None)?));
+        }
         let path = if path.is_dir() {
             path.join("campaign.toml")
         } else {
@@ -76,14 +86,28 @@ impl ParameterFile {
             text: &text,
             problems: Vec::new(),
         };
-        let (parameters, vehicle) = reader.tables();
-        let Reader { problems, .. } = reader;
-        let file = ParameterFile {
-            path: path.clone(),
+        let Tables {
+            workbook,
+            axle,
             parameters,
             vehicle,
+        } = reader.tables();
+        let Reader { problems, .. } = reader;
+        InputError::unless_empty(problems, Some(()))?;
+        let mut file = match workbook {
+            Some(named) => {
+                let beside = path.parent().unwrap_or(Path::new("")).join(named);
+                ParameterFile::from(Workbook::read(&beside, axle.as_deref())?)
+            }
+            None => ParameterFile::default(),
         };
-        InputError::unless_empty(problems, Some(file))
+        file.overlay(ParameterFile {
+            path,
+            parameters,
+            vehicle,
+            blanks: BTreeMap::new(),
+        });
+        Ok(file)
     }
 
     /// Takes over what another file states.
@@ -91,6 +115,32 @@ impl ParameterFile {
         self.path = other.path;
         self.parameters.extend(other.parameters);
         self.vehicle.extend(other.vehicle);
+        self.blanks.extend(other.blanks);
+    }
+}
+
+impl From<Workbook> for ParameterFile {
+    fn from(of: Workbook) -> Self {
+        let stated = |entry: Entry| {
+            let stated = Stated {
+                value: entry.value,
+                unit: Some(entry.unit),
+                stderr: None,
+                file: of.file.clone(),
+                place: entry.place,
+            };
+            (entry.name, stated)
+        };
+        ParameterFile {
+            parameters: of.parameters.into_iter().map(stated).collect(),
+            vehicle: of.vehicle.into_iter().map(stated).collect(),
+            blanks: of
+                .blanks
+                .into_iter()
+                .map(|(name, place)| (name, (of.file.clone(), place)))
+                .collect(),
+            path: of.file.clone(),
+        }
     }
 }
 
@@ -103,15 +153,25 @@ struct Reader<'a> {
 
 type Table = BTreeMap<String, Stated>;
 
+/// What a file has to say here.
+#[derive(Default)]
+struct Tables {
+    /// Relative to the folder of the file.
+    workbook: Option<String>,
+    axle: Option<String>,
+    parameters: Table,
+    vehicle: Table,
+}
+
 impl Reader<'_> {
-    /// What stands below `[parameters]` and `[vehicle]`.
-    fn tables(&mut self) -> (Table, Table) {
+    /// What stands below `[parameters]` and `[vehicle]`, and the workbook that is named beside them.
+    fn tables(&mut self) -> Tables {
         let table = match DeTable::parse(self.text) {
             Ok(table) => table.into_inner(),
             Err(error) => {
                 let start = error.span().map_or(0, |span| span.start);
                 self.wrong(start, "", error.message(), "TOML", "see https://toml.io for its syntax");
-                return Default::default();
+                return Tables::default();
             }
         };
         for key in table.keys().filter(|key| !NEIGHBOURS.contains(&&**key.get_ref())) {
@@ -128,7 +188,9 @@ impl Reader<'_> {
             }
         }
         let says = |name: &str| table.contains_key(name);
-        if !says("parameters") && !says("vehicle") && self.problems.is_empty() {
+        let word = |name: &str| Some(table.get(name)?.get_ref().as_str()?.to_string());
+        let (workbook, axle) = (word("workbook"), word("axle"));
+        if !says("parameters") && !says("vehicle") && !says("workbook") && self.problems.is_empty() {
             let remedy = "write the values below a line [parameters]";
             let problem = Problem::new(
                 self.path,
@@ -145,7 +207,12 @@ impl Reader<'_> {
                 .map(|value| self.section(name, value))
                 .unwrap_or_default()
         };
-        (section("parameters"), section("vehicle"))
+        Tables {
+            workbook,
+            axle,
+            parameters: section("parameters"),
+            vehicle: section("vehicle"),
+        }
     }
 
     fn section(&mut self, section: &str, value: &Spanned<DeValue>) -> Table {
@@ -182,38 +249,81 @@ impl Reader<'_> {
         }
     }
 
-    /// `name = value`, or a table with `value` and perhaps `unit`.
+    /// `name = value`, `name = "value unit"`, or a table with `value` and perhaps `unit`.
     fn stated(&mut self, section: &str, name: &Spanned<impl AsRef<str>>, value: &Spanned<DeValue>) -> Option<Stated> {
-        let key = format!("{section}.{}", name.get_ref().as_ref());
+        let own = name.get_ref().as_ref();
+        let (key, offset) = (format!("{section}.{own}"), name.span().start);
         let table = value.get_ref().as_table();
         if let Some(table) = table {
             self.refuse_unknown(&key, table);
         }
-        let (number, unit) = match table {
-            Some(table) => (
-                table.get("value").map(Spanned::get_ref),
-                table.get("unit").and_then(|unit| unit.get_ref().as_str()),
-            ),
-            None => (Some(value.get_ref()), None),
+        let number = match table {
+            Some(table) => table.get("value").map(Spanned::get_ref),
+            None => Some(value.get_ref()),
         };
-        let Some(finite) = number.and_then(finite) else {
-            let found = number.map_or("no `value`", DeValue::type_str);
+        let unit = table
+            .and_then(|table| table.get("unit"))
+            .and_then(|unit| unit.get_ref().as_str());
+        let kind = Some(section)
+            .filter(|section| *section == "vehicle")
+            .and_then(|_| unit_of_fact(own));
+        let (value, unit) = match (number, unit) {
+            (Some(DeValue::String(text)), None) => self.quantity(offset, &key, text, kind)?,
+            (number, unit) => {
+                let Some(finite) = number.and_then(finite) else {
+                    let found = number.map_or("no `value`", DeValue::type_str);
+                    let remedy = "write a number in SI units, or in quotes a number and its unit";
+                    self.wrong(offset, &key, found, "a finite number", remedy);
+                    return None;
+                };
+                self.in_unit(offset, &key, finite, unit)?
+            }
+        };
+        Some(Stated {
+            value,
+            unit,
+            stderr: None,
+            file: self.path.into(),
+            place: self.place(offset, &key),
+        })
+    }
+
+    /// A text of a number and its unit, in SI.
+    fn quantity(&mut self, offset: usize, key: &str, text: &str, kind: Option<&str>) -> Option<(f64, Option<String>)> {
+        let quantity = Declared::quantity(text).filter(|(_, unit)| kind.is_none_or(|kind| unit.is_like(kind)));
+        if quantity.is_none() {
+            let expected = match kind {
+                Some(kind) => format!("a number with {}", examples(kind)),
+                None => "a number with its unit, such as \"187 N/mm\"".into(),
+            };
             self.wrong(
-                name.span().start,
-                &key,
-                found,
-                "a finite number",
-                "write a number in SI units",
+                offset,
+                key,
+                &format!("the string \"{text}\""),
+                &expected,
+                "correct the value or its unit",
+            );
+        }
+        quantity.map(|(value, unit)| (value, Some(unit.coherent)))
+    }
+
+    /// A number in the unit that is declared for it, in SI.
+    fn in_unit(&mut self, offset: usize, key: &str, value: f64, unit: Option<&str>) -> Option<(f64, Option<String>)> {
+        let Some(unit) = unit else {
+            return Some((value, None));
+        };
+        let Some(declared) = Declared::of(unit) else {
+            let remedy = "write the unit of the value, such as N/m, N/mm, N s/m, kg, mm or 1";
+            self.wrong(
+                offset,
+                key,
+                &format!("the unit \"{unit}\""),
+                "a unit of mechanics",
+                remedy,
             );
             return None;
         };
-        Some(Stated {
-            value: finite,
-            unit: unit.map(String::from),
-            stderr: None,
-            file: self.path.into(),
-            place: self.place(name.span().start, &key),
-        })
+        Some((declared.si(value), Some(declared.coherent)))
     }
 
     fn wrong(&mut self, offset: usize, key: &str, found: &str, expected: &str, remedy: &str) {

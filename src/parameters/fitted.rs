@@ -62,7 +62,7 @@ impl Answer {
         ParameterFile {
             path: path.into(),
             parameters: stated.collect(),
-            vehicle: BTreeMap::new(),
+            ..ParameterFile::default()
         }
     }
 }

@@ -4,10 +4,14 @@
 use std::path::Path;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::resolve::options::Choices;
+use qcar_dsl::response::Wanted;
 
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
+use crate::terminal::prose;
 
 // Of measurements.
 mod campaign;
@@ -22,6 +26,7 @@ mod campaign;
 )]
 pub struct Arguments {
     /// Names of shipped models, paths of model files, or folders of campaigns
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     models: Vec<String>,
     /// Of a family's file, check every member that its options allow
     #[arg(long)]
@@ -39,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     }
     let verdicts = named.iter().map(|name| verdict(name)).collect::<Result<Vec<_>, _>>()?;
     let all_well = verdicts.iter().all(|(well, _)| *well);
-    let text = verdicts.into_iter().map(|(_, text)| text).collect();
+    let text = prose(&verdicts.into_iter().map(|(_, text)| text).collect::<String>());
     if all_well {
         Ok(text)
     } else {
@@ -52,7 +57,7 @@ fn verdict(name: &str) -> Result<(bool, String), Failure> {
     if Path::new(name).is_dir() {
         return campaign::verdict(Path::new(name));
     }
-    Ok(match catalogue::compile(name)? {
+    Ok(match catalogue::compile(name, Wanted::Values)? {
         Err(report) => (false, format!("{name}: refused\n{report}\n")),
         Ok(compiled) => match compiled.model.warnings() {
             warnings if warnings.diagnostics.is_empty() => (true, format!("{name}: ok\n")),

@@ -3,12 +3,15 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 
+use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::report::{Report, page};
+use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::verbs::frf::Frequencies;
 
@@ -54,7 +57,7 @@ pub struct Arguments {
     #[arg(value_name = "B")]
     second: String,
     /// The model of both parameter sets or campaigns, by name or path, in place of their own
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Hold both against the runs of this campaign; its values lie below all others
     #[arg(long, value_name = "DIR")]
@@ -91,7 +94,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         put(folder, "report.html", &page(Report::Comparison, &title, &contents))?;
     }
     Ok(match arguments.format {
-        Format::Text => render::text(&comparison, &contents.result, arguments.out.as_deref()),
+        Format::Text => prose(&render::text(&comparison, &contents.result, arguments.out.as_deref())),
         Format::Json => json,
     })
 }

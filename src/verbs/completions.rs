@@ -1,9 +1,14 @@
-//! `qcar completions`: a script that lets a shell complete verbs and flags.
+//! `qcar completions`: a script that lets a shell ask qcar how a line may go on.
 
-use clap::{Args, Command};
-use clap_complete::{Shell, generate};
+use clap::{Args, Command, ValueEnum};
+use clap_complete::env::{Bash, EnvCompleter, Fish, Powershell, Zsh};
 
-/// Print a script that lets a shell complete verbs, flags and their values
+use crate::failure::Failure;
+
+/// The variable by which a shell asks.
+pub const VARIABLE: &str = "QCAR_COMPLETE";
+
+/// Print a script that lets a shell complete verbs, flags and their values, names of models and effects
 ///
 /// bash: put it into ~/.local/share/bash-completion/completions/qcar
 /// zsh: put it into a folder of $fpath, as _qcar
@@ -16,10 +21,24 @@ pub struct Arguments {
     shell: Shell,
 }
 
-/// Does it for all verbs of `cli`.
-pub fn run(arguments: &Arguments, mut cli: Command) -> String {
-    let name = cli.get_name().to_string();
-    let mut script = Vec::new();
-    generate(arguments.shell, &mut cli, name, &mut script);
-    String::from_utf8_lossy(&script).into_owned()
+#[derive(Clone, Copy, ValueEnum)]
+enum Shell {
+    Bash,
+    Fish,
+    Powershell,
+    Zsh,
+}
+
+/// Does it for the program of `cli`, which the shell must find by its name.
+pub fn run(arguments: &Arguments, cli: &Command) -> Result<String, Failure> {
+    let shell: &dyn EnvCompleter = match arguments.shell {
+        Shell::Bash => &Bash,
+        Shell::Fish => &Fish,
+        Shell::Powershell => &Powershell,
+        Shell::Zsh => &Zsh,
+    };
+    let (name, mut script) = (cli.get_name(), Vec::new());
+    let written = shell.write_registration(VARIABLE, name, name, name, &mut script);
+    written.map_err(|error| Failure::Input(error.to_string()))?;
+    Ok(String::from_utf8_lossy(&script).into_owned())
 }

@@ -1,12 +1,15 @@
 //! `qcar diff`: in what two models differ.
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::difference::{Changed, Difference, difference};
 use serde::Serialize;
 
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
 use crate::json::{self, Ordered};
+use crate::terminal::prose;
 use crate::verbs::Format;
 
 /// Show what a model has that another has not: parameters, masses, links, equations
@@ -16,8 +19,10 @@ use crate::verbs::Format;
 )]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     first: String,
     /// The model to compare with it
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     second: String,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -50,7 +55,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     );
     let difference = difference(&first.model, &second.model);
     Ok(match arguments.format {
-        Format::Text => difference.to_string(),
+        Format::Text => prose(&difference.to_string()),
         Format::Json => in_json(&difference),
     })
 }

@@ -6,6 +6,7 @@ use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
@@ -16,11 +17,13 @@ use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
 
+use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::interruption::{leave, note};
 use crate::parameters::{bound, check_campaign, own};
 use crate::progress::Showing;
+use crate::terminal::prose;
 use crate::verbs::{Format, kc};
 use crate::workshop::Bench;
 use crate::{catalogue, effects};
@@ -53,7 +56,7 @@ pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
     /// Start from this model, by name or path, in place of the campaign's
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
@@ -126,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         write(&mut answer, folder)?;
     }
     Ok(match arguments.format {
-        Format::Text => render::text(&answer),
+        Format::Text => prose(&render::text(&answer)),
         Format::Json => render::json(&answer),
     })
 }

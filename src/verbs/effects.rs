@@ -3,13 +3,16 @@
 mod described;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use serde::Serialize;
 
 use crate::catalogue;
+use crate::completion;
 use crate::effects;
 use crate::failure::Failure;
 use crate::json;
 use crate::table::Table;
+use crate::terminal::prose;
 use crate::verbs::Format;
 use described::Described;
 
@@ -22,7 +25,7 @@ use described::Described;
 )]
 pub struct Arguments {
     /// Name of a shipped model or effect, or path of a file of either
-    #[arg(value_name = "MODEL_OR_EFFECT")]
+    #[arg(value_name = "MODEL_OR_EFFECT", add = ArgValueCompleter::new(completion::models_and_effects))]
     name: Option<String>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -38,7 +41,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         Some(effect) => {
             let described = Described::of(&effect?);
             Ok(match arguments.format {
-                Format::Text => described.text(),
+                Format::Text => prose(&described.text()),
                 Format::Json => json::line(&described),
             })
         }

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Unseen;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
@@ -17,10 +18,12 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
+use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::folder_for_results;
 use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
+use crate::terminal::prose;
 use crate::verbs::Format;
 
 // What K&C curves say beside it.
@@ -31,6 +34,8 @@ mod notices;
 pub(crate) mod render;
 // The result as files.
 pub(crate) mod files;
+// The result as a workbook.
+pub(crate) mod workbook;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -48,7 +53,7 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json, transmissibility.csv and transmissibility.svg into this folder
+    /// Write parameters.toml, fit.json, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print
@@ -60,7 +65,7 @@ pub struct Arguments {
 #[derive(Args, Default)]
 pub struct Choices {
     /// Fit this model, by name or path, in place of the campaign's
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Searches: the first from the campaign's start values, the others from all over its ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
@@ -96,9 +101,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         files::write(&fitted, folder)?;
+        workbook::write(&fitted, folder)?;
     }
     let result = match arguments.format {
-        Format::Text => render::text(&fitted),
+        Format::Text => prose(&render::text(&fitted)),
         Format::Json => render::json(&fitted),
     };
     if fitted.fit.converged && notices::all_at_bounds(&fitted.fit).is_none() {

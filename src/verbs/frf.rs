@@ -1,13 +1,16 @@
 //! `qcar frf`: the frequency response of every channel and its parameter Jacobian.
 
+use std::collections::BTreeMap;
 use std::str::FromStr;
 
 use clap::Args;
 use nalgebra::Complex;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::error::InputError;
-use qcar_runtime::model::{About, Channel, Model, Signal};
+use qcar_runtime::model::{About, Channel, Input, InputKind, Model, Quantity, Signal, SignalKind};
+use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::response::ratio::{Ratio, between};
 use serde::Serialize;
 
 use crate::catalogue;
@@ -15,6 +18,8 @@ use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::parameters;
 use crate::table::{Table, number};
+use crate::terminal::prose;
+use crate::units;
 use crate::verbs::{ModelArguments, TableFormat};
 
 /// Print the frequency response of the channels of a model
@@ -83,17 +88,26 @@ impl Frequencies {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let model = catalogue::load(&arguments.model.model)?;
+    let wanted = match arguments.format {
+        TableFormat::Json => Wanted::Jacobian,
+        TableFormat::Text | TableFormat::Csv => Wanted::Values,
+    };
+    let model = catalogue::load_wanted(&arguments.model.model, wanted)?;
     let values = parameters::resolve(model.about(), arguments.model.params.as_deref(), &arguments.model.set)?;
     model.check_inertias(values.as_slice())?;
     let frequency = arguments.frequencies.values();
     let channels = chosen(model.about(), &arguments.channels)?;
-    let responses = channels
-        .into_iter()
-        .map(|channel| respond(&*model, &values, channel, &frequency));
+    let mut excited = Excited {
+        model: &*model,
+        values: &values,
+        frequency: &frequency,
+        wanted,
+        responses: BTreeMap::new(),
+    };
+    let responses = channels.into_iter().map(|channel| excited.respond(channel));
     let response = FrequencyResponse {
-        model: model.about().name.to_string(),
         channels: responses.collect::<Result<_, Failure>>()?,
+        model: model.about().name.to_string(),
     };
     let values = response.channels.0.iter().map(|(_, channel)| channel);
     parameters::require_finite(
@@ -101,7 +115,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         values.flat_map(|channel| channel.re.iter().chain(&channel.im)),
     )?;
     Ok(match arguments.format {
-        TableFormat::Text => text(&response, &frequency),
+        TableFormat::Text => prose(&text(&response, &frequency)),
         TableFormat::Json => json::line(&response),
         TableFormat::Csv => csv(&response, &frequency),
     })
@@ -117,6 +131,8 @@ struct FrequencyResponse {
 /// The ratio of a channel's two signals, and its derivatives by every parameter.
 #[derive(Serialize)]
 struct ChannelResponse {
+    /// Of the ratio.
+    unit: String,
     /// Hz.
     frequency: Vec<f64>,
     re: Vec<f64>,
@@ -156,39 +172,62 @@ fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Fa
     Ok(InputError::unless_empty(problems, Some(chosen))?)
 }
 
-fn respond(
-    model: &dyn Model,
-    values: &Values,
-    channel: &Channel,
-    frequency: &[f64],
-) -> Result<(String, ChannelResponse), Failure> {
-    let about = model.about();
-    let ratio = ratio(
-        model,
-        values,
-        excitation(about, channel)?,
-        &channel.numerator,
-        &channel.denominator,
-        frequency,
-    )
-    .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
-    let leaders = (0..about.parameters.len()).filter(|&k| values.leader(k) == k);
-    let derivatives = |part: fn(&Complex<f64>) -> f64| {
+/// A model under each of its excitations, each evaluated once for all channels.
+struct Excited<'a> {
+    model: &'a dyn Model,
+    values: &'a Values,
+    frequency: &'a [f64],
+    wanted: Wanted,
+    responses: BTreeMap<usize, Response<'a, dyn Model + 'a>>,
+}
+
+impl<'a> Excited<'a> {
+    fn respond(&mut self, channel: &Channel) -> Result<(String, ChannelResponse), Failure> {
+        let about = self.model.about();
+        let excitation = excitation(about, channel)?;
+        let values = self.values;
+        let ratio = between(
+            self.response(excitation),
+            values,
+            &channel.numerator,
+            &channel.denominator,
+        )
+        .map_err(|error| Failure::Input(format!("channel `{}`: {error}", channel.name)))?;
+        let response = ChannelResponse {
+            unit: unit(about, channel),
+            frequency: self.frequency.into(),
+            re: ratio.value.iter().map(|value| value.re).collect(),
+            im: ratio.value.iter().map(|value| value.im).collect(),
+            d_re: self.derivatives(&ratio, |value| value.re),
+            d_im: self.derivatives(&ratio, |value| value.im),
+        };
+        Ok((channel.name.to_string(), response))
+    }
+
+    fn response(&mut self, excitation: usize) -> &Response<'a, dyn Model + 'a> {
+        let (model, values, frequency, wanted) = (self.model, self.values, self.frequency, self.wanted);
+        self.responses.entry(excitation).or_insert_with(|| {
+            let mut response = Response::new(model, excitation, frequency);
+            match wanted {
+                Wanted::Values => response.evaluate_values(values.as_slice()),
+                Wanted::Jacobian => response.evaluate(values.as_slice()),
+            }
+            response
+        })
+    }
+
+    /// By every parameter that leads its ties; nothing where derivatives are not wanted.
+    fn derivatives(&self, ratio: &Ratio, part: fn(&Complex<f64>) -> f64) -> Ordered<Vec<f64>> {
+        let about = self.model.about();
         let row = |k: usize| {
             let seen = ratio.jacobian.iter().find(|(parameter, _)| *parameter == k);
-            let row = seen.map_or(vec![0.0; frequency.len()], |(_, row)| row.iter().map(part).collect());
+            let still = || vec![0.0; self.frequency.len()];
+            let row = seen.map_or_else(still, |(_, row)| row.iter().map(part).collect());
             (about.parameters[k].name.to_string(), row)
         };
-        leaders.clone().map(row).collect()
-    };
-    let response = ChannelResponse {
-        frequency: frequency.into(),
-        re: ratio.value.iter().map(|value| value.re).collect(),
-        im: ratio.value.iter().map(|value| value.im).collect(),
-        d_re: derivatives(|value| value.re),
-        d_im: derivatives(|value| value.im),
-    };
-    Ok((channel.name.to_string(), response))
+        let leaders = (0..about.parameters.len()).filter(|&k| self.values.leader(k) == k);
+        leaders.filter(|_| self.wanted == Wanted::Jacobian).map(row).collect()
+    }
 }
 
 /// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.
@@ -206,13 +245,79 @@ pub(crate) fn excitation(about: &About, channel: &Channel) -> Result<usize, Fail
     })
 }
 
+/// The heading of decibels, which are of a plain number or of so many units.
+fn decibels(name: &str, unit: &str) -> String {
+    match unit {
+        "1" => format!("{name}_dB"),
+        unit => format!("{name}_dB({unit})"),
+    }
+}
+
+/// The unit of a channel, such as `(m/s^2)/N`.
+fn unit(about: &About, channel: &Channel) -> String {
+    let [above, below] = [&channel.numerator, &channel.denominator].map(|signal| unit_of(about, signal));
+    let grouped = |unit: String| {
+        if unit.contains(['/', ' ']) {
+            format!("({unit})")
+        } else {
+            unit
+        }
+    };
+    match (above, below) {
+        (above, below) if above == below => "1".to_string(),
+        (above, below) if below == "1" => above,
+        (above, below) => format!("{}/{}", grouped(above), grouped(below)),
+    }
+}
+
+/// The unit of a signal: that of its output or input, or what follows from another derivative of the same motion.
+fn unit_of(about: &About, signal: &Signal) -> String {
+    let here = |other: &Signal| other.location == signal.location && other.axis == signal.axis;
+    let outputs = about.outputs.iter().filter(|output| here(&output.signal));
+    let inputs = about
+        .inputs
+        .iter()
+        .filter(|input| driven(about, input).as_ref().is_some_and(here));
+    let known = outputs.map(|output| (output.signal.kind, &output.unit));
+    let known = known.chain(inputs.filter_map(|input| Some((driven(about, input)?.kind, &input.unit))));
+    let known: Vec<_> = known.collect();
+    if let Some((_, unit)) = known.iter().find(|(kind, _)| *kind == signal.kind) {
+        return unit.to_string();
+    }
+    let turns = known.iter().any(|(_, unit)| !unit.starts_with('m'));
+    let unit = match (signal.kind, turns) {
+        (SignalKind::Motion(Quantity::Position), false) => "m",
+        (SignalKind::Motion(Quantity::Velocity), false) => "m/s",
+        (SignalKind::Motion(Quantity::Acceleration), false) => "m/s^2",
+        (SignalKind::Motion(Quantity::Velocity), true) => "1/s",
+        (SignalKind::Motion(Quantity::Acceleration), true) => "1/s^2",
+        _ => "1",
+    };
+    unit.to_string()
+}
+
+/// What an input is as a signal.
+fn driven(about: &About, input: &Input) -> Option<Signal> {
+    let (place, kind) = match input.kind {
+        InputKind::Motion(place, quantity) => (place, SignalKind::Motion(quantity)),
+        InputKind::Force(place) => (place, SignalKind::Force),
+        InputKind::Gravity => return None,
+    };
+    let excitation = about.excitations.get(usize::from(place))?;
+    Some(Signal {
+        location: excitation.name.clone(),
+        axis: excitation.axis.clone(),
+        kind,
+    })
+}
+
 fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
-    let mut headings = vec!["frequency_Hz".to_string()];
+    let mut headings = vec![format!("frequency_{}", units::name("Hz"))];
     headings.extend(
         of.channels
             .0
             .iter()
-            .flat_map(|(name, _)| [format!("{name}_dB"), format!("{name}_deg")]),
+            .flat_map(|(name, channel)| [decibels(name, &channel.unit), format!("{name}_deg")]),
     );
     let mut table = Table::with_headings(headings);
     for (line, frequency) in frequency.iter().enumerate() {
@@ -223,20 +328,25 @@ fn text(of: &FrequencyResponse, frequency: &[f64]) -> String {
                 number(value.arg().to_degrees(), 5),
             ]
         });
-        table.row(std::iter::once(number(*frequency, 5)).chain(polar).collect());
+        table.row(
+            std::iter::once(number(units::value(*frequency, "Hz"), 5))
+                .chain(polar)
+                .collect(),
+        );
     }
     table.text()
 }
 
 fn csv(of: &FrequencyResponse, frequency: &[f64]) -> String {
     let names = of.channels.0.iter().map(|(name, _)| format!(",{name}_re,{name}_im"));
-    let mut out = format!("frequency{}\n", names.collect::<String>());
+    let mut out = format!("{}{}\n", units::heading("frequency", "Hz"), names.collect::<String>());
     for (line, frequency) in frequency.iter().enumerate() {
         let cells = of
             .channels
             .0
             .iter()
             .map(|(_, channel)| format!(",{},{}", channel.re[line], channel.im[line]));
+        let frequency = units::value(*frequency, "Hz");
         out.push_str(&format!("{frequency}{}\n", cells.collect::<String>()));
     }
     out

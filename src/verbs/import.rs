@@ -3,13 +3,16 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_signals::signal::Recording;
 
 use super::inspect;
 use super::new::campaign::{make_head, seen_from};
 use crate::catalogue;
+use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::put;
+use crate::terminal::prose;
 
 // Names taken apart.
 mod tokens;
@@ -39,7 +42,7 @@ pub struct Arguments {
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
     /// The model that is to be fitted: name of a shipped one, or path of a model file
-    #[arg(long, default_value = "quarter_car")]
+    #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }
 
@@ -76,7 +79,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     text += &sensors::sections(&proposed);
     text += &kind::sections(&runs);
     put(&arguments.out, "campaign.toml", &text)?;
-    Ok(told(arguments, &files, &proposed, &runs))
+    Ok(prose(&told(arguments, &files, &proposed, &runs)))
 }
 
 fn must_be_new(folder: &Path) -> Result<(), Failure> {

@@ -12,6 +12,7 @@ use serde::Serialize;
 use crate::failure::Failure;
 use crate::json;
 use crate::table::{Table, number, or_dash};
+use crate::terminal::prose;
 use crate::verbs::Format;
 
 /// Columns of a sparkline.
@@ -38,7 +39,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let recording = recording(&arguments.file)?;
     Ok(match arguments.format {
-        Format::Text => text(&recording),
+        Format::Text => prose(&text(&recording)),
         Format::Json => json::line(&Inspected::of(&recording)),
     })
 }

@@ -17,6 +17,8 @@ use crate::json;
 use crate::parameters;
 use crate::progress::while_counting;
 use crate::table::{Table, number, or_dash};
+use crate::terminal::prose;
+use crate::units;
 use crate::verbs::Format;
 
 // Start values in campaign.toml.
@@ -83,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         write::start_values(&campaign, &gradients)?;
     }
     Ok(match arguments.format {
-        Format::Text => text(&gradients),
+        Format::Text => prose(&text(&gradients)),
         Format::Json => json::line(&gradients),
     })
 }
@@ -317,15 +319,16 @@ fn text(of: &[Gradient]) -> String {
         "start",
     ]);
     for gradient in of {
+        let shown = |value| units::value(value, gradient.unit);
         table.row(vec![
             gradient.test.into(),
             gradient.quantity.into(),
-            gradient.unit.into(),
-            number(gradient.value, 4),
-            number(gradient.uncertainty, 2),
+            units::name(gradient.unit).into(),
+            number(shown(gradient.value), 4),
+            number(shown(gradient.uncertainty), 2),
             gradient.parameter.as_deref().unwrap_or("-").into(),
-            or_dash(gradient.parameter_value, 4),
-            or_dash(gradient.start, 4),
+            or_dash(gradient.parameter_value.map(shown), 4),
+            or_dash(gradient.start.map(shown), 4),
         ]);
     }
     table.text() + &notes(of)

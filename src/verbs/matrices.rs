@@ -1,6 +1,7 @@
 //! `qcar matrices`: the state-space matrices and their parameter Jacobians.
 
 use clap::Args;
+use qcar_dsl::response::Wanted;
 use qcar_runtime::model::About;
 
 use crate::catalogue;
@@ -9,6 +10,7 @@ use crate::json;
 use crate::parameters;
 use crate::state_space::{Rows, StateSpace, state_space};
 use crate::table::{Table, number};
+use crate::terminal::prose;
 use crate::verbs::{Format, ModelArguments};
 
 /// Print A, B, C, D and their derivatives by every parameter
@@ -29,7 +31,7 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let model = catalogue::load(&arguments.model.model)?;
+    let model = catalogue::load_wanted(&arguments.model.model, Wanted::Values)?;
     let about = model.about();
     check_axis(about, arguments.axis.as_deref())?;
     let values = parameters::resolve(about, arguments.model.params.as_deref(), &arguments.model.set)?;
@@ -37,7 +39,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let matrices = state_space(&*model, &values, arguments.axis.as_deref());
     parameters::require_finite(&about.name, matrices.matrices.values().flatten().flatten())?;
     Ok(match arguments.format {
-        Format::Text => text(&matrices),
+        Format::Text => prose(&text(&matrices)),
         Format::Json => json::line(&matrices),
     })
 }

@@ -10,12 +10,16 @@ use crate::failure::{Failure, flag};
 mod axle;
 // A folder of measurements to come.
 pub(super) mod campaign;
+// The workbook of a vehicle.
+mod template;
 
-/// Write the first files of an axle or of a campaign, with comments that say how to go on
+/// Write the first files of an axle, of a campaign or of a vehicle, with comments that say how to go on
 ///
 /// Files that are there already stay as they are.
 #[derive(Args)]
-#[command(after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle")]
+#[command(
+    after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle\n  qcar new template vehicle.xlsx"
+)]
 pub struct Arguments {
     #[command(subcommand)]
     what: What,
@@ -25,6 +29,7 @@ pub struct Arguments {
 enum What {
     Axle(axle::Arguments),
     Campaign(campaign::Arguments),
+    Template(template::Arguments),
 }
 
 /// Does it.
@@ -32,6 +37,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     match &arguments.what {
         What::Axle(arguments) => axle::run(arguments),
         What::Campaign(arguments) => campaign::run(arguments),
+        What::Template(arguments) => template::run(arguments),
     }
 }
 

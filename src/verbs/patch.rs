@@ -3,9 +3,11 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 
 use super::ModelArguments;
 use crate::catalogue;
+use crate::completion;
 use crate::effects;
 use crate::failure::Failure;
 use crate::files::put;
@@ -24,6 +26,7 @@ pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,
     /// Name of a shipped effect (`qcar effects` lists them), or path of an effect's file
+    #[arg(add = ArgValueCompleter::new(completion::effects))]
     effect: String,
     /// The place: a link, mass or sensor location of the model
     #[arg(long, value_name = "PLACE")]

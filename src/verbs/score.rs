@@ -11,6 +11,7 @@ use qcar_runtime::fit::report::{ChannelFit, ParameterFit};
 use crate::failure::Failure;
 use crate::interruption::keep;
 use crate::table::{Table, number, or_dash};
+use crate::terminal::prose;
 use crate::verbs::fit::{self, Choices, Fitted};
 
 /// A standard error below this part of the value means that the data determine it well.
@@ -43,7 +44,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         reports += &text;
         all_well &= well;
     }
-    let text = reports;
+    let text = prose(&reports);
     if all_well {
         Ok(text)
     } else {

@@ -1,9 +1,12 @@
 //! `qcar show`: each stage of a model, for people.
 
 use clap::{Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
+use qcar_dsl::response::Wanted;
 use qcar_dsl::show;
 
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
 use crate::table::Table;
 
@@ -16,6 +19,7 @@ use crate::table::Table;
 )]
 pub struct Arguments {
     /// Name of a shipped model, or path of a model file
+    #[arg(add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Which stage
     #[arg(long, value_enum, default_value_t = Stage::Equations)]
@@ -42,8 +46,21 @@ enum Stage {
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     match &arguments.model {
-        Some(model) => Ok(show::show(&catalogue::compiled(model)?, arguments.stage.into())),
+        Some(model) => {
+            let compiled = catalogue::compiled_wanted(model, arguments.stage.wants())?;
+            Ok(show::show(&compiled, arguments.stage.into()))
+        }
         None => list(),
+    }
+}
+
+impl Stage {
+    /// The generated module alone shows derivatives of responses.
+    fn wants(self) -> Wanted {
+        match self {
+            Stage::Rust => Wanted::Jacobian,
+            _ => Wanted::Values,
+        }
     }
 }
 

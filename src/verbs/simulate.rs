@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args, ValueEnum};
+use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::progress::Told;
@@ -10,11 +11,13 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 
 use crate::catalogue::{self, Loaded};
+use crate::completion;
 use crate::failure::Failure;
 use crate::files::folder_for_results;
 use crate::histories::Kind;
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
+use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
 // Simulated beside measured.
@@ -43,7 +46,7 @@ pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
     /// Simulate this model, by name or path, in place of the campaign's
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Parameter values above the start values of the campaign: a TOML file with [parameters]
     #[arg(long, value_name = "FILE")]
@@ -99,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         records: &records,
     };
     Ok(match arguments.format {
-        TableFormat::Text => result.text(),
+        TableFormat::Text => prose(&result.text()),
         TableFormat::Json => result.json(),
         TableFormat::Csv => result.csv(),
     })

@@ -3,11 +3,14 @@
 use std::path::PathBuf;
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 
+use crate::completion;
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::report::{Report, page};
+use crate::terminal::prose;
 use crate::verbs::Format;
 
 // All verbs on one campaign.
@@ -32,6 +35,8 @@ mod gap;
 mod summary;
 // What was used.
 mod record;
+// The numbers as a workbook.
+mod workbook;
 // All of it for the page, and without the curves for programs.
 mod contents;
 
@@ -45,9 +50,9 @@ pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
     /// Start from this model, by name or path, in place of the campaign's
-    #[arg(long)]
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Write report.html, study.json and the files of each step into this folder
+    /// Write report.html, study.json, results.xlsx and the files of each step into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: PathBuf,
     /// How to print
@@ -61,10 +66,11 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let contents = contents::Contents::of(&study);
     let json = json::line(&contents.result);
     put(&arguments.out, "study.json", &json)?;
+    workbook::write(&study, &arguments.out)?;
     let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
     put(&arguments.out, "report.html", &page(Report::Study, &title, &contents))?;
     let result = match arguments.format {
-        Format::Text => summary::text(&study, &contents.result.summary, &arguments.out),
+        Format::Text => prose(&summary::text(&study, &contents.result.summary, &arguments.out)),
         Format::Json => json,
     };
     if study.fitted.fit.converged {

@@ -50,8 +50,8 @@ fn parameter_files_are_read_with_care() {
     params("[parameters]\nk_tire = \"2e5\"\n", &["line 2", "string", "a number"]);
     params("[parameters]\nk_tire = inf\n", &["line 2", "a number"]);
     params(
-        "[parameters.k_tire]\nvalue = 200\nunit = \"N/mm\"\n",
-        &["line 1", "N/mm", "N/m"],
+        "[parameters.k_tire]\nvalue = 200\nunit = \"N s/mm\"\n",
+        &["line 1", "the unit \"N s/m\"", "of the kind of N/m, such as \"N/mm\""],
     );
     params("[parameters.k_tire]\nunit = \"N/m\"\n", &["no `value`"]);
     params(

@@ -201,7 +201,7 @@ fn csv_holds_the_numbers_of_json() {
     let csv = succeeds(&[&command[..], &["--format", "csv"]].concat());
     let channel = &parsed(&[&command[..], &["--format", "json"]].concat())["channels"]["pad_to_body"];
     let mut lines = csv.lines();
-    assert_eq!(lines.next(), Some("frequency,pad_to_body_re,pad_to_body_im"));
+    assert_eq!(lines.next(), Some("frequency [Hz],pad_to_body_re,pad_to_body_im"));
     for (at, line) in lines.enumerate() {
         let row: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
         let expected = ["frequency", "re", "im"].map(|part| channel[part][at].as_f64().unwrap());
@@ -306,5 +306,54 @@ fn alike(a: &Value, b: &Value, place: &str) {
             assert!((a - b).abs() <= 1e-12 * a.abs().max(b.abs()), "{place}: {a} and {b}");
         }
         (a, b) => assert_eq!(a, b, "{place}"),
+    }
+}
+
+/// Channels of unlike kinds: of an angle, a force and an acceleration over a force, a moment and a position.
+#[test]
+fn channels_have_the_units_of_their_signals() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("unlike.axle");
+    let text = r#"axle unlike {
+        "A body that pitches on two springs"
+        known param m: kg = 300;
+        known param j: kg m^2 = 400;
+        param k: N/m = 2e4 in 1e3..1e5 "Each spring";
+        param arm: m = 1.2 in 0.5..2 "From the centre to each spring";
+        direction z {
+            road pad;
+            mass body = m;
+            inertia pitch = j;
+            force lift on body;
+            force turn on pitch;
+            link front: body + arm*pitch - pad { spring k; damper 0.01 s*k; }
+            link rear: body - arm*pitch { spring k; damper 0.01 s*k; }
+            channel accelerance = body.acceleration / lift.force;
+            channel turned = pitch.position / turn.force;
+            channel transmitted = front.force / lift.force;
+            channel nodding = pitch.acceleration / pad.position;
+            channel plain = body.acceleration / pad.acceleration;
+        }
+    }"#;
+    std::fs::write(&path, text).unwrap();
+    let frf = |format: &str| {
+        let path = path.to_str().unwrap();
+        crate::common::succeeds(&["frf", path, "--frequencies", "1:2:2", "--format", format])
+    };
+    let json: serde_json::Value = serde_json::from_str(&frf("json")).unwrap();
+    let table = frf("text");
+    for (channel, unit) in [
+        ("accelerance", "(m/s^2)/N"),
+        ("turned", "1/(N m)"),
+        ("transmitted", "1"),
+        ("nodding", "(1/s^2)/m"),
+        ("plain", "1"),
+    ] {
+        assert_eq!(json["channels"][channel]["unit"], unit, "{channel}");
+        let heading = match unit {
+            "1" => format!("{channel}_dB "),
+            unit => format!("{channel}_dB({unit})"),
+        };
+        assert!(table.contains(&heading), "{table}");
     }
 }

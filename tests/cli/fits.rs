@@ -144,6 +144,7 @@ fn results_are_written_whole_and_can_be_used_again() {
         [
             "fit.json",
             "parameters.toml",
+            "results.xlsx",
             "transmissibility.csv",
             "transmissibility.svg"
         ]

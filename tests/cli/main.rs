@@ -16,6 +16,8 @@ mod readme;
 mod records;
 mod rides;
 mod rigs;
+mod terminal;
 mod trials;
 mod tutorial;
 mod unending;
+mod units;

@@ -242,7 +242,8 @@ fn records_are_replayed_and_what_is_left_is_told() {
         assert_eq!((&own["role"], &own["channel"]), (&role.into(), &"body_z".into()));
         assert!(own["nrms"].as_f64().unwrap() < 1e-3, "{own}");
         let columns = fs::read_to_string(out.join(format!("run_{place}.csv"))).unwrap();
-        assert!(columns.starts_with("time,body_z_displacement_measured,body_z_displacement_simulated\n"));
+        let head = "time [s],body_z_displacement_measured [m],body_z_displacement_simulated [m]\n";
+        assert!(columns.starts_with(head));
         assert_eq!(columns.lines().count(), SAMPLES + 1);
         assert!(
             fs::read_to_string(out.join(format!("run_{place}.svg")))
@@ -395,10 +396,35 @@ const STIFF: &str = "axle stiff {
 /// The force of an actuator between two masses, with a gain of its own, and a second input that only one run has.
 #[test]
 fn an_input_between_two_masses_has_a_gain_and_what_is_not_recorded_rests() {
+    finds_the_gain(PAIR);
+}
+
+/// The same where the input itself acts between the masses.
+#[test]
+fn a_force_between_two_points_drives_a_record() {
+    finds_the_gain(&with_actuator("force f on gain*(body - other);", ""));
+}
+
+/// The same where the input acts through the law of a link, which holds its ends apart.
+#[test]
+fn a_force_in_a_law_drives_a_record() {
+    finds_the_gain(&with_actuator(
+        "force f;",
+        "link actuator: body - other { force = -gain*f; }",
+    ));
+}
+
+/// The pair with an actuator of another kind.
+fn with_actuator(input: &str, link: &str) -> String {
+    let text = PAIR.replace("node rod;\n        force f on rod;", input);
+    text.replace("link actuator: rod - gain*(body - other) { spring 1 kN/mm; }", link)
+}
+
+fn finds_the_gain(model: &str) {
     const GAIN: f64 = 1.3;
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().to_str().unwrap();
-    fs::write(folder.path().join("pair.axle"), PAIR).unwrap();
+    fs::write(folder.path().join("pair.axle"), model).unwrap();
     let wind = |t: f64| (11.0 * (t * RATE).floor() / RATE).sin();
     // Each swings on its own, one with the actuator, the other against it.
     let run = |blown: f64| {

@@ -63,7 +63,7 @@ fn the_variants_differ_as_the_thesis_found() {
 fn largest(folder: &Path, run: &str, axis: &str) -> Vec<f64> {
     let text = fs::read_to_string(folder.join(run)).unwrap();
     let (head, rows) = text.split_once('\n').unwrap();
-    let is_wanted = |name: &&str| name.starts_with(axis) && name.ends_with("_acceleration");
+    let is_wanted = |name: &&str| name.starts_with(axis) && name.ends_with("_acceleration [m/s^2]");
     let columns = head.split(',').enumerate().filter(|(_, name)| is_wanted(name));
     let value = |row: &str, column: usize| row.split(',').nth(column).unwrap().parse::<f64>().unwrap().abs();
     columns
@@ -99,7 +99,7 @@ fn time_histories_are_written_run_by_run() {
     assert!(csv.starts_with("run,role,mass,axis,measured_peak"));
     let file = fs::read_to_string(out.join("v30_h30.csv")).unwrap();
     let columns = file.lines().next().unwrap().split(',').count();
-    assert!(file.starts_with("time,z_body_acceleration,"));
+    assert!(file.starts_with("time [s],z_body_acceleration [m/s^2],"));
     assert!(file.lines().all(|line| line.split(',').count() == columns));
     // Of three sweeps a figure each too.
     assert_eq!(fs::read_dir(&out).unwrap().count(), 3 + 2 * 3);

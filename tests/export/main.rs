@@ -5,3 +5,4 @@ mod histories;
 mod matlab;
 mod modelica;
 mod programs;
+mod workbook;

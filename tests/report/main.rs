@@ -51,6 +51,7 @@ fn a_study_writes_all_that_it_promises() {
     assert_eq!(result["discover"]["verdict"], "none", "{said}");
     for file in [
         "report.html",
+        "results.xlsx",
         "fit/parameters.toml",
         "fit/transmissibility.csv",
         "kc/gradients.json",

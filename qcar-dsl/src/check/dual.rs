@@ -84,35 +84,35 @@ impl Div for Complex {
 pub struct Dual {
     /// The number.
     pub value: Complex,
-    /// ∂value/∂parameter
+    /// ∂value/∂parameter; empty where it depends on none.
     pub gradient: Vec<Complex>,
 }
 
 impl Dual {
-    /// A number that does not depend on any of so many parameters.
-    pub fn constant(value: Complex, parameters: usize) -> Dual {
+    /// A number that depends on no parameter.
+    pub fn constant(value: Complex) -> Dual {
         Dual {
             value,
-            gradient: vec![Complex::default(); parameters],
+            gradient: Vec::new(),
         }
+    }
+
+    /// True for a zero that depends on no parameter.
+    fn is_zero(&self) -> bool {
+        self.value == Complex::default() && self.gradient.is_empty()
     }
 
     /// `self factor` for a constant factor.
     pub fn scaled(&self, factor: Complex) -> Dual {
-        self.combine(self, factor, Complex::default())
+        self.combine(&Dual::constant(Complex::default()), factor, Complex::default())
     }
 
     /// `self + other`
     pub fn plus(&self, other: &Dual) -> Dual {
-        let gradient = self
-            .gradient
-            .iter()
-            .zip(&other.gradient)
-            .map(|(&a, &b)| a + b)
-            .collect();
+        let one = Complex::real(1.0);
         Dual {
             value: self.value + other.value,
-            gradient,
+            ..self.combine(other, one, one)
         }
     }
 
@@ -141,12 +141,15 @@ impl Dual {
 
     /// `a self + b other` of the derivatives, and `a self` of the value.
     fn combine(&self, other: &Dual, a: Complex, b: Complex) -> Dual {
-        let gradient = self
-            .gradient
-            .iter()
-            .zip(&other.gradient)
-            .map(|(&x, &y)| a * x + b * y)
-            .collect();
+        let scaled = |of: &Dual, by: Complex| of.gradient.iter().map(|&x| by * x).collect();
+        let gradient = match (self.gradient.is_empty(), other.gradient.is_empty()) {
+            (_, true) => scaled(self, a),
+            (true, false) => scaled(other, b),
+            (false, false) => {
+                let pairs = self.gradient.iter().zip(&other.gradient);
+                pairs.map(|(&x, &y)| a * x + b * y).collect()
+            }
+        };
         Dual {
             value: self.value * a,
             gradient,
@@ -154,8 +157,8 @@ impl Dual {
     }
 }
 
-/// Solves `matrix x = column` for several columns, by elimination with partial pivoting. A singular matrix gives
-/// numbers that are not finite.
+/// Solves `matrix x = column` for several columns, by elimination with partial pivoting, past the zeros. A singular matrix
+/// gives numbers that are not finite.
 pub fn solve(mut matrix: Vec<Vec<Dual>>, mut columns: Vec<Vec<Dual>>) -> Vec<Vec<Dual>> {
     let size = matrix.len();
     for at in 0..size {
@@ -163,29 +166,37 @@ pub fn solve(mut matrix: Vec<Vec<Dual>>, mut columns: Vec<Vec<Dual>>) -> Vec<Vec
         let pivot = pivot.unwrap_or(at);
         matrix.swap(at, pivot);
         columns.iter_mut().for_each(|column| column.swap(at, pivot));
+        let pivot_row: Vec<(usize, Dual)> = nonzeros(&matrix[at], at);
         for row in at + 1..size {
-            if matrix[row][at].value == Complex::default() {
+            if matrix[row][at].is_zero() {
                 continue;
             }
             let factor = matrix[row][at].over(&matrix[at][at]);
-            let pivot_row = matrix[at].clone();
-            for (entry, own) in matrix[row].iter_mut().zip(&pivot_row).skip(at) {
-                *entry = entry.minus(&factor.times(own));
+            for (place, own) in &pivot_row {
+                matrix[row][*place] = matrix[row][*place].minus(&factor.times(own));
             }
-            for column in &mut columns {
+            for column in columns.iter_mut().filter(|column| !column[at].is_zero()) {
                 column[row] = column[row].minus(&factor.times(&column[at]));
             }
         }
     }
+    let rows: Vec<Vec<(usize, Dual)>> = (0..size).map(|at| nonzeros(&matrix[at], at + 1)).collect();
     for column in &mut columns {
         for at in (0..size).rev() {
-            for place in at + 1..size {
-                column[at] = column[at].minus(&matrix[at][place].times(&column[place]));
+            for (place, entry) in &rows[at] {
+                column[at] = column[at].minus(&entry.times(&column[*place]));
             }
             column[at] = column[at].over(&matrix[at][at]);
         }
     }
     columns
+}
+
+/// The entries of a row from a place on that are not zero.
+fn nonzeros(row: &[Dual], from: usize) -> Vec<(usize, Dual)> {
+    let entries = row.iter().enumerate().skip(from);
+    let nonzero = entries.filter(|(_, entry)| !entry.is_zero());
+    nonzero.map(|(place, entry)| (place, entry.clone())).collect()
 }
 
 #[cfg(test)]

@@ -78,7 +78,7 @@ fn carrying(scratch: &Scratch) -> Vec<bool> {
         let point = Point::new(scratch.model, kind, seed);
         let leaf = |symbol| point.leaf(symbol);
         let values = Values::new(&scratch.graph, &leaf);
-        let dual = |e| Dual::constant(Complex::real(values.of(e)), 0);
+        let dual = |e| Dual::constant(Complex::real(values.of(e)));
         for (carries, slopes) in carries.iter_mut().zip(&scratch.slopes) {
             let stiffness = dynamic_stiffness(slopes, &dual, NEARLY_STATIC).value.abs();
             *carries |= stiffness.is_nan() || stiffness > NEARLY_NOTHING;

@@ -27,7 +27,10 @@ mod inertia;
 mod kinetic;
 mod nodes;
 mod passive;
+mod pushed;
 mod visible;
+// The rule of passive links, for several that use each other.
+mod coupled;
 
 use slopes::{Slopes, slopes};
 pub use visible::Unseen;
@@ -98,10 +101,13 @@ pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>
     let mut found = something_is_seen(&model);
     found.extend(motions_are_used(&model));
     found.extend(gravities_pull(&model));
+    found.extend(forces_are_used(&model));
     found.extend(duplicates::links_are_distinct(&model, &scratch.graph));
     found.extend(inertia::inertias_are_positive(&scratch));
     found.extend(passive::links_are_passive(&scratch));
+    found.extend(coupled::couplings_are_sound(&scratch));
     found.extend(nodes::nodes_are_solvable(&scratch));
+    found.extend(pushed::rates_of_forces_are_not_needed(&scratch));
     found.extend(held::masses_are_held(&scratch));
     if refuses(&found) {
         return Err(found);
@@ -158,6 +164,16 @@ fn gravities_pull(model: &Model) -> Vec<Diagnostic> {
         .collect()
 }
 
+/// Every force input has a point, or a law that uses it.
+fn forces_are_used(model: &Model) -> Vec<Diagnostic> {
+    let laws = model.links.iter().flat_map(|link| link.law.force_inputs(&model.graph));
+    let used: Vec<u16> = laws.collect();
+    let inputs = (0..).zip(&model.forces);
+    let idle = inputs.filter(|(place, force)| force.on.is_empty() && !used.contains(place));
+    idle.map(|(_, force)| structure::force_not_used(force.declared.span, &force.name))
+        .collect()
+}
+
 /// A model with what the rules derive from it.
 struct Scratch<'a> {
     model: &'a Model,
@@ -195,10 +211,10 @@ fn expressions(model: &Model, slopes: &[Slopes]) -> Vec<Expr> {
         .links
         .iter()
         .flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
-    let stretches = model
-        .links
-        .iter()
-        .flat_map(|link| link.stretch.iter().map(|(_, coefficient)| *coefficient));
+    let stretches = model.links.iter().map(|link| &link.stretch);
+    let stretches = stretches.chain(model.forces.iter().map(|force| &force.on));
+    let stretches = stretches.chain(model.points.iter().map(|point| &point.combination));
+    let stretches = stretches.flatten().map(|(_, coefficient)| *coefficient);
     let inertias = model.coordinates.iter().filter_map(|coordinate| match coordinate.kind {
         CoordinateKind::Mass(inertia) => Some(inertia),
         _ => None,

@@ -9,7 +9,7 @@ use crate::model::{CoordinateKind, Link};
 
 /// What the balance of a node is solved for.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Balance {
+pub enum Balance {
     /// Its acceleration: an inerter holds it.
     Acceleration,
     /// Its velocity: a damper holds it.
@@ -72,7 +72,8 @@ fn together(scratch: &Scratch, nodes: &[(CoordinateId, Option<Balance>)]) -> Vec
     found
 }
 
-fn nodes(scratch: &Scratch) -> Vec<(CoordinateId, Option<Balance>)> {
+/// The massless nodes.
+pub fn nodes(scratch: &Scratch) -> Vec<(CoordinateId, Option<Balance>)> {
     let ids = (0..scratch.model.coordinates.len() as u16).map(CoordinateId);
     let is_node = |id: &CoordinateId| scratch.model.coordinates[usize::from(id.0)].kind == CoordinateKind::Node;
     ids.filter(is_node).map(|id| (id, balance(scratch, id))).collect()

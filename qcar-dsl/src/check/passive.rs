@@ -12,19 +12,21 @@ use crate::expr::{Expr, LinkId, Symbol};
 use crate::model::{Link, Term};
 
 /// How many points of a nonlinear law are tried.
-const TRIALS: u64 = 64;
+pub(super) const TRIALS: u64 = 64;
 
 /// Travel, m or rad, and speed, m/s or rad/s, that a suspension sees.
-const TRAVEL: f64 = 0.1;
-const SPEED: f64 = 2.0;
+pub(super) const TRAVEL: f64 = 0.1;
+pub(super) const SPEED: f64 = 2.0;
 
 /// Angular frequencies of small vibrations, rad/s, from those of a car's body to those of sound.
 const FREQUENCIES: [f64; 6] = [0.1, 1.0, 10.0, 1e2, 1e3, 1e4];
 
-/// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion.
+/// No damper and no inerter is negative anywhere in the declared ranges, and no law pushes along with the motion while the
+/// force inputs are zero; but for links that the text calls active.
 pub fn links_are_passive(scratch: &Scratch) -> Vec<Diagnostic> {
     let mut found = Vec::new();
-    for (index, link) in scratch.model.links.iter().enumerate() {
+    let links = scratch.model.links.iter().enumerate();
+    for (index, link) in links.filter(|(_, link)| !link.law.active) {
         let rolling = link.rolling.iter().flatten();
         for term in link.law.terms.iter().chain(rolling) {
             found.extend(match *term {
@@ -56,14 +58,13 @@ fn negative(scratch: &Scratch, link: &Link, coefficient: Expr, what: &str) -> Op
 
 /// A law without inner states that a faster motion helps on.
 fn pushes_along(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagnostic> {
-    let force = scratch.slopes[usize::from(id.0)].force;
     let has_law = link.law.terms.iter().any(|term| matches!(term, Term::Force(_)));
     if !has_law {
         return None;
     }
     (0..TRIALS).find_map(|trial| {
         let (s, v) = (TRAVEL * centred(trial, 1), SPEED * centred(trial, 2));
-        let at = |v| force_at(scratch, force, trial, s, v);
+        let at = |v| force_at(scratch, id, trial, s, v);
         let (moving, still) = (at(v)?, at(0.0)?);
         let power = (moving - still) * v;
         let size = (moving.abs() + still.abs()) * v.abs();
@@ -80,7 +81,7 @@ fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagno
         let parameters = drawn(scratch, &laws, trial)?;
         let leaf = |symbol| parameters(symbol).unwrap_or(0.0);
         let values = Values::new(&scratch.graph, &leaf);
-        let constant = |e| Dual::constant(Complex::real(values.of(e)), 0);
+        let constant = |e| Dual::constant(Complex::real(values.of(e)));
         let feeds = |frequency: &&f64| {
             let stiffness = dynamic_stiffness(slopes, &constant, **frequency).value;
             stiffness.im < -1e-9 * stiffness.abs()
@@ -94,21 +95,30 @@ fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagno
     })
 }
 
-fn centred(seed: u64, tag: u64) -> f64 {
+pub(super) fn centred(seed: u64, tag: u64) -> f64 {
     2.0 * uniform(seed, tag) - 1.0
 }
 
-/// The force at a point; `None` where a parameter has neither range nor default.
-fn force_at(scratch: &Scratch, force: Expr, trial: u64, s: f64, v: f64) -> Option<f64> {
+/// The force of a link at a point, while all others rest; `None` where a parameter has neither range nor default.
+fn force_at(scratch: &Scratch, id: LinkId, trial: u64, s: f64, v: f64) -> Option<f64> {
+    let force = scratch.slopes[usize::from(id.0)].force;
     let parameters = drawn(scratch, &[force], trial)?;
-    let motion = |symbol| if matches!(symbol, Symbol::Stretch(_)) { s } else { v };
+    let motion = |symbol| match symbol {
+        Symbol::Stretch(own) if own == id => s,
+        Symbol::Rate(own) if own == id => v,
+        _ => 0.0,
+    };
     let leaf = |symbol| parameters(symbol).unwrap_or_else(|| motion(symbol));
     Some(scratch.graph.evaluate(force, &leaf))
 }
 
 /// Values within their ranges for the parameters of some expressions, and `None` for all else; `None` altogether where
 /// a parameter has neither range nor default.
-fn drawn<'a>(scratch: &'a Scratch, of: &[Expr], trial: u64) -> Option<impl Fn(Symbol) -> Option<f64> + use<'a>> {
+pub(super) fn drawn<'a>(
+    scratch: &'a Scratch,
+    of: &[Expr],
+    trial: u64,
+) -> Option<impl Fn(Symbol) -> Option<f64> + use<'a>> {
     let model = scratch.model;
     let range = move |index: u16| bounds(model, &model.parameters[usize::from(index)]);
     let decided = |symbol| !matches!(symbol, Symbol::Parameter(index) if range(index).is_none());

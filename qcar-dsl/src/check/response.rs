@@ -5,7 +5,8 @@ use std::collections::BTreeMap;
 use super::Scratch;
 use super::dual::{Complex, Dual, solve};
 use super::sample::{Kind, Point, Values};
-use super::stiffness::dynamic_stiffness;
+use super::slopes::Slopes;
+use super::stiffness::{coupled, driven, dynamic_stiffness};
 use crate::expr::{CoordinateId, Expr, LinkId};
 use crate::model::{CoordinateKind, Quantity, Reference, Signal};
 
@@ -21,7 +22,7 @@ const ROUNDOFF: f64 = 1e-12;
 pub struct Seen {
     /// Its size.
     pub value: f64,
-    /// Its derivatives.
+    /// Its derivatives; empty where it depends on none.
     pub gradient: Vec<Complex>,
 }
 
@@ -35,7 +36,7 @@ impl Seen {
 }
 
 /// Everything that can be seen of a model at one parameter set: responses of outputs and channels to each input, and
-/// for laws that are not linear the change of the force itself, in so many motions.
+/// for laws that are not linear the change of the force itself, in so many motions. The parameters are in order.
 pub fn sensitivities(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Vec<Seen> {
     let is_nonlinear = scratch.slopes.iter().any(|slopes| slopes.nonlinear);
     let has_clock = scratch.model.parameters.iter().any(|parameter| parameter.clock);
@@ -68,23 +69,21 @@ struct At<'a> {
 /// The motion of every coordinate, and what each link does, under one input.
 struct Excited {
     coordinates: Vec<Dual>,
+    points: Vec<Dual>,
     stretches: Vec<Dual>,
     forces: Vec<Dual>,
 }
 
 impl At<'_> {
     fn dual(&self, e: Expr) -> Dual {
-        let mut dual = self.constant(Complex::real(self.values.of(e)));
+        let mut dual = Dual::constant(Complex::real(self.values.of(e)));
         for &(parameter, derivative) in self.scratch.gradient(e) {
-            if let Some(place) = self.estimated.iter().position(|&other| other == parameter) {
+            if let Ok(place) = self.estimated.binary_search(&parameter) {
+                dual.gradient.resize(self.estimated.len(), Complex::default());
                 dual.gradient[place] = Complex::real(self.values.of(derivative));
             }
         }
         dual
-    }
-
-    fn constant(&self, value: Complex) -> Dual {
-        Dual::constant(value, self.estimated.len())
     }
 
     /// Adds what is seen at a frequency.
@@ -146,7 +145,7 @@ impl At<'_> {
     /// The answers to a unit of each input, and to a unit of force inside each link that asks for it.
     fn excite(&self, stiffnesses: &[Dual], frequency: f64) -> Vec<(Drive, Excited)> {
         let stretches = self.stretches();
-        let mut system = System::new(self.free(), self.drives(), &self.constant(Complex::default()));
+        let mut system = System::new(self.free(), self.drives(), &Dual::constant(Complex::default()));
         for (c, coordinate) in self.scratch.model.coordinates.iter().enumerate() {
             if let CoordinateKind::Mass(mass) = coordinate.kind {
                 system.add(c, c, &self.dual(mass).scaled(Complex::real(-frequency * frequency)));
@@ -161,20 +160,65 @@ impl At<'_> {
                 system.push(Drive::Inside(link), *c, &own.scaled(Complex::real(-1.0)));
             }
         }
+        let coupled = self.coupled(frequency);
+        for (link, other, stiffness) in &coupled {
+            for (c, own) in &stretches[*link] {
+                let pull = own.times(stiffness);
+                let others = stretches[*other].iter();
+                others.for_each(|(moved, coefficient)| system.add(*c, *moved, &pull.times(coefficient)));
+            }
+        }
         for (index, force) in self.scratch.model.forces.iter().enumerate() {
-            system.push(
-                Drive::Force(index),
-                usize::from(force.on.0),
-                &self.constant(Complex::real(1.0)),
-            );
+            for &(c, share) in &force.on {
+                system.push(Drive::Force(index), usize::from(c.0), &self.dual(share));
+            }
+        }
+        let driven: Vec<(usize, usize, Dual)> = self.driven(frequency);
+        for (link, input, force) in &driven {
+            for (c, own) in &stretches[*link] {
+                let resisted = own.times(force).scaled(Complex::real(-1.0));
+                system.push(Drive::Force(*input), *c, &resisted);
+            }
         }
         let excited = |(drive, mut motion): (Drive, BTreeMap<usize, Dual>)| {
             if let Drive::Motion(own) = drive {
-                motion.insert(own, self.constant(Complex::real(1.0)));
+                motion.insert(own, Dual::constant(Complex::real(1.0)));
             }
-            (drive, self.excited(motion, &stretches, stiffnesses))
+            let mut excited = self.excited(motion, &stretches, stiffnesses);
+            for (link, _, force) in driven.iter().filter(|(_, input, _)| drive == Drive::Force(*input)) {
+                excited.forces[*link] = excited.forces[*link].plus(force);
+            }
+            for (link, other, stiffness) in &coupled {
+                let force = stiffness.times(&excited.stretches[*other]);
+                excited.forces[*link] = excited.forces[*link].plus(&force);
+            }
+            (drive, excited)
         };
         system.solve().into_iter().map(excited).collect()
+    }
+
+    /// What force inputs do in laws: the link, the input, the force of the link for a unit of it.
+    fn driven(&self, frequency: f64) -> Vec<(usize, usize, Dual)> {
+        let laws = self.scratch.slopes.iter().enumerate();
+        let of = |(link, slopes): (usize, &Slopes)| {
+            let forces = driven(slopes, &|e| self.dual(e), frequency).into_iter();
+            forces
+                .map(move |(input, force)| (link, usize::from(input), force))
+                .collect::<Vec<_>>()
+        };
+        laws.flat_map(of).collect()
+    }
+
+    /// What stretches of other links do in laws: the link, the other, the force of the link for a unit of that stretch.
+    fn coupled(&self, frequency: f64) -> Vec<(usize, usize, Dual)> {
+        let laws = self.scratch.slopes.iter().enumerate();
+        let of = |(link, slopes): (usize, &Slopes)| {
+            let forces = coupled(slopes, &|e| self.dual(e), frequency).into_iter();
+            forces
+                .map(move |(other, force)| (link, other, force))
+                .collect::<Vec<_>>()
+        };
+        laws.flat_map(of).collect()
     }
 
     fn free(&self) -> Vec<usize> {
@@ -189,13 +233,13 @@ impl At<'_> {
     }
 
     fn stretches(&self) -> Vec<Stretch> {
+        let links = self.scratch.model.links.iter();
+        links.map(|link| self.along(&link.stretch)).collect()
+    }
+
+    fn along(&self, combination: &[(CoordinateId, Expr)]) -> Stretch {
         let of = |(id, coefficient): &(CoordinateId, Expr)| (usize::from(id.0), self.dual(*coefficient));
-        self.scratch
-            .model
-            .links
-            .iter()
-            .map(|link| link.stretch.iter().map(of).collect())
-            .collect()
+        combination.iter().map(of).collect()
     }
 
     /// The inputs, and the insides of laws that are looked at.
@@ -214,7 +258,7 @@ impl At<'_> {
     }
 
     fn excited(&self, motion: BTreeMap<usize, Dual>, stretches: &[Stretch], stiffnesses: &[Dual]) -> Excited {
-        let still = self.constant(Complex::default());
+        let still = Dual::constant(Complex::default());
         let moved = |c: usize| motion.get(&c).unwrap_or(&still).clone();
         let coordinates: Vec<Dual> = (0..self.scratch.model.coordinates.len()).map(moved).collect();
         let stretch = |parts: &Stretch| {
@@ -222,6 +266,9 @@ impl At<'_> {
                 sum.plus(&coefficient.times(&coordinates[*c]))
             })
         };
+        let points = self.scratch.model.points.iter();
+        let points = points.map(|point| stretch(&self.along(&point.combination)));
+        let points = points.collect();
         let stretches: Vec<Dual> = stretches.iter().map(stretch).collect();
         let forces = stretches
             .iter()
@@ -230,6 +277,7 @@ impl At<'_> {
             .collect();
         Excited {
             coordinates,
+            points,
             stretches,
             forces,
         }
@@ -308,16 +356,23 @@ enum Drive {
 
 impl Excited {
     fn response(&self, signal: &Signal, frequency: f64) -> Dual {
-        let rate = Complex::imaginary(frequency);
         match signal {
-            Signal::Motion(CoordinateId(c), Quantity::Position) => self.coordinates[usize::from(*c)].clone(),
-            Signal::Motion(CoordinateId(c), Quantity::Velocity) => self.coordinates[usize::from(*c)].scaled(rate),
-            Signal::Motion(CoordinateId(c), Quantity::Acceleration) => {
-                self.coordinates[usize::from(*c)].scaled(rate * rate)
+            Signal::Motion(CoordinateId(c), quantity) => {
+                differentiated(&self.coordinates[usize::from(*c)], *quantity, frequency)
             }
+            Signal::Point(place, quantity) => differentiated(&self.points[usize::from(*place)], *quantity, frequency),
             Signal::LinkForce(LinkId(l)) => self.forces[usize::from(*l)].clone(),
             Signal::LinkStretch(LinkId(l)) => self.stretches[usize::from(*l)].clone(),
         }
+    }
+}
+
+fn differentiated(position: &Dual, quantity: Quantity, frequency: f64) -> Dual {
+    let rate = Complex::imaginary(frequency);
+    match quantity {
+        Quantity::Position => position.clone(),
+        Quantity::Velocity => position.scaled(rate),
+        Quantity::Acceleration => position.scaled(rate * rate),
     }
 }
 

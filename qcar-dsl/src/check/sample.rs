@@ -132,6 +132,7 @@ pub fn tag(symbol: Symbol) -> u64 {
         Symbol::Stretch(link) => (2, link.0, 0),
         Symbol::Rate(link) => (3, link.0, 0),
         Symbol::Inner(link, index) => (4, link.0, index),
+        Symbol::Force(input) => (6, input, 0),
         _ => (5, 0, 0),
     };
     (kind << 32) | (u64::from(first) << 16) | u64::from(second)

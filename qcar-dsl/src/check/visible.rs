@@ -76,7 +76,7 @@ fn estimated(scratch: &Scratch) -> Vec<u16> {
 /// The parameters that stand in forces which nothing changes, where an output shows a mean.
 fn constant_forces(scratch: &Scratch) -> BTreeSet<Symbol> {
     let shows_mean = |signal: &Signal| match signal {
-        Signal::Motion(_, quantity) => *quantity == Quantity::Position,
+        Signal::Motion(_, quantity) | Signal::Point(_, quantity) => *quantity == Quantity::Position,
         Signal::LinkForce(_) | Signal::LinkStretch(_) => true,
     };
     let model = scratch.model;

@@ -27,12 +27,10 @@ impl Code {
     /// True for mistakes of units: what makes one stands in the expression itself, so that it is one whatever else of
     /// the text cannot be read.
     pub fn is_of_units(self) -> bool {
-        use Code::{
-            ArgumentHasUnit, ChannelUnitsDiffer, NotCoherent, OddExponent, UnitsDiffer, UnknownUnit, WrongUnit,
-        };
+        use Code::{ArgumentHasUnit, NotCoherent, OddExponent, UnitsDiffer, UnknownUnit, WrongUnit};
         matches!(
             self,
-            UnknownUnit | NotCoherent | OddExponent | UnitsDiffer | WrongUnit | ArgumentHasUnit | ChannelUnitsDiffer
+            UnknownUnit | NotCoherent | OddExponent | UnitsDiffer | WrongUnit | ArgumentHasUnit
         )
     }
 }
@@ -180,8 +178,6 @@ codes! {
     RangeReversed = "range_reversed",
     /// A default outside of the declared range.
     DefaultOutsideRange = "default_outside_range",
-    /// A ratio of unlike things in a channel.
-    ChannelUnitsDiffer = "channel_units_differ",
     /// A parameter that nothing uses.
     UnusedParameter = "unused_parameter",
     /// A state of a name that the law has already.
@@ -210,6 +206,12 @@ codes! {
     DuplicateLink = "duplicate_link",
     /// A prescribed motion that no link touches.
     MotionNotUsed = "motion_not_used",
+    /// A law of several stretches at a massless node.
+    CoupledAtNode = "coupled_at_node",
+    /// A force input that acts on nothing.
+    ForceNotUsed = "force_not_used",
+    /// A motion of a massless node that would need the rate of a force input.
+    ForceRateNeeded = "force_rate_needed",
     /// A gravity in a direction without masses.
     GravityPullsNothing = "gravity_pulls_nothing",
     /// A model with nothing to see.

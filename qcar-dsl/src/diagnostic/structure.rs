@@ -124,7 +124,9 @@ pub fn negative_damping(span: Span, link: &str, what: &str, lowest: f64, at: &[S
         format!("the {what} of link `{link}` can be {lowest}{place}"),
     )
     .label(span, "would give energy instead of taking it")
-    .hint("write ranges within which it stays at zero or above, such as `in 0..5000`")
+    .hint(
+        "write ranges within which it stays at zero or above, such as `in 0..5000`; or `active;` into the link, where it is meant to give energy",
+    )
 }
 
 /// A law that pushes along with the motion.
@@ -132,7 +134,7 @@ pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
     let message = format!("the law of link `{link}` gives energy at s = {s:.3}, v = {v:.3}");
     Diagnostic::error(Code::LawGivesEnergy, message)
         .label(span, "pushes along with the motion there")
-        .hint("write the force that resists, `force = c*v` with a positive `c`")
+        .hint("write the force that resists, `force = c*v` with a positive `c`; or `active;` beside it, where it is meant to give energy")
 }
 
 /// A law with inner states that pushes small vibrations on.
@@ -140,7 +142,38 @@ pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnosti
     let message = format!("the law of link `{link}` gives energy to vibrations about rest at {frequency} rad/s");
     Diagnostic::error(Code::LawGivesEnergy, message)
         .label(span, "gives more in a cycle than it takes")
-        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`")
+        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or `active;` beside it, where it is meant to give energy")
+}
+
+/// Links whose laws use each other, and that together push along with the motion.
+pub fn links_give_energy(links: &Named, span: Span) -> Diagnostic {
+    let message = format!("the laws of {} together give energy", names(links));
+    Diagnostic::error(Code::LawGivesEnergy, message)
+        .label(span, "pushes along with the motion of the others")
+        .hint("write forces that resist the rates together; or `active;` beside one of them, where they are meant to give energy")
+}
+
+/// Two links whose elastic forces have no common potential.
+pub fn no_potential(links: &Named) -> Diagnostic {
+    let message = format!(
+        "the laws of {} give energy along a closed path of their stretches",
+        names(links)
+    );
+    let diagnostic = Diagnostic::error(Code::LawGivesEnergy, message);
+    label_all(diagnostic, links, "pulls otherwise with the other's stretch than the other with this one's")
+        .hint("write both forces as slopes of one energy, ∂E/∂s of each stretch; or `active;` beside one of them, where it is meant to give energy")
+}
+
+/// A law of several stretches at a massless node.
+pub fn coupled_at_node(link: (Span, &str), node: (Span, &str)) -> Diagnostic {
+    let message = format!(
+        "link `{}` uses the stretch of another link, and ends at the massless node `{}`",
+        link.1, node.1
+    );
+    Diagnostic::error(Code::CoupledAtNode, message)
+        .label(link.0, "the balance of the node would need both stretches at once")
+        .label(node.0, "has no mass")
+        .hint(format!("write `mass {} = …;` with the mass of the real part", node.1))
 }
 
 /// Two links that are one.
@@ -159,6 +192,26 @@ pub fn motion_not_used(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(Code::MotionNotUsed, format!("`{name}` moves nothing"))
         .label(span, "no link touches it")
         .hint(format!("write `link tire: wheel - {name} {{ … }}`, or remove the line"))
+}
+
+/// A force input that has no point, and that no law uses.
+pub fn force_not_used(span: Span, name: &str) -> Diagnostic {
+    Diagnostic::error(Code::ForceNotUsed, format!("force `{name}` acts on nothing"))
+        .label(span, "no point, and no law uses it")
+        .hint(format!(
+            "write `force {name} on body - wheel;`, or use it in a law, `force = -{name};`"
+        ))
+}
+
+/// A motion of a massless node that follows a force input at once.
+pub fn force_rate_needed((span, node): (Span, &str), (force_span, force): (Span, &str), motion: &str) -> Diagnostic {
+    let message = format!("the {motion} of the massless node `{node}` would need the rate of force `{force}`");
+    Diagnostic::error(Code::ForceRateNeeded, message)
+        .label(force_span, "pushes it; its rate is no input")
+        .label(span, format!("its {motion} is shown, or a state of a law needs it"))
+        .hint(format!(
+            "write `mass {node} = …;` with the mass of the real part, or a damper beside its spring"
+        ))
 }
 
 /// A gravity in a direction without masses.

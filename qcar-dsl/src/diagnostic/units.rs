@@ -98,14 +98,21 @@ pub fn stretch_has_constant(span: Span) -> Diagnostic {
         .hint("write the free length or gap into the law: `force = k*(s + preload);`")
 }
 
-/// A stretch in which all coordinates cancel.
-pub fn stretch_vanishes(span: Span, name: &str) -> Diagnostic {
+/// A stretch of a link or force, or a point, in which all coordinates cancel.
+pub fn stretch_vanishes(span: Span, kind: &str, name: &str) -> Diagnostic {
+    let does = match kind {
+        "force" => "moves nothing",
+        "point" => "never moves",
+        _ => "never stretches",
+    };
     Diagnostic::error(
         Code::StretchVanishes,
-        format!("link `{name}` never stretches: both ends are the same point"),
+        format!("{kind} `{name}` {does}: both ends are the same point"),
     )
     .label(span, "always 0")
-    .hint("write two different points, or leave the link out by an `if`")
+    .hint(format!(
+        "write two different points, or leave the {kind} out by an `if`"
+    ))
 }
 
 /// A stretch that is neither a length nor an angle.
@@ -209,14 +216,4 @@ pub fn default_outside_range(span: Span, name: &str) -> Diagnostic {
     )
     .label(span, "not between the bounds")
     .hint("write a default between the bounds, or wider bounds")
-}
-
-/// A ratio of unlike things in a channel.
-pub fn channel_units_differ(span: Span, above: &str, below: &str) -> Diagnostic {
-    Diagnostic::error(
-        Code::ChannelUnitsDiffer,
-        format!("a channel compares like with like, not {above} with {below}"),
-    )
-    .label(span, format!("{above} over {below}"))
-    .hint("write two accelerations, two positions or two forces, such as `body.acceleration / pad.acceleration`")
 }

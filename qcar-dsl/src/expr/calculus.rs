@@ -72,6 +72,11 @@ impl Differential {
         self.leaves.get(&leaf).copied()
     }
 
+    /// The leaves that have one.
+    pub fn leaves(&self) -> impl Iterator<Item = Symbol> {
+        self.leaves.keys().copied()
+    }
+
     /// The derivative of an expression.
     pub fn of(&mut self, g: &mut Graph, e: Expr) -> Expr {
         if let Some(&known) = self.known.get(&e) {

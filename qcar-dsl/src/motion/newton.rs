@@ -69,15 +69,20 @@ impl Derivation<'_> {
     /// The sum of the forces that are inputs.
     pub(super) fn applied(&mut self, c: CoordinateId) -> Expr {
         let mut sum = self.g.constant(0.0);
-        let inputs = self.model.forces.iter().enumerate().filter(|(_, force)| force.on == c);
+        for (i, force) in self.model.forces.iter().enumerate() {
+            for &(_, coefficient) in force.on.iter().filter(|(pushed, _)| *pushed == c) {
+                let force = self.g.symbol(Symbol::Force(i as u16));
+                let share = self.g.mul(coefficient, force);
+                sum = self.g.add(sum, share);
+            }
+        }
         let contact = self
             .tyre
             .iter()
             .flat_map(|tyre| tyre.wheel.iter().enumerate())
             .filter(|(_, wheel)| **wheel == c);
-        let inputs = inputs.map(|(i, _)| Symbol::Force(i as u16));
-        for symbol in inputs.chain(contact.map(|(axis, _)| Symbol::ContactForce(axis as u16))) {
-            let force = self.g.symbol(symbol);
+        for (axis, _) in contact {
+            let force = self.g.symbol(Symbol::ContactForce(axis as u16));
             sum = self.g.add(sum, force);
         }
         sum

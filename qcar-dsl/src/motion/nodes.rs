@@ -100,7 +100,8 @@ impl Derivation<'_> {
     // Balances
 
     pub(super) fn positions_of_static_nodes(&mut self) {
-        let solution = self.solve_nodes(Role::Static, |d, l| {
+        let applied = self.applied_to_nodes(Role::Static);
+        let solution = self.solve_nodes(Role::Static, applied, |d, l| {
             let law = d.laws[l.0 as usize];
             let given = d.along_others(l, Role::Static, Self::place);
             let mut at_rest = Substitution::new(Leaves::from([(Symbol::Stretch(l), given)]));
@@ -122,7 +123,8 @@ impl Derivation<'_> {
     }
 
     pub(super) fn velocities_of_damped_nodes(&mut self) {
-        let solution = self.solve_nodes(Role::Damped, |d, l| {
+        let applied = self.applied_to_nodes(Role::Damped);
+        let solution = self.solve_nodes(Role::Damped, applied, |d, l| {
             let law = d.laws[l.0 as usize];
             let given = d.along_others(l, Role::Damped, Self::speed);
             let mut at_rest = Substitution::new(Leaves::from([(Symbol::Rate(l), given)]));
@@ -136,9 +138,11 @@ impl Derivation<'_> {
         }
     }
 
-    /// The balance of a static node holds at every instant, so its time derivative is zero too.
+    /// The balance of a static node holds at every instant, so its time derivative is zero too. What the inputs push there
+    /// does not change: `check` refuses forces whose rate would be needed.
     pub(super) fn velocities_of_static_nodes(&mut self) {
-        let solution = self.solve_nodes(Role::Static, |d, l| {
+        let steady = vec![self.g.constant(0.0); self.with_role(Role::Static).len()];
+        let solution = self.solve_nodes(Role::Static, steady, |d, l| {
             let given = d.along_others(l, Role::Static, Self::speed);
             let mut leaves = Leaves::from([(Symbol::Stretch(l), d.g.symbol(Symbol::Rate(l)))]);
             for (i, inner) in d.model.links[l.0 as usize].law.inner.iter().enumerate() {
@@ -189,15 +193,16 @@ impl Derivation<'_> {
     }
 
     /// Solves the balances of the nodes of one role. `law` gives for a link how its force grows with what is solved
-    /// for, and what it is when that is zero.
+    /// for, and what it is when that is zero; `applied` is what pushes each node beside the links.
     fn solve_nodes(
         &mut self,
         role: Role,
+        applied: Vec<Expr>,
         law: impl Fn(&mut Self, LinkId) -> (Expr, Expr),
     ) -> Vec<(CoordinateId, Expr)> {
         let nodes = self.with_role(role);
         let mut matrix = Symmetric::new(nodes.len());
-        let mut balance: Vec<Expr> = nodes.iter().map(|&c| self.applied_to_group(c)).collect();
+        let mut balance = applied;
         for l in self.acting_links() {
             let held = places(&nodes, &self.reduced[l.0 as usize]);
             if held.is_empty() {
@@ -212,6 +217,13 @@ impl Derivation<'_> {
         }
         let solution = Factors::of(self.g, matrix).solve(self.g, balance);
         nodes.into_iter().zip(solution).collect()
+    }
+
+    fn applied_to_nodes(&mut self, role: Role) -> Vec<Expr> {
+        self.with_role(role)
+            .into_iter()
+            .map(|c| self.applied_to_group(c))
+            .collect()
     }
 
     /// The forces that are inputs, on a node and on all that it leads.
@@ -261,8 +273,10 @@ impl Derivation<'_> {
 }
 
 /// Where the coordinates of a stretch stand in a list, with their coefficients.
+///
+/// The list is in the order of the coordinates.
 pub(super) fn places(list: &[CoordinateId], stretch: &[(CoordinateId, Expr)]) -> Vec<(usize, Expr)> {
-    let place = |c| list.iter().position(|&other| other == c);
+    let place = |c| list.binary_search(&c).ok();
     stretch
         .iter()
         .filter_map(|&(c, coefficient)| Some((place(c)?, coefficient)))

@@ -10,7 +10,7 @@ use crate::diagnostic::reading;
 use crate::syntax::{Element, ElementUse, LawStatement, Name, UnitText};
 
 /// What a statement of a law can begin with.
-const WORDS: [&str; 10] = [
+const WORDS: [&str; 11] = [
     "spring",
     "damper",
     "inerter",
@@ -18,6 +18,7 @@ const WORDS: [&str; 10] = [
     "state",
     "rate",
     "let",
+    "active",
     "rolling",
     "if",
     "an element's name",
@@ -71,6 +72,11 @@ fn law_statement(tokens: &mut Tokens) -> Parsed<LawStatement> {
         Some("rate") => rate(tokens),
         Some("let") => Ok(LawStatement::Let(definition(tokens)?)),
         Some("if") => Ok(LawStatement::If(conditional(tokens, &mut law)?)),
+        Some("active") if is_alone(tokens) => {
+            tokens.take_word("active");
+            tokens.expect(";", "active;")?;
+            Ok(LawStatement::Active)
+        }
         Some("rolling") => {
             tokens.take_word("rolling");
             let inside = tokens.block("rolling { force = …; }")?;
@@ -79,6 +85,12 @@ fn law_statement(tokens: &mut Tokens) -> Parsed<LawStatement> {
         Some(_) => element_use(tokens),
         None => Err(Box::new(reading::unknown_statement(span, &tokens.found(), &WORDS))),
     }
+}
+
+/// `active;`, which is no use of an element of that name.
+fn is_alone(tokens: &Tokens) -> bool {
+    let mut ahead = *tokens;
+    ahead.any_word().is_some() && ahead.sees(";")
 }
 
 fn term(

@@ -275,23 +275,26 @@ fn gravity(tokens: &mut Tokens) -> Parsed<Statement> {
 }
 
 fn force(tokens: &mut Tokens) -> Parsed<Statement> {
-    const EXAMPLE: &str = "force f_wheel_z on wheel;";
+    const EXAMPLE: &str = "force f_wheel_z on wheel;` or `force lift on body - wheel;";
     tokens.take_word("force");
     let name = tokens.new_name("the name of a force input", EXAMPLE)?;
-    if !tokens.take_word("on") {
+    let on = if tokens.take_word("on") {
+        Some(expression(tokens)?)
+    } else if tokens.sees(";") {
+        None
+    } else {
         return tokens.expected("`on`", EXAMPLE);
-    }
-    let on = dotted(tokens, "what the force acts on", EXAMPLE)?;
+    };
     tokens.expect(";", EXAMPLE)?;
     Ok(Statement::Force(name, on))
 }
 
 fn point(tokens: &mut Tokens) -> Parsed<Statement> {
-    const EXAMPLE: &str = "point seat = body;";
+    const EXAMPLE: &str = "point seat = body;` or `point nose = body + arm*pitch;";
     tokens.take_word("point");
     let name = tokens.new_name("the name of a point", EXAMPLE)?;
     tokens.expect("=", EXAMPLE)?;
-    let target = dotted(tokens, "a mass, node, road or motion", EXAMPLE)?;
+    let target = expression(tokens)?;
     tokens.expect(";", EXAMPLE)?;
     Ok(Statement::Point(name, target))
 }

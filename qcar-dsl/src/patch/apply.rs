@@ -2,13 +2,14 @@
 
 use super::base::{Base, rolling};
 use super::bind::Bindings;
-use super::rewrite::{self, binary};
+use super::rewrite::{self, binary, named};
 use super::terms::is_term;
 use super::{Made, Signal, SignalChange, refused};
 use crate::diagnostic::effects;
 use crate::source::Span;
 use crate::syntax::{
-    Change, Dotted, EffectParameter, Expression, LawStatement, Let, Link, Name, Operator, Parameter, Statement,
+    Change, Dotted, EffectParameter, Expression, ExpressionKind, LawStatement, Let, Link, Name, Operator, Parameter,
+    Statement,
 };
 
 /// A model under change.
@@ -170,15 +171,17 @@ impl<'a> Patching<'a> {
         })
     }
 
-    /// What a point of the effect stands for: a mass, or an end of the place.
-    fn end(&self, target: &Dotted, direction: &str) -> Made<Dotted> {
-        let meant = self.bindings.point(target, direction)?;
-        if meant == target.to_string() {
-            return Ok(self.signal(target));
+    /// What a point of the effect stands for: a mass, an end of the place, or a combination of them.
+    fn end(&self, target: &Expression, direction: &str) -> Made<Expression> {
+        let ExpressionKind::Name(name) = &target.kind else {
+            return self.bindings.expression(target, direction);
+        };
+        let meant = self.bindings.point(name, direction)?;
+        if meant != name.to_string() {
+            return Ok(named(&meant));
         }
-        Ok(Dotted {
-            names: vec![Name::new(&meant)],
-        })
+        let kind = ExpressionKind::Name(self.signal(name));
+        Ok(Expression { kind, ..target.clone() })
     }
 
     /// `m.acceleration` of the place.

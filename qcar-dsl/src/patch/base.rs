@@ -118,7 +118,10 @@ impl Base {
     pub fn pointed_at(&self, direction: &str, name: &str) -> String {
         let target = self.direction(direction).and_then(|direction| {
             direction.body.iter().find_map(|statement| match statement {
-                Statement::Point(point, target) if point.text == name => target.names.last(),
+                Statement::Point(point, target) if point.text == name => match &target.kind {
+                    ExpressionKind::Name(target) => target.names.last(),
+                    _ => None,
+                },
                 _ => None,
             })
         });
@@ -201,6 +204,10 @@ fn change_all(body: &mut [Statement], change: &mut dyn FnMut(&Expression) -> Exp
             Statement::Coordinate(coordinate) => {
                 let Ok(changed) = rewrite::coordinate(coordinate, &mut safe);
                 *coordinate = changed;
+            }
+            Statement::Force(_, Some(on)) | Statement::Point(_, on) => {
+                let Ok(changed) = safe(on);
+                *on = changed;
             }
             Statement::Link(link) => {
                 let (Ok(stretch), Ok(law)) = (safe(&link.stretch), rewrite::law(&link.body, &mut safe));

@@ -73,7 +73,7 @@ pub fn law<Mistake>(
                 LawStatement::Use(element)
             }
             LawStatement::Rolling(span, body) => LawStatement::Rolling(*span, law(body, change)?),
-            LawStatement::State(..) | LawStatement::If(_) => statement.clone(),
+            LawStatement::State(..) | LawStatement::Active | LawStatement::If(_) => statement.clone(),
         });
     }
     Ok(changed)

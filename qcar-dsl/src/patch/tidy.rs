@@ -53,7 +53,7 @@ fn used(tree: &Base) -> BTreeSet<String> {
                     used.insert(other.text.clone());
                 }
             }
-            Statement::Force(_, path) | Statement::Point(_, path) | Statement::Output(_, path) => add(path, &mut used),
+            Statement::Output(_, path) => add(path, &mut used),
             Statement::Channel(_, above, below) => {
                 add(above, &mut used);
                 add(below, &mut used);

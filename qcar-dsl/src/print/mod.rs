@@ -75,7 +75,8 @@ fn statement_lines(statement: &Statement) -> Vec<String> {
         }
         Statement::Coordinate(coordinate) => vec![coordinate_line(coordinate)],
         Statement::Gravity(name) => vec![format!("gravity {};", name.text)],
-        Statement::Force(name, on) => vec![format!("force {} on {on};", name.text)],
+        Statement::Force(name, Some(on)) => vec![format!("force {} on {on};", name.text)],
+        Statement::Force(name, None) => vec![format!("force {};", name.text)],
         Statement::Point(name, target) => vec![format!("point {} = {target};", name.text)],
         Statement::Link(link) => link_lines(link),
         Statement::Output(Some(name), signal) => vec![format!("output {} = {signal};", name.text)],
@@ -183,6 +184,7 @@ fn law_lines(statement: &LawStatement) -> Vec<String> {
         LawStatement::Rate(name, rate) => vec![format!("rate {} = {rate};", name.text)],
         LawStatement::Let(definition) => vec![let_line(definition)],
         LawStatement::Use(element) => vec![use_line(element)],
+        LawStatement::Active => vec!["active;".to_string()],
         LawStatement::Rolling(_, body) => block("rolling", "", body.iter().flat_map(law_lines).collect()),
         LawStatement::If(choice) => if_lines(choice, law_lines),
     }

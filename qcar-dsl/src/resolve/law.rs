@@ -19,6 +19,8 @@ struct Writing {
     rated: Vec<bool>,
     /// Inside `rolling`, where forces are new and states are not.
     rolling: bool,
+    /// It says `active`.
+    active: bool,
     /// Some of it is mistaken, here or where a name in it is declared.
     mistaken: bool,
 }
@@ -50,8 +52,14 @@ struct Place {
 }
 
 impl Resolver<'_> {
-    /// The law of a link, and the terms while rolling where it has them.
-    pub fn law(&mut self, body: &[LawStatement], link: LinkId, stretch: Unit) -> Known<(Law, Option<Vec<Term>>)> {
+    /// The law of a link of a direction, and the terms while rolling where it has them.
+    pub fn law(
+        &mut self,
+        body: &[LawStatement],
+        direction: &str,
+        link: LinkId,
+        stretch: Unit,
+    ) -> Known<(Law, Option<Vec<Term>>)> {
         let (terms, inner, rated) = (vec![], vec![], vec![]);
         let mut writing = Writing {
             link,
@@ -60,10 +68,14 @@ impl Resolver<'_> {
             inner,
             rated,
             rolling: false,
+            active: false,
             mistaken: false,
         };
         let mut place = Place {
-            locals: Locals::default(),
+            locals: Locals {
+                home: Some(direction.to_string()),
+                ..Locals::default()
+            },
             prefix: String::new(),
             inside: vec![],
         };
@@ -90,6 +102,7 @@ impl Resolver<'_> {
             Law {
                 terms,
                 inner: writing.inner,
+                active: writing.active,
             },
             rolling,
         ))
@@ -172,6 +185,7 @@ impl Resolver<'_> {
                 let home = "a link: an element has no options";
                 return Err(self.report(reading::misplaced_statement(span.unwrap_or_default(), "if", home)));
             }
+            LawStatement::Active => writing.active = true,
             LawStatement::State(..) | LawStatement::Rolling(..) => {}
         }
         Ok(())

@@ -101,6 +101,7 @@ impl<'a> Resolver<'a> {
             parameters: vec![],
             definitions: vec![],
             coordinates: vec![],
+            points: vec![],
             forces: vec![],
             gravities: vec![],
             links: vec![],

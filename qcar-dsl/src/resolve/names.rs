@@ -8,6 +8,7 @@ use crate::diagnostic::{Diagnostic, names as mistakes};
 use crate::expr::{CoordinateId, LinkId, Symbol};
 use crate::source::Span;
 use crate::syntax::{Dotted, Name};
+use crate::units::Unit;
 
 /// What a name without direction means.
 #[derive(Clone, Copy, Debug)]
@@ -25,6 +26,8 @@ pub enum Global {
 pub enum Thing {
     /// A mass, node, road or motion, or a point of it.
     Coordinate(CoordinateId),
+    /// A point that several coordinates move, by its place in `Model::points`.
+    Point(u16),
     /// A link.
     Link(LinkId),
     /// A force input, by its place in `Model::forces`.
@@ -35,10 +38,19 @@ pub enum Thing {
     Broken,
 }
 
+/// What a name in a stretch means.
+#[derive(Clone, Copy, Debug)]
+pub enum Moving {
+    /// A mass, node, road or motion.
+    Coordinate(CoordinateId),
+    /// A point that several of them move, by its place in `Model::points`.
+    Point(u16),
+}
+
 impl Thing {
     fn kind(self) -> &'static str {
         match self {
-            Thing::Coordinate(_) => "a point that moves",
+            Thing::Coordinate(_) | Thing::Point(_) => "a point that moves",
             Thing::Link(_) => "a link",
             Thing::Force(_) => "a force input",
             Thing::Gravity => "a gravity",
@@ -121,7 +133,7 @@ impl Resolver<'_> {
             .direction(direction)
             .and_then(|names| names.get(&name.text))
             .map(|(span, _)| *span);
-        let moves = matches!(thing, Thing::Coordinate(_));
+        let moves = matches!(thing, Thing::Coordinate(_) | Thing::Point(_));
         let global = self
             .names
             .globals
@@ -147,6 +159,12 @@ impl Resolver<'_> {
 
     /// The value of a name in an expression.
     pub fn named(&mut self, name: &Dotted, locals: &Locals) -> Known<Value> {
+        if let Some(input) = self.input(name, locals) {
+            return Ok(input);
+        }
+        if let Some(motion) = self.motion_of_link(name, locals) {
+            return motion;
+        }
         let [single] = name.names.as_slice() else {
             return Err(self.no_value(name, locals));
         };
@@ -171,6 +189,45 @@ impl Resolver<'_> {
         }
     }
 
+    /// The force input of a name, in a law that sees it; what the law or the model calls so comes first.
+    fn input(&mut self, name: &Dotted, locals: &Locals) -> Option<Value> {
+        let home = locals.home.as_ref().filter(|_| !locals.closed)?;
+        if let [single] = name.names.as_slice()
+            && (locals.get(&single.text).is_some() || self.names.globals.contains_key(&single.text))
+        {
+            return None;
+        }
+        let Some((_, Thing::Force(place))) = self.names.find(name, home) else {
+            return None;
+        };
+        Some(Value {
+            expr: self.model.graph.symbol(Symbol::Force(place)),
+            unit: Some(self.model.forces[usize::from(place)].unit),
+        })
+    }
+
+    /// `x.bushing.stretch` or `x.bushing.rate`, in a law that sees the links of the model.
+    fn motion_of_link(&mut self, name: &Dotted, locals: &Locals) -> Option<Known<Value>> {
+        let home = locals.home.as_ref().filter(|_| !locals.closed)?;
+        let (quantity, owner) = name.names.split_last()?;
+        let owner = Dotted { names: owner.to_vec() };
+        let (_, Thing::Link(id)) = self.names.find(&owner, home)? else {
+            return None;
+        };
+        let unit = self.model.links[usize::from(id.0)].unit;
+        let (symbol, unit) = match quantity.text.as_str() {
+            "stretch" => (Symbol::Stretch(id), unit),
+            "rate" => (Symbol::Rate(id), unit.per(Unit::SECOND)),
+            other => {
+                let known = ["stretch", "rate"];
+                let mistake = mistakes::unknown_quantity(quantity.span, other, &owner.to_string(), &known);
+                return Some(Err(self.report(mistake)));
+            }
+        };
+        let expr = self.model.graph.symbol(symbol);
+        Some(Ok(Value { expr, unit: Some(unit) }))
+    }
+
     /// Says why a name has no value here.
     fn no_value(&mut self, name: &Dotted, locals: &Locals) -> Reported {
         let (span, text) = (name.span(), name.to_string());
@@ -186,7 +243,7 @@ impl Resolver<'_> {
             mistakes::element_is_closed(span, &text, &self.unit_of(global))
         } else if text == "s" || text == "v" {
             mistakes::law_variable_outside(span, &text)
-        } else if let Some((_, Thing::Coordinate(_))) = self.names.find(name, "") {
+        } else if let Some((_, Thing::Coordinate(_) | Thing::Point(_))) = self.names.find(name, "") {
             mistakes::coordinate_in_expression(span, &text)
         } else if let Some(options) = self.names.off.get(&text) {
             mistakes::switched_off(span, &text, options)
@@ -216,20 +273,13 @@ impl Resolver<'_> {
         local.chain(global).collect()
     }
 
-    /// The coordinate of a name in a stretch; `None` for a parameter or derived quantity.
-    pub fn coordinate_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<CoordinateId>> {
+    /// What moves by a name in a stretch; `None` for a parameter or derived quantity.
+    pub fn moving_of(&mut self, name: &Dotted, direction: &str) -> Known<Option<Moving>> {
         match self.names.find(name, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(coordinate)),
+            Some((_, Thing::Coordinate(coordinate))) => Ok(Some(Moving::Coordinate(coordinate))),
+            Some((_, Thing::Point(point))) => Ok(Some(Moving::Point(point))),
             None if name.names.len() == 1 && self.names.globals.contains_key(&name.names[0].text) => Ok(None),
             _ => Err(self.no_thing(name, direction, "a point that moves", "link spring: body - wheel { … }")),
-        }
-    }
-
-    /// The coordinate that something acts on or is another name of.
-    pub fn coordinate(&mut self, name: &Dotted, direction: &str, example: &str) -> Known<CoordinateId> {
-        match self.names.find(name, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => Ok(coordinate),
-            _ => Err(self.no_thing(name, direction, "a point that moves", example)),
         }
     }
 

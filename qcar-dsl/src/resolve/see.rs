@@ -4,7 +4,7 @@ use super::declare::declared;
 use super::law::force_unit;
 use super::names::Thing;
 use super::{Known, Placed, Reported, Resolver};
-use crate::diagnostic::{names, units as mistakes};
+use crate::diagnostic::names;
 use crate::expr::CoordinateId;
 use crate::model::{Channel, CoordinateKind, Declared, Output, Quantity, Reference, Signal};
 use crate::syntax::{Dotted, Name, Statement};
@@ -110,19 +110,6 @@ impl Resolver<'_> {
             let (Ok(above), Ok(below)) = (above, below) else {
                 continue;
             };
-            if let (
-                Signal::Motion(_, a),
-                Below::Signal(Seen {
-                    signal: Signal::Motion(_, b),
-                    ..
-                }),
-            ) = (&above.signal, &below)
-                && a != b
-            {
-                let span = numerator.span().join(denominator.span());
-                let mistake = mistakes::channel_units_differ(span, quantity_name(*a), quantity_name(*b));
-                self.report(mistake);
-            }
             let declared = declared(name, statement);
             let channel = Channel {
                 name: name.text.clone(),
@@ -142,6 +129,7 @@ impl Resolver<'_> {
     fn show(&mut self, seen: Seen, declared: &Declared) {
         let follows = |output: &Output| match (&output.signal, &seen.signal) {
             (Signal::Motion(known, _), Signal::Motion(wanted, _)) => known == wanted,
+            (Signal::Point(known, _), Signal::Point(wanted, _)) => known == wanted,
             (known, wanted) => known == wanted,
         };
         let prescribed = |coordinate: CoordinateId| {
@@ -184,26 +172,39 @@ impl Resolver<'_> {
             self.unambiguous(&owner)?;
         }
         match self.names.find(&owner, direction) {
-            Some((_, Thing::Coordinate(coordinate))) => self.motion_signal(coordinate, quantity, &owner),
+            Some((_, Thing::Coordinate(coordinate))) => {
+                let moving = &self.model.coordinates[usize::from(coordinate.0)];
+                let (angle, name) = (moving.angle, format!("{}_{}", moving.direction.0, moving.name));
+                self.motion_signal(quantity, &owner, angle, &name, |q| Signal::Motion(coordinate, q))
+            }
+            Some((_, Thing::Point(place))) => {
+                let point = &self.model.points[usize::from(place)];
+                let (angle, name) = (point.angle, format!("{}_{}", point.direction.0, point.name));
+                self.motion_signal(quantity, &owner, angle, &name, |q| Signal::Point(place, q))
+            }
             Some((_, Thing::Link(link))) => self.link_signal(link, quantity, &owner),
             Some((_, Thing::Broken)) => Err(Reported),
             _ => Err(self.no_thing(&owner, direction, "a point or link", EXAMPLE)),
         }
     }
 
-    fn motion_signal(&mut self, coordinate: CoordinateId, quantity: &Name, owner: &Dotted) -> Known<Seen> {
+    fn motion_signal(
+        &mut self,
+        quantity: &Name,
+        owner: &Dotted,
+        angle: bool,
+        name: &str,
+        signal: impl Fn(Quantity) -> Signal,
+    ) -> Known<Seen> {
         let Some((_, derivative)) = QUANTITIES.into_iter().find(|(name, _)| *name == quantity.text) else {
             let known = QUANTITIES.map(|(name, _)| name);
             let mistake = names::unknown_quantity(quantity.span, &quantity.text, &owner.to_string(), &known);
             return Err(self.report(mistake));
         };
-        let moving = &self.model.coordinates[usize::from(coordinate.0)];
-        let name = format!("{}_{}_{}", moving.direction.0, moving.name, quantity.text);
-        let unit = motion_unit(moving.angle, derivative);
         Ok(Seen {
-            signal: Signal::Motion(coordinate, derivative),
-            unit,
-            name,
+            signal: signal(derivative),
+            unit: motion_unit(angle, derivative),
+            name: format!("{name}_{}", quantity.text),
         })
     }
 
@@ -236,13 +237,5 @@ fn motion_unit(angle: bool, quantity: Quantity) -> Unit {
         Quantity::Position => position,
         Quantity::Velocity => position.per(Unit::SECOND),
         Quantity::Acceleration => position.per(Unit::SECOND).per(Unit::SECOND),
-    }
-}
-
-fn quantity_name(quantity: Quantity) -> &'static str {
-    match quantity {
-        Quantity::Position => "position",
-        Quantity::Velocity => "velocity",
-        Quantity::Acceleration => "acceleration",
     }
 }

@@ -1,6 +1,6 @@
 //! The stretch of a link: a linear combination of coordinates with coefficients in parameters.
 
-use super::names::Thing;
+use super::names::{Moving, Thing};
 use super::value::{Locals, Value};
 use super::{Known, Resolver};
 use crate::diagnostic::units as mistakes;
@@ -22,19 +22,19 @@ impl Resolver<'_> {
     pub fn combination(&mut self, expression: &Expression, direction: &str) -> Known<Combination> {
         match &expression.kind {
             ExpressionKind::Name(name) => {
-                let Some(coordinate) = self.coordinate_of(name, direction)? else {
+                let Some(moving) = self.moving_of(name, direction)? else {
                     return Err(self.report(mistakes::stretch_has_constant(expression.span)));
                 };
-                let unit = if self.model.coordinates[usize::from(coordinate.0)].angle {
-                    Unit::ONE
-                } else {
-                    Unit::METER
-                };
                 let one = self.model.graph.constant(1.0);
-                Ok(Combination {
-                    terms: vec![(coordinate, one)],
-                    unit: Some(unit),
-                })
+                let (terms, angle) = match moving {
+                    Moving::Coordinate(c) => (vec![(c, one)], self.model.coordinates[usize::from(c.0)].angle),
+                    Moving::Point(place) => {
+                        let point = &self.model.points[usize::from(place)];
+                        (point.combination.clone(), point.angle)
+                    }
+                };
+                let unit = Some(if angle { Unit::ONE } else { Unit::METER });
+                Ok(Combination { terms, unit })
             }
             ExpressionKind::Negative(operand) => {
                 let operand = self.combination(operand, direction)?;
@@ -145,7 +145,8 @@ impl Resolver<'_> {
         match &expression.kind {
             ExpressionKind::Number(_) => false,
             ExpressionKind::Name(name) => {
-                matches!(self.names.find(name, direction), Some((_, Thing::Coordinate(_))))
+                let found = self.names.find(name, direction);
+                matches!(found, Some((_, Thing::Coordinate(_) | Thing::Point(_))))
             }
             ExpressionKind::Negative(operand) => self.moves(operand, direction),
             ExpressionKind::Binary(_, a, b) => self.moves(a, direction) || self.moves(b, direction),

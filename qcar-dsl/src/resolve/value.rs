@@ -35,6 +35,8 @@ pub struct Locals {
     pub names: Vec<(String, Option<Value>)>,
     /// The names of the model are out of sight, as in an element.
     pub closed: bool,
+    /// The direction whose force inputs are in sight, as in the law of a link.
+    pub home: Option<String>,
 }
 
 impl Locals {

@@ -47,16 +47,12 @@ fn statements(model: &Model, direction: &Direction) -> Vec<String> {
             coordinate.name
         )
     });
-    let forces = model
-        .forces
-        .iter()
-        .filter(|f| model.coordinates[f.on.0 as usize].direction == *direction);
+    let forces = model.forces.iter().filter(|force| force.direction == *direction);
     let forces = forces.flat_map(|force| {
         let name = &force.name;
-        [
-            format!("{name} [shape = plaintext]"),
-            format!("{name} -- {} [dir = forward, style = dashed]", node(model, force.on)),
-        ]
+        let pushed = force.on.iter().map(|&(coordinate, _)| node(model, coordinate));
+        let edges = pushed.map(move |pushed| format!("{name} -- {pushed} [dir = forward, style = dashed]"));
+        std::iter::once(format!("{name} [shape = plaintext]")).chain(edges)
     });
     let links = model
         .links

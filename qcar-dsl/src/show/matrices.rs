@@ -1,5 +1,7 @@
 //! The nonzero entries of A, B, C and D in the names of the model.
 
+use std::collections::BTreeMap;
+
 use crate::about::{About, Entry, Matrix};
 use crate::equations::named_quantities;
 use crate::expr::Expr;
@@ -51,11 +53,12 @@ pub fn entries(compiled: &Compiled, notation: Notation) -> Vec<(Matrix, Vec<(Str
         .iter()
         .for_each(|(name, value)| writer.name(*value, name));
     let about = &compiled.about;
+    let same = SameRates::of(compiled);
     let of = |matrix: Matrix| {
         let mut lines = Vec::new();
         for row in 0..rows(about, matrix) {
             let nonzeros = self::row(compiled, matrix, row);
-            match same_as_state(compiled, matrix, row) {
+            match same.state(compiled, matrix, row) {
                 Some(state) if !nonzeros.is_empty() => {
                     lines.push(reference(
                         &writer,
@@ -84,27 +87,48 @@ fn rows(about: &About, matrix: Matrix) -> usize {
     }
 }
 
-fn row(compiled: &Compiled, matrix: Matrix, row: usize) -> Vec<(Entry, Expr)> {
-    let nonzeros = compiled.linear.matrices.iter();
-    nonzeros
-        .filter(|(entry, _)| entry.matrix == matrix && usize::from(entry.row) == row)
-        .copied()
-        .collect()
+/// The nonzeros of a row.
+fn row(compiled: &Compiled, matrix: Matrix, row: usize) -> &[(Entry, Expr)] {
+    let nonzeros = compiled.linear.matrices.as_slice();
+    let before = |of: &Entry, last: bool| {
+        let own = (of.matrix, usize::from(of.row));
+        own < (matrix, row) || last && own == (matrix, row)
+    };
+    let first = nonzeros.partition_point(|(entry, _)| before(entry, false));
+    let behind = nonzeros.partition_point(|(entry, _)| before(entry, true));
+    &nonzeros[first..behind]
 }
 
-/// The state whose rate an output is, by its rows of A and B.
-fn same_as_state(compiled: &Compiled, matrix: Matrix, output: usize) -> Option<usize> {
-    let values = |matrix, row| -> Vec<(u16, Expr)> {
-        self::row(compiled, matrix, row)
-            .into_iter()
-            .map(|(entry, value)| (entry.column, value))
-            .collect()
+/// The columns and values of two rows, of A and B or of C and D.
+type Rate = [Vec<(u16, Expr)>; 2];
+
+fn rate(compiled: &Compiled, matrices: [Matrix; 2], place: usize) -> Rate {
+    let values = |matrix| {
+        let nonzeros = row(compiled, matrix, place).iter();
+        nonzeros.map(|&(entry, value)| (entry.column, value)).collect()
     };
-    let is_output = matches!(matrix, Matrix::C | Matrix::D);
-    let same = |&state: &usize| {
-        values(Matrix::A, state) == values(Matrix::C, output) && values(Matrix::B, state) == values(Matrix::D, output)
-    };
-    is_output.then(|| (0..compiled.about.states.len()).find(same))?
+    matrices.map(values)
+}
+
+/// The states by their rows of A and B.
+struct SameRates(BTreeMap<Rate, usize>);
+
+impl SameRates {
+    fn of(compiled: &Compiled) -> Self {
+        // Of several the first.
+        let states = (0..compiled.about.states.len()).rev();
+        SameRates(
+            states
+                .map(|state| (rate(compiled, [Matrix::A, Matrix::B], state), state))
+                .collect(),
+        )
+    }
+
+    /// The state whose rate an output is.
+    fn state(&self, compiled: &Compiled, matrix: Matrix, output: usize) -> Option<usize> {
+        let is_output = matches!(matrix, Matrix::C | Matrix::D);
+        is_output.then(|| self.0.get(&rate(compiled, [Matrix::C, Matrix::D], output)).copied())?
+    }
 }
 
 /// `[z_body_acceleration, ·] = A[vz_body, ·]`

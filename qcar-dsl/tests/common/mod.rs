@@ -9,9 +9,9 @@ use qcar_dsl::check::Checked;
 use qcar_dsl::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use qcar_dsl::model::{
     Coordinate, CoordinateKind, Declared, Default, Direction, ForceInput, Gravity, Inner, Law, Link, Model, Output,
-    Parameter, Quantity, Signal, Term,
+    Parameter, Point, Quantity, Signal, Term,
 };
-use qcar_dsl::source::Span;
+use qcar_dsl::source::{Source, Span};
 use qcar_dsl::units::Unit;
 
 const UNIT: Unit = Unit { sixths: [0; 3] };
@@ -22,6 +22,14 @@ pub fn cases(cases: u32) -> proptest::test_runner::Config {
         cases,
         failure_persistence: None,
         ..std::default::Default::default()
+    }
+}
+
+/// A model file of this text.
+pub fn text(model: &str) -> Source {
+    Source {
+        name: "test.axle".to_string(),
+        text: model.to_string(),
     }
 }
 
@@ -59,6 +67,7 @@ impl Builder {
                 parameters: vec![],
                 definitions: vec![],
                 coordinates: vec![],
+                points: vec![],
                 forces: vec![],
                 gravities: vec![],
                 links: vec![],
@@ -82,6 +91,7 @@ impl Builder {
             default: Default::None,
             range: None,
             known: false,
+            clock: false,
             declared: declared(),
         });
         self.model.graph.symbol(Symbol::Parameter(place))
@@ -105,11 +115,31 @@ impl Builder {
     }
 
     pub fn force(&mut self, name: &str, on: CoordinateId) {
+        let one = self.number(1.0);
+        self.force_along(name, vec![(on, one)]);
+    }
+
+    /// A force that makes a combination of coordinates grow; of none, one that acts through laws alone.
+    pub fn force_along(&mut self, name: &str, on: Vec<(CoordinateId, Expr)>) {
         self.model.forces.push(ForceInput {
             name: name.into(),
+            direction: Direction("z".into()),
             on,
+            unit: UNIT,
             declared: declared(),
         });
+    }
+
+    /// A point that a combination of coordinates moves.
+    pub fn point(&mut self, name: &str, combination: Vec<(CoordinateId, Expr)>) -> u16 {
+        self.model.points.push(Point {
+            name: name.into(),
+            direction: Direction("z".into()),
+            combination,
+            angle: false,
+            declared: declared(),
+        });
+        self.model.points.len() as u16 - 1
     }
 
     pub fn gravity(&mut self, direction: &str) {
@@ -152,6 +182,7 @@ impl Builder {
             law: Law {
                 terms,
                 inner: inner.iter().enumerate().map(state).collect(),
+                active: false,
             },
             rolling: None,
             doc: String::new(),

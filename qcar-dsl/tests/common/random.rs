@@ -17,6 +17,8 @@ pub enum Parts {
     SpringMaxwell,
     /// A law written out as an expression, with two inner states.
     Written,
+    /// A spring beside an actuator that follows a force input, at once and by a lag.
+    Actuated,
 }
 
 /// A coordinate and the link that holds it.
@@ -35,6 +37,8 @@ pub struct Plan {
     pub cross: Vec<(prop::sample::Index, prop::sample::Index, Parts)>,
     /// What the parameters are made of.
     pub seed: u64,
+    /// How many outputs are kept.
+    pub outputs: usize,
 }
 
 fn parts() -> impl Strategy<Value = Parts> {
@@ -44,6 +48,7 @@ fn parts() -> impl Strategy<Value = Parts> {
         Just(Parts::SpringDamperInerter),
         Just(Parts::SpringMaxwell),
         Just(Parts::Written),
+        Just(Parts::Actuated),
     ]
 }
 
@@ -60,10 +65,25 @@ fn member() -> impl Strategy<Value = Member> {
 }
 
 pub fn plan() -> impl Strategy<Value = Plan> {
+    plan_of(1..6, Just(usize::MAX))
+}
+
+/// So large a model that its responses are solved for one by one, with many outputs or with few.
+pub fn large_plan() -> impl Strategy<Value = Plan> {
+    plan_of(30..34, prop_oneof![Just(usize::MAX), Just(7)])
+}
+
+fn plan_of(members: std::ops::Range<usize>, outputs: impl Strategy<Value = usize>) -> impl Strategy<Value = Plan> {
     let cross = (any::<prop::sample::Index>(), any::<prop::sample::Index>(), parts());
-    let members = prop::collection::vec(member(), 1..6);
+    let members = prop::collection::vec(member(), members);
     let cross = prop::collection::vec(cross, 0..3);
-    (members, cross, any::<u64>()).prop_map(|(members, cross, seed)| Plan { members, cross, seed })
+    let plan = |(members, cross, seed, outputs)| Plan {
+        members,
+        cross,
+        seed,
+        outputs,
+    };
+    (members, cross, any::<u64>(), outputs).prop_map(plan)
 }
 
 fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
@@ -99,6 +119,16 @@ fn terms(b: &mut Builder, n: usize, parts: Parts) -> (Vec<Term>, Vec<Expr>) {
             let behind = g.sub(first, second);
             let second_rate = g.mul(a, behind);
             (vec![Term::Force(force)], vec![first_rate, second_rate])
+        }
+        Parts::Actuated => {
+            let (k, a, r) = (p("k"), p("a"), p("r"));
+            let g = &mut b.model.graph;
+            let (lagged, demand) = (g.symbol(Symbol::Inner(l, 0)), g.symbol(Symbol::Force(1)));
+            let direct = g.mul(a, demand);
+            let force = g.sub(direct, lagged);
+            let behind = g.sub(demand, lagged);
+            let rate = g.mul(r, behind);
+            (vec![Term::Spring(k), Term::Force(force)], vec![rate])
         }
     }
 }
@@ -167,6 +197,10 @@ impl Plan {
             b.link_with_states("z", &format!("l{n}"), &stretch, terms, &inner);
         }
         b.force("f", coordinates[1]);
+        b.force_along("demand", Vec::new());
+        let (lever, minus) = (b.parameter("lever"), b.number(-1.0));
+        b.force_along("between", vec![(coordinates[1], lever), (last, minus)]);
+        b.point("nose", vec![(coordinates[1], lever), (last, minus), (road, lever)]);
         self.outputs(&mut b, &coordinates, links.len());
         let model = b.build();
         let mut p: Vec<f64> = (0..model.parameters.len())
@@ -182,10 +216,17 @@ impl Plan {
             b.output(Signal::Motion(c, Quantity::Velocity));
             b.output(Signal::Motion(c, Quantity::Position));
         }
+        for quantity in [Quantity::Acceleration, Quantity::Velocity, Quantity::Position] {
+            b.output(Signal::Point(0, quantity));
+        }
         for l in (0..links as u16).map(qcar_dsl::expr::LinkId) {
             b.output(Signal::LinkForce(l));
             b.output(Signal::LinkStretch(l));
         }
+        // The last ones have forces of links among them.
+        let all = std::mem::take(&mut b.model.outputs);
+        let skipped = all.len().saturating_sub(self.outputs);
+        b.model.outputs = all.into_iter().skip(skipped).collect();
     }
 }
 

@@ -41,7 +41,7 @@ fn slope<T: ComplexField<RealField = f64> + Copy>(graph: &Graph, e: Expr, p: &[T
 }
 
 /// The matrices of a linear model over all its coordinates and inner states:
-/// `M q̈ + C q̇ + K q + F z = forces`, `ż = S q + V q̇ + G z`.
+/// `M q̈ + C q̇ + K q + F z = P u`, `ż = S q + V q̇ + G z + U u`.
 pub struct Reference<T: nalgebra::Scalar> {
     pub m: DMatrix<T>,
     pub c: DMatrix<T>,
@@ -56,6 +56,12 @@ pub struct Reference<T: nalgebra::Scalar> {
     pub stretch: DMatrix<T>,
     pub force: [DMatrix<T>; 4],
     pub inner: Vec<Symbol>,
+    /// By the force inputs: what they push, the forces of the links, the rates of the inner states.
+    pub push: DMatrix<T>,
+    pub force_by_input: DMatrix<T>,
+    pub rate_by_input: DMatrix<T>,
+    /// Rows: a point's coefficients of q.
+    pub points: DMatrix<T>,
 }
 
 impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
@@ -69,6 +75,8 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
         let mut stretch = DMatrix::zeros(links, n);
         let mut force = [(n, ()), (n, ()), (n, ()), (z, ())].map(|(width, ())| DMatrix::zeros(links, width));
         let (mut s, mut v, mut g) = (DMatrix::zeros(z, n), DMatrix::zeros(z, n), DMatrix::zeros(z, z));
+        let inputs = model.forces.len();
+        let (mut force_by_input, mut rate_by_input) = (DMatrix::zeros(links, inputs), DMatrix::zeros(z, inputs));
         for (l, link) in model.links.iter().enumerate() {
             let id = LinkId(l as u16);
             for &(c, coefficient) in &link.stretch {
@@ -83,6 +91,9 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
                     Term::Force(e) => {
                         for (j, &state) in inner.iter().enumerate() {
                             force[3][(l, j)] += slope(graph, e, p, state);
+                        }
+                        for i in 0..inputs {
+                            force_by_input[(l, i)] += slope(graph, e, p, Symbol::Force(i as u16));
                         }
                         (
                             T::zero(),
@@ -103,10 +114,25 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
                 for (j, &other) in inner.iter().enumerate() {
                     g[(place, j)] = slope(graph, state.rate, p, other);
                 }
+                for i in 0..inputs {
+                    rate_by_input[(place, i)] = slope(graph, state.rate, p, Symbol::Force(i as u16));
+                }
             }
         }
         let scatter = stretch.transpose();
         let [mut m, c, k, f] = [0, 1, 2, 3].map(|i| &scatter * &force[i]);
+        let mut push = -(&scatter * &force_by_input);
+        for (i, input) in model.forces.iter().enumerate() {
+            for &(c, coefficient) in &input.on {
+                push[(c.0 as usize, i)] += value(graph, coefficient, p);
+            }
+        }
+        let mut points = DMatrix::zeros(model.points.len(), n);
+        for (row, point) in model.points.iter().enumerate() {
+            for &(c, coefficient) in &point.combination {
+                points[(row, c.0 as usize)] += value(graph, coefficient, p);
+            }
+        }
         let mut pull = DVector::zeros(n);
         for (i, coordinate) in model.coordinates.iter().enumerate() {
             if let CoordinateKind::Mass(inertia) = coordinate.kind {
@@ -129,6 +155,10 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
             stretch,
             force,
             inner,
+            push,
+            force_by_input,
+            rate_by_input,
+            points,
         }
     }
 
@@ -143,10 +173,9 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
         let damped = |c: usize| node(c) && !heavy(c) && self.c[(c, c)] != T::zero();
         let light = |c: usize| node(c) && !heavy(c) && !damped(c);
         let z = DVector::from_iterator(self.inner.len(), self.inner.iter().map(|&state| leaf(state)));
-        let mut applied = DVector::zeros(n);
-        for (i, force) in model.forces.iter().enumerate() {
-            applied[force.on.0 as usize] += leaf(Symbol::Force(i as u16));
-        }
+        let u = DVector::from_fn(model.forces.len(), |i, _| leaf(Symbol::Force(i as u16)));
+        let applied = &self.push * &u;
+        let driven = &self.rate_by_input * &u;
         let mut q = DVector::from_fn(n, |c, _| {
             if light(c) {
                 T::zero()
@@ -168,9 +197,9 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
         });
         let slope = &self.k + &self.f * &self.v;
         fill(&mut qd, &slope, &light, |qd| {
-            -(&self.k * qd) - &self.f * (&self.s * &q + &self.v * qd + &self.g * &z)
+            -(&self.k * qd) - &self.f * (&self.s * &q + &self.v * qd + &self.g * &z + &driven)
         });
-        let zd = &self.s * &q + &self.v * &qd + &self.g * &z;
+        let zd = &self.s * &q + &self.v * &qd + &self.g * &z + &driven;
         let mut qdd = DVector::from_fn(n, |c, _| {
             if prescribed(c) {
                 leaf(Symbol::Acceleration(id(c)))
@@ -187,6 +216,7 @@ impl<T: ComplexField<RealField = f64> + Copy> Reference<T> {
         let zdd = |qdd: &DVector<T>| &self.s * &qd + &self.v * qdd + &self.g * &zd;
         fill(&mut qdd, &slope, &light, |qdd| -(&self.k * qdd) - &self.f * zdd(qdd));
         let force = &self.force[0] * &qdd + &self.force[1] * &qd + &self.force[2] * &q + &self.force[3] * &z;
+        let force = force + &self.force_by_input * &u;
         let stretch = &self.stretch * &q;
         Instant {
             q,
@@ -246,15 +276,36 @@ impl<T: nalgebra::Scalar + Copy> Instant<T> {
         }
     }
 
-    pub fn signal(&self, signal: &Signal) -> T {
+    pub fn signal(&self, signal: &Signal, points: &DMatrix<T>) -> T
+    where
+        T: ComplexField,
+    {
+        let of = |quantity| match quantity {
+            Quantity::Position => &self.q,
+            Quantity::Velocity => &self.qd,
+            Quantity::Acceleration => &self.qdd,
+        };
         match *signal {
-            Signal::Motion(c, Quantity::Position) => self.q[c.0 as usize],
-            Signal::Motion(c, Quantity::Velocity) => self.qd[c.0 as usize],
-            Signal::Motion(c, Quantity::Acceleration) => self.qdd[c.0 as usize],
+            Signal::Motion(c, quantity) => of(quantity)[c.0 as usize],
+            Signal::Point(place, quantity) => (points.row(place as usize) * of(quantity))[0],
             Signal::LinkForce(l) => self.force[l.0 as usize],
             Signal::LinkStretch(l) => self.stretch[l.0 as usize],
         }
     }
+}
+
+/// What a force input does to coordinates and inner states; nothing to what is prescribed.
+fn load(model: &Model, r: &Reference<f64>, input: usize) -> DVector<Complex<f64>> {
+    let (n, z) = (model.coordinates.len(), r.inner.len());
+    let moves = |c: usize| !matches!(model.coordinates[c].kind, CoordinateKind::Road | CoordinateKind::Motion);
+    DVector::from_fn(n + z, |row, _| {
+        let real = match row < n {
+            true if moves(row) => r.push[(row, input)],
+            true => 0.0,
+            false => r.rate_by_input[(row - n, input)],
+        };
+        Complex::new(real, 0.0)
+    })
 }
 
 /// The frequency response of all outputs by a dense solve over coordinates and inner states, and its derivative for a
@@ -291,11 +342,14 @@ pub fn response(
     }
     match source {
         Source::Motion(c) => right[c.0 as usize] = Complex::new(1.0, 0.0),
-        Source::Force(i) => right[model.forces[i as usize].on.0 as usize] = Complex::new(1.0, 0.0),
+        Source::Force(i) => right = load(model, r, i as usize),
     }
     let lu = held.lu();
     let x = lu.solve(&right).unwrap();
     let mut change = -(da * &x);
+    if let Source::Force(i) = source {
+        change += load(model, d, i as usize);
+    }
     for (c, coordinate) in model.coordinates.iter().enumerate() {
         if matches!(coordinate.kind, CoordinateKind::Road | CoordinateKind::Motion) {
             change[c] = Complex::new(0.0, 0.0);
@@ -319,9 +373,24 @@ pub fn response(
             let factor = [Complex::new(1.0, 0.0), jw, jw * jw][quantity as usize];
             (factor * x[c.0 as usize], factor * dx[c.0 as usize])
         }
+        Signal::Point(place, quantity) => {
+            let factor = [Complex::new(1.0, 0.0), jw, jw * jw][quantity as usize];
+            let row = |r: &Reference<f64>| {
+                let mut row = DVector::zeros(n + z);
+                let point = full(&r.points).row(place as usize).transpose();
+                row.rows_mut(0, n).copy_from(&point);
+                row
+            };
+            (factor * row(r).dot(&x), factor * (row(r).dot(&dx) + row(d).dot(&x)))
+        }
         Signal::LinkForce(l) => {
             let l = l.0 as usize;
-            (force(r, l).dot(&x), force(r, l).dot(&dx) + force(d, l).dot(&x))
+            let by_input = |r: &Reference<f64>| match source {
+                Source::Force(i) => r.force_by_input[(l, i as usize)],
+                Source::Motion(_) => 0.0,
+            };
+            let value = force(r, l).dot(&x) + by_input(r);
+            (value, force(r, l).dot(&dx) + force(d, l).dot(&x) + by_input(d))
         }
         Signal::LinkStretch(l) => {
             let l = l.0 as usize;

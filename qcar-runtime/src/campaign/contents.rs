@@ -15,6 +15,15 @@ pub const FACTS: [&str; 7] = [
     "gravity",
 ];
 
+/// The units of [`FACTS`].
+pub const FACT_UNITS: [&str; 7] = ["kg", "kg", "kg", "m", "N", "m", "m/s^2"];
+
+/// The unit of a fact; `None` of what is none, but a parameter of the model.
+pub fn unit_of_fact(name: &str) -> Option<&'static str> {
+    let facts = FACTS.into_iter().zip(FACT_UNITS);
+    facts.filter(|(fact, _)| *fact == name).map(|(_, unit)| unit).next()
+}
+
 /// A campaign as its `campaign.toml` describes it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Campaign {
@@ -265,6 +274,8 @@ pub struct Road {
     pub name: String,
     /// Relative to the folder of the campaign.
     pub file: String,
+    /// Its corners `[x, z]`, m, where the file is a workbook.
+    pub corners: Option<Vec<[f64; 2]>>,
 }
 
 impl Campaign {
@@ -308,6 +319,11 @@ impl Test {
             Test::TimeHistory(recording) => Some(recording.sample_rate),
             Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal => None,
         }
+    }
+
+    /// Whether its samples are a curve that needs no times.
+    pub fn is_curve(&self) -> bool {
+        matches!(self, Test::Bounce | Test::Longitudinal)
     }
 }
 

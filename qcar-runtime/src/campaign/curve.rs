@@ -107,6 +107,9 @@ impl Campaign {
     /// Where its file holds anything but finite numbers, or `x` does not increase.
     pub fn road(&self, road: &Road) -> Result<RoadSamples, InputError> {
         let file = self.folder.join(&road.file);
+        if let Some(corners) = &road.corners {
+            return between(file, &road.name, corners);
+        }
         let mut table = read(&file, ROAD)?;
         let x = increasing(&mut table, "x")?;
         Ok(RoadSamples {
@@ -116,6 +119,29 @@ impl Campaign {
             file,
         })
     }
+}
+
+/// A road of straight pieces; two corners above each other are a step.
+fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSamples, InputError> {
+    let backward = corners.windows(2).find(|pair| pair[1][0] < pair[0][0]);
+    let third = corners.windows(3).find(|three| three[0][0] == three[2][0]);
+    if let Some(pair) = backward.or(third) {
+        let place = Place::Name(format!("{name} x"));
+        let found = format!("{} m after {} m", pair[1][0], pair[0][0]);
+        let expected = "a larger value, or the same value twice for a step";
+        return Err(Problem::new(file, place, found, expected, "sort the rows, or correct the value").into());
+    }
+    let (mut x, mut z, mut slope) = (Vec::new(), Vec::new(), Vec::new());
+    for (at, corner) in corners.iter().enumerate() {
+        let next = corners.get(at + 1).copied().unwrap_or([f64::INFINITY, corner[1]]);
+        // The foot of a step is where the slope of the piece before it leads.
+        if next[0] > corner[0] {
+            x.push(corner[0]);
+            z.push(corner[1]);
+            slope.push((next[1] - corner[1]) / (next[0] - corner[0]));
+        }
+    }
+    Ok(RoadSamples { file, x, z, slope })
 }
 
 fn other_kind(file: &Path, expected: &str) -> InputError {

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
+use super::unit::{Declared, examples};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 use crate::spelling;
@@ -153,9 +154,34 @@ impl<'a> Section<'a> {
         self.typed(key, number(value), value, "a finite number")
     }
 
-    /// A number above zero.
-    pub fn positive(&self, key: &'static str) -> Option<f64> {
-        let number = self.number(key)?;
+    /// A finite number in a coherent SI unit, or a text of a number with a unit of its kind, such as `"30 km/h"`.
+    pub fn quantity(&self, key: &'static str, si: &str) -> Option<f64> {
+        let value = self.required(key, "a number")?;
+        self.valued(key, value, Some(si))
+    }
+
+    /// A quantity, `None` where the key is left out.
+    pub fn optional_quantity(&self, key: &'static str, si: &str) -> Option<f64> {
+        self.optional(key).and_then(|_| self.quantity(key, si))
+    }
+
+    /// A number or a text with its unit, which is of the kind of `si` where that is known.
+    fn valued(&self, key: &str, value: &DeValue<'_>, si: Option<&str>) -> Option<f64> {
+        let Some(text) = value.as_str() else {
+            return self.typed(key, number(value), value, "a finite number");
+        };
+        let quantity = Declared::quantity(text).filter(|(_, unit)| si.is_none_or(|si| unit.is_like(si)));
+        if quantity.is_none() {
+            let kind = si.map_or("a unit of mechanics".into(), examples);
+            let expected = format!("a number with {kind}");
+            self.wrong(key, format!("\"{text}\""), expected, "correct the value or its unit");
+        }
+        quantity.map(|(value, _)| value)
+    }
+
+    /// A quantity above zero.
+    pub fn positive(&self, key: &'static str, si: &str) -> Option<f64> {
+        let number = self.quantity(key, si)?;
         if number > 0.0 {
             return Some(number);
         }
@@ -260,14 +286,12 @@ impl<'a> Section<'a> {
         self.names().into_iter().filter_map(member).collect()
     }
 
-    /// The numbers of this section, that is all of it, with their names, in the order of the file.
-    pub fn numbers(&self) -> Vec<(String, f64)> {
+    /// The quantities of this section, that is all of it, with their names, in the order of the file. `si` knows the units of
+    /// some.
+    pub fn quantities(&self, si: fn(&str) -> Option<&'static str>) -> Vec<(String, f64)> {
         let member = |name: &'a str| {
             let value = self.table.get(name)?.get_ref();
-            Some((
-                name.to_string(),
-                self.typed(name, number(value), value, "a finite number")?,
-            ))
+            Some((name.to_string(), self.valued(name, value, si(name))?))
         };
         self.names().into_iter().filter_map(member).collect()
     }

@@ -2,15 +2,18 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test};
+use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test, unit_of_fact};
 use super::fields::{Document, Section};
 use super::reading::Recorded;
 use super::recorded::{self, Files};
-use super::{table, unit};
+use super::table;
+use super::unit::Declared;
 use crate::error::{InputError, Place, Problem};
 use runs::{Known, run};
 use sensors::sensors;
 
+// What its workbook adds.
+mod workbook;
 // Its channels.
 mod sensors;
 // Its tests.
@@ -60,49 +63,46 @@ impl Campaign {
 
 fn campaign(folder: &Path, top: Section<'_>, files: &Files) -> Option<Campaign> {
     format(&top);
-    let (name, model, description) = (top.text("name"), top.text("model"), top.remark("description"));
-    let vehicle = top
-        .section("vehicle")
-        .map(|section| section.numbers())
-        .unwrap_or_default();
+    let (name, description) = (top.text("name"), top.remark("description"));
+    let workbook = workbook::named(folder, &top, files);
+    let model = workbook::model(&top, workbook.as_ref());
+    let workbook = workbook.unwrap_or_default();
+    let vehicle = top.section("vehicle");
+    let vehicle = vehicle.map_or(Vec::new(), |section| section.quantities(unit_of_fact));
     let roles = top.section("roles").map(|section| roles(&section)).unwrap_or_default();
-    let parameters = top
-        .section("parameters")
-        .map_or(Some(Vec::new()), |section| parameters(&section));
+    let parameters = top.section("parameters");
+    let parameters = parameters.map_or(Some(Vec::new()), |section| parameters_of(&section));
     let sensors = sensors(folder, &top);
     let roads = each(top.sections("road"), "name", road, |road| &road.name);
+    let roads = roads.map(|roads| workbook.with_roads(roads));
     let known = Known {
         folder,
         files,
         roads: roads.as_deref(),
         sensors: sensors.as_deref(),
     };
-    let runs = each(
-        top.sections("run"),
-        "file",
-        |section| run(section, &known),
-        |run| &run.name,
-    );
+    let read = |section: &Section<'_>| run(section, &known);
+    let runs = each(top.sections("run"), "file", read, |run| &run.name);
+    let runs = runs.map(|runs| workbook.with_runs(runs));
     if runs.as_ref().is_some_and(Vec::is_empty) {
         top.wrong("run", "no run", "at least one [[run]]", "list the measured files");
     }
     top.finish();
-    let (folder, notices) = (folder.to_path_buf(), Vec::new());
     let (name, model, parameters, sensors, runs, roads) = (name?, model?, parameters?, sensors?, runs?, roads?);
     let (channels, taps) = sensors.into_iter().map(|sensor| (sensor.channel, sensor.tap)).unzip();
     Some(Campaign {
-        folder,
+        folder: folder.to_path_buf(),
         name,
         description,
         model,
-        vehicle,
+        parameters: workbook.with_parameters(parameters, &vehicle),
+        vehicle: workbook.with_facts(vehicle),
         roles,
-        parameters,
         channels,
         taps,
         runs,
         roads,
-        notices,
+        notices: Vec::new(),
         recorded: Vec::new(),
     })
 }
@@ -151,7 +151,7 @@ fn roles(section: &Section<'_>) -> RoleNames {
     RoleNames { wheel, body }
 }
 
-fn parameters(section: &Section<'_>) -> Option<Vec<Parameter>> {
+fn parameters_of(section: &Section<'_>) -> Option<Vec<Parameter>> {
     section
         .named_sections()
         .into_iter()
@@ -165,9 +165,10 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
     let (value, unit, fit) = (section.number("value"), section.text("unit"), section.boolean("fit"));
     let (range, comment) = (section.range("range"), section.remark("comment"));
     section.finish();
-    if let Some(unit) = unit.as_ref().filter(|unit| unit::dimension(unit).is_none()) {
-        let remedy = "convert value and range, and write the coherent unit (N/m, N s/m, kg, m, 1)";
-        section.wrong("unit", format!("\"{unit}\""), "a coherent SI unit", remedy);
+    let declared = unit.as_deref().map(Declared::of);
+    if let (Some(unit), Some(None)) = (&unit, &declared) {
+        let remedy = "write the unit of value and range, such as N/m, N/mm, N s/m, kg, mm or 1";
+        section.wrong("unit", format!("\"{unit}\""), "a unit of mechanics", remedy);
     }
     if let (Some(value), Some((lower, upper))) = (value, range)
         && !(lower..=upper).contains(&value)
@@ -180,11 +181,12 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
             remedy,
         );
     }
+    let declared = declared??;
     Some(Parameter {
         name,
-        value: value?,
-        unit: unit?,
-        range,
+        value: declared.si(value?),
+        range: range.map(|(lower, upper)| (declared.si(lower), declared.si(upper))),
+        unit: declared.coherent,
         fit: fit?,
         comment,
     })
@@ -196,6 +198,7 @@ fn road(section: &Section<'_>) -> Option<Road> {
     Some(Road {
         name: name?,
         file: file?,
+        corners: None,
     })
 }
 
@@ -217,13 +220,13 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let (mut recorded, mut problems) = (Vec::new(), Vec::new());
     for (file, required, allowed) in tables(campaign, &channels) {
         match table::header(&campaign.folder.join(file)) {
-            Ok(names) => {
-                problems.extend(table::check_names(
-                    &campaign.folder.join(file),
-                    &names,
-                    required,
-                    allowed,
-                ));
+            Ok(headings) => {
+                let path = campaign.folder.join(file);
+                problems.extend(table::check_units(&path, &headings, |name| {
+                    unit_of_column(campaign, name)
+                }));
+                let names: Vec<String> = headings.into_iter().map(|own| own.name).collect();
+                problems.extend(table::check_names(&path, &names, required, allowed));
                 recorded.extend(names);
             }
             Err(error) => {
@@ -236,6 +239,18 @@ fn plain_columns(campaign: &Campaign) -> Result<Vec<String>, InputError> {
         }
     }
     InputError::unless_empty(problems, Some(recorded))
+}
+
+/// The SI unit of a column of a plain table.
+fn unit_of_column(campaign: &Campaign, name: &str) -> Option<&'static str> {
+    match name {
+        "time" => Some("s"),
+        "displacement" | "x" | "z" => Some("m"),
+        "velocity" => Some("m/s"),
+        "force" => Some("N"),
+        "slope" => Some("1"),
+        name => campaign.channel(name).map(|channel| channel.quantity.unit()),
+    }
 }
 
 /// Where a file is missing, its columns are what its maker must know.
@@ -258,7 +273,8 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
-    runs.chain(campaign.roads.iter().map(|road| (road.file.as_str(), ROAD, &[][..])))
+    let roads = campaign.roads.iter().filter(|road| road.corners.is_none());
+    runs.chain(roads.map(|road| (road.file.as_str(), ROAD, &[][..])))
         .collect()
 }
 

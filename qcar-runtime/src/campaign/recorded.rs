@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Run, Tap, Test};
+use super::contents::{Campaign, Run, Tap};
 use super::reading::{Missing, Recorded};
 use crate::error::{InputError, Place, Problem};
 use channel::Channel;
@@ -67,14 +67,12 @@ pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Re
     let file = campaign.folder.join(&run.file);
     let recording = files.get(&file)?;
     // A quasi-static curve needs no times.
-    let declared = run.test.sample_rate().or(match run.test {
-        Test::Bounce | Test::Longitudinal => Some(1.0),
-        _ => None,
-    });
+    let declared = run.test.sample_rate().or(run.test.is_curve().then_some(1.0));
     let span = Span::of(&file, &recording, &run.window, declared)?;
     let (mut channels, mut missing, mut problems) = (Vec::new(), Vec::new(), Vec::new());
     for tap in campaign.taps_of(run) {
         match Channel::tapped(&file, &recording, tap, declared) {
+            Ok(channel) if run.test.is_curve() => channels.push(channel.up_to_its_last_value()),
             Ok(channel) => channels.push(channel),
             Err(error) if recording.has(&tap.source) => problems.extend(error.problems),
             Err(error) => missing.extend(error.problems.into_iter().map(|problem| Missing {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use csv::{ByteRecord, ReaderBuilder, Terminator, Trim};
 use flate2::read::MultiGzDecoder;
 
+use super::unit::{Declared, examples};
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
@@ -13,7 +14,7 @@ use crate::error::{InputError, Place, Problem};
 pub(super) struct Table {
     pub file: PathBuf,
     pub names: Vec<String>,
-    /// As many as names, all of one length, which is at least 1; every number is finite.
+    /// In SI; as many as names, all of one length, which is at least 1; every number is finite.
     pub columns: Vec<Vec<f64>>,
     /// The line of each row in the file, since blank lines are skipped.
     pub lines: Vec<u64>,
@@ -36,15 +37,63 @@ impl Table {
     }
 }
 
-/// The names in the header line of `file`.
-pub(super) fn header(file: &Path) -> Result<Vec<String>, InputError> {
-    names(file, &mut open(file)?)
+/// A column as the header line announces it: `time`, or `time [ms]`.
+pub(super) struct Heading {
+    pub name: String,
+    /// What stands in brackets behind the name.
+    pub unit: Option<String>,
+}
+
+impl Heading {
+    fn of(text: &str) -> Heading {
+        let parts = text.strip_suffix(']').and_then(|text| text.rsplit_once('['));
+        match parts.filter(|(name, _)| !name.trim().is_empty()) {
+            Some((name, unit)) => Heading {
+                name: name.trim().into(),
+                unit: Some(unit.trim().into()),
+            },
+            None => Heading {
+                name: text.into(),
+                unit: None,
+            },
+        }
+    }
+}
+
+/// The header line of `file`.
+pub(super) fn header(file: &Path) -> Result<Vec<Heading>, InputError> {
+    headings(file, &mut open(file)?)
+}
+
+fn headings(file: &Path, reader: &mut csv::Reader<Box<dyn Read>>) -> Result<Vec<Heading>, InputError> {
+    Ok(names(file, reader)?.iter().map(|name| Heading::of(name)).collect())
+}
+
+/// What is wrong with the units of columns, of which `si` knows what they must be a kind of.
+pub(super) fn check_units(
+    file: &Path,
+    headings: &[Heading],
+    si: impl Fn(&str) -> Option<&'static str>,
+) -> Vec<Problem> {
+    let stated = headings
+        .iter()
+        .filter_map(|own| Some((&own.name, own.unit.as_ref()?, si(&own.name)?)));
+    let wrong = stated.filter(|(_, unit, si)| !Declared::of(unit).is_some_and(|unit| unit.is_like(si)));
+    wrong
+        .map(|(name, unit, si)| {
+            let place = Place::Cell(1, name.clone());
+            let remedy = "write the unit of the column into the brackets, or leave them out for SI";
+            Problem::new(file, place, format!("the unit \"{unit}\""), examples(si), remedy)
+        })
+        .collect()
 }
 
 /// Reads all of `file`.
 pub(super) fn read(file: &Path) -> Result<Table, InputError> {
     let mut reader = open(file)?;
-    let names = names(file, &mut reader)?;
+    let headings = headings(file, &mut reader)?;
+    let units: Vec<Option<Declared>> = headings.iter().map(|own| Declared::of(own.unit.as_ref()?)).collect();
+    let names: Vec<String> = headings.into_iter().map(|own| own.name).collect();
     let mut table = Table {
         file: file.into(),
         columns: vec![Vec::new(); names.len()],
@@ -69,6 +118,11 @@ pub(super) fn read(file: &Path) -> Result<Table, InputError> {
             "export the data again",
         )
         .into());
+    }
+    for (column, unit) in table.columns.iter_mut().zip(&units) {
+        if let Some(unit) = unit {
+            column.iter_mut().for_each(|value| *value = unit.si(*value));
+        }
     }
     Ok(table)
 }

@@ -2,7 +2,7 @@
 
 use super::contents::{Quantity, Tap, Trigger, Window};
 use super::fields::Section;
-use super::unit;
+use super::unit::{self, examples};
 use qcar_signals::si::{Si, in_si};
 
 /// Seconds at the beginning of a recording whose mean is taken off by `zero = "start"`.
@@ -56,17 +56,6 @@ pub(super) fn of_quantity(unit: Option<Si>, si: &str) -> bool {
     unit.map(|unit| unit.dimension) == unit::dimension(si)
 }
 
-/// What a unit of a quantity looks like.
-pub(super) fn examples(si: &str) -> String {
-    let [a, b] = match si {
-        "m/s^2" => ["g", "mm/s^2"],
-        "m/s" => ["mm/s", "km/h"],
-        "m" => ["mm", "in"],
-        _ => ["kN", "lbf"],
-    };
-    format!("a unit of the kind of {si}, such as \"{a}\" or \"{b}\"")
-}
-
 fn sign(section: &Section<'_>) -> Option<f64> {
     match section.optional_number("sign") {
         None => Some(1.0),
@@ -85,7 +74,7 @@ fn sign(section: &Section<'_>) -> Option<f64> {
 
 /// How many seconds at the beginning give the zero, if any do.
 fn zero(section: &Section<'_>) -> Option<Option<f64>> {
-    let span = section.has("zero_span").then(|| section.positive("zero_span"));
+    let span = section.has("zero_span").then(|| section.positive("zero_span", "s"));
     if !section.has("zero") {
         if span.is_some() {
             section.wrong(
@@ -147,7 +136,10 @@ impl Tap {
 
 /// The part of a recording that is a run.
 pub(super) fn window(section: &Section<'_>) -> Option<Window> {
-    let (from, to) = (section.optional_number("from"), section.optional_number("to"));
+    let (from, to) = (
+        section.optional_quantity("from", "s"),
+        section.optional_quantity("to", "s"),
+    );
     let trigger = match section.section("trigger") {
         Some(section) => Some(trigger(&section)?),
         None => None,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use super::contents::unit_of_fact;
 use super::fields::{Document, Section};
 use crate::error::InputError;
 
@@ -47,7 +48,7 @@ fn truth(top: &Section<'_>) -> Option<Truth> {
     let effects: Vec<_> = top.sections("effects").iter().map(effect).collect();
     let parameters = top
         .section("parameters")
-        .map(|section| section.numbers())
+        .map(|section| section.quantities(unit_of_fact))
         .unwrap_or_default();
     top.finish();
     Some(Truth {
@@ -61,7 +62,7 @@ fn effect(section: &Section<'_>) -> Option<Effect> {
     let (name, at) = (section.text("name"), section.text("at"));
     let parameters = section
         .section("parameters")
-        .map(|section| section.numbers())
+        .map(|section| section.quantities(unit_of_fact))
         .unwrap_or_default();
     section.finish();
     Some(Effect {

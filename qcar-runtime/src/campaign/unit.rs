@@ -1,4 +1,6 @@
-//! Coherent SI units as campaigns write them: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `1`.
+//! Coherent SI units as campaigns write them: `N s/m`, `N*s/m`, `kg m^2`, `m/s^2`, `1`; and others that files declare.
+
+use qcar_signals::si::in_si;
 
 /// Exponents of kilogram, metre and second. The radian counts as 1.
 pub type Dimension = [i32; 3];
@@ -47,9 +49,152 @@ fn base(symbol: &str) -> Option<Dimension> {
     })
 }
 
+/// A unit that a file declares, and what it is in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declared {
+    multiply: f64,
+    divide: f64,
+    /// The coherent SI unit of the same kind; the unit itself where it is one.
+    pub coherent: String,
+}
+
+impl Declared {
+    /// `N/mm`, `N s/mm`, `mm`, `kN`, `km/h`, and every coherent unit; nothing where it is not known. `g` is the standard
+    /// acceleration.
+    pub fn of(unit: &str) -> Option<Declared> {
+        let unit = unit.trim();
+        if dimension(unit).is_some() {
+            return Some(Declared {
+                multiply: 1.0,
+                divide: 1.0,
+                coherent: unit.into(),
+            });
+        }
+        let si = in_si(unit)?;
+        Some(Declared {
+            multiply: si.multiply,
+            divide: si.divide,
+            coherent: coherent(si.dimension),
+        })
+    }
+
+    /// A number with its unit behind it, such as `187 N/mm`: its value in SI, and the unit.
+    pub fn quantity(text: &str) -> Option<(f64, Declared)> {
+        let text = text.trim();
+        let mut ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
+        let end = ends.find(|&end| text[..end].trim_end().parse::<f64>().is_ok())?;
+        let value = text[..end]
+            .trim_end()
+            .parse::<f64>()
+            .ok()
+            .filter(|value| value.is_finite())?;
+        let unit = Declared::of(&text[end..])?;
+        Some((unit.si(value), unit))
+    }
+
+    /// A value in this unit, brought to SI.
+    pub fn si(&self, value: f64) -> f64 {
+        value * self.multiply / self.divide
+    }
+
+    /// A value in SI, brought to this unit.
+    pub fn shown(&self, value: f64) -> f64 {
+        value * self.divide / self.multiply
+    }
+
+    /// Whether it is of the kind of another unit.
+    pub fn is_like(&self, unit: &str) -> bool {
+        dimension(&self.coherent) == dimension(unit)
+    }
+}
+
+/// What is usual for a dimension.
+const USUAL: [(&str, Dimension); 12] = [
+    ("1", [0, 0, 0]),
+    ("kg", [1, 0, 0]),
+    ("m", [0, 1, 0]),
+    ("s", [0, 0, 1]),
+    ("Hz", [0, 0, -1]),
+    ("m/s", [0, 1, -1]),
+    ("m/s^2", [0, 1, -2]),
+    ("N", [1, 1, -2]),
+    ("N/m", [1, 0, -2]),
+    ("N s/m", [1, 0, -1]),
+    ("N m", [1, 2, -2]),
+    ("Pa", [1, -1, -2]),
+];
+
+/// The coherent unit of a dimension, as an engineer writes it where there is a usual one.
+fn coherent(of: Dimension) -> String {
+    let usual = USUAL.iter().find(|(_, dimension)| *dimension == of);
+    usual.map_or_else(
+        || {
+            let base = ["kg", "m", "s"].iter().zip(of).filter(|(_, power)| *power != 0);
+            base.map(|(symbol, power)| format!("{symbol}^{power}"))
+                .collect::<Vec<_>>()
+                .join(" ")
+        },
+        |(unit, _)| (*unit).into(),
+    )
+}
+
+/// What units of the kind of a coherent one look like, to be expected in errors.
+pub fn examples(si: &str) -> String {
+    let such: &[&str] = match dimension(si) {
+        Some([0, 1, 0]) => &["mm", "in"],
+        Some([0, 1, -1]) => &["mm/s", "km/h"],
+        Some([0, 1, -2]) => &["g", "mm/s^2"],
+        Some([1, 1, -2]) => &["kN", "lbf"],
+        Some([1, 0, -2]) => &["N/mm", "lbf/in"],
+        Some([1, 0, -1]) => &["N s/mm", "kN s/m"],
+        _ => &[],
+    };
+    let such: Vec<String> = such.iter().map(|unit| format!("\"{unit}\"")).collect();
+    match such.is_empty() {
+        true => format!("a unit of the kind of {si}"),
+        false => format!("a unit of the kind of {si}, such as {}", such.join(" or ")),
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::dimension;
+    use super::{Declared, coherent, dimension};
+
+    #[test]
+    fn declared_units_come_to_si_and_back() {
+        for (unit, value, si, kind) in [
+            ("N/mm", 25.0, 25e3, "N/m"),
+            ("N s/mm", 1.5, 1500.0, "N s/m"),
+            ("mm", 23.61, 0.02361, "m"),
+            ("g", 1.0, 9.80665, "m/s^2"),
+            ("km/h", 30.0, 30.0 / 3.6, "m/s"),
+            ("N*s/m", 1410.0, 1410.0, "N*s/m"),
+            ("N/(m/s)", 1410.0, 1410.0, "N/(m/s)"),
+        ] {
+            let declared = Declared::of(unit).unwrap();
+            assert_eq!((declared.si(value), declared.coherent.as_str()), (si, kind), "{unit}");
+            assert!((declared.shown(si) / value - 1.0).abs() < 1e-15, "{unit}");
+        }
+        assert_eq!(Declared::of("V"), None);
+    }
+
+    #[test]
+    fn a_number_may_have_its_unit_behind_it() {
+        let si = |text| Declared::quantity(text).map(|(value, unit)| (value, unit.coherent));
+        assert_eq!(si("187 N/mm"), Some((187e3, "N/m".into())));
+        assert_eq!(si(" 1.5e3N s/m"), Some((1500.0, "N s/m".into())));
+        assert_eq!(si("30 km/h"), Some((30.0 / 3.6, "m/s".into())));
+        for text in ["", "187", "N/mm", "187 V", "inf m", "1 2 m"] {
+            assert_eq!(si(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn a_dimension_has_a_unit_that_has_it() {
+        for of in [[1, 0, -2], [2, -3, 1], [0, 0, -2], [0, 0, 0]] {
+            assert_eq!(dimension(&coherent(of)), Some(of));
+        }
+    }
 
     #[test]
     fn spellings_of_one_unit_agree() {

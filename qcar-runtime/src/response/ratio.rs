@@ -28,23 +28,36 @@ pub fn ratio<M: Model + ?Sized>(
     frequency: &[f64],
 ) -> Result<Ratio, SignalError> {
     let mut response = Response::new(model, excitation, frequency);
-    let above = locate(model.about(), response.layout(), excitation, numerator)?;
-    let below = locate(model.about(), response.layout(), excitation, denominator)?;
     response.evaluate(values.as_slice());
-    let (n, d) = (signal(&response, above), signal(&response, below));
+    between(&response, values, numerator, denominator)
+}
+
+/// The ratio of two signals of a response that has been evaluated; without derivatives where it has none.
+///
+/// # Errors
+/// As [`ratio`].
+pub fn between<M: Model + ?Sized>(
+    response: &Response<'_, M>,
+    values: &Values,
+    numerator: &Signal,
+    denominator: &Signal,
+) -> Result<Ratio, SignalError> {
+    let find = |signal| locate(response.model.about(), response.layout(), response.excitation, signal);
+    let (above, below) = (find(numerator)?, find(denominator)?);
+    let (n, d) = (signal(response, above), signal(response, below));
     let value: Vec<_> = n.iter().zip(&d).map(|(n, d)| n / d).collect();
-    let leaders = (0..values.as_slice().len()).filter(|&k| values.leader(k) == k);
+    let leaders = (0..values.as_slice().len()).filter(|&k| response.has_jacobian() && values.leader(k) == k);
     let jacobian = leaders.filter_map(|leader| {
         let (dn, dd) = (
-            slope(&response, above, values, leader),
-            slope(&response, below, values, leader),
+            slope(response, above, values, leader),
+            slope(response, below, values, leader),
         );
         (dn.is_some() || dd.is_some()).then(|| {
             let at =
                 |slope: &Option<Vec<Complex<f64>>>, line: usize| slope.as_ref().map_or(Complex::default(), |s| s[line]);
             (
                 leader,
-                (0..frequency.len())
+                (0..value.len())
                     .map(|i| (at(&dn, i) - value[i] * at(&dd, i)) / d[i])
                     .collect(),
             )

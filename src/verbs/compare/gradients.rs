@@ -10,7 +10,7 @@ use crate::verbs::kc;
 pub(super) struct Gradient {
     pub test: &'static str,
     pub quantity: &'static str,
-    unit: &'static str,
+    pub(super) unit: &'static str,
     pub a: Option<Value>,
     pub b: Option<Value>,
     /// B less A, over A; `None` where A is hardly more than its uncertainty.

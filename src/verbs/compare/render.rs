@@ -10,6 +10,7 @@ use super::modes::Pair;
 use super::moved::Parameter;
 use super::ratios::Largest;
 use crate::table::{Table, number, or_dash};
+use crate::units;
 
 /// What the terminal gets.
 pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> String {
@@ -59,12 +60,13 @@ fn parameters(of: &[Parameter]) -> String {
         "standard_errors",
     ]);
     for own in &shown {
+        let shown = |value| units::value(value, &own.unit);
         table.row(vec![
             own.name.clone(),
-            own.unit.clone(),
-            or_dash(own.a, 5),
-            or_dash(own.b, 5),
-            or_dash(own.difference, 4),
+            units::name(&own.unit).into(),
+            or_dash(own.a.map(shown), 5),
+            or_dash(own.b.map(shown), 5),
+            or_dash(own.difference.map(shown), 4),
             percent(own.relative),
             or_dash(own.standard_errors, 3),
         ]);
@@ -143,13 +145,15 @@ fn gradients(of: &Comparison) -> String {
     if of.gradients.is_empty() {
         return String::new();
     }
-    let mut table = Table::new(["curve", "quantity", "A", "B", "change_%", "standard_errors"]);
+    let mut table = Table::new(["curve", "quantity", "unit", "A", "B", "change_%", "standard_errors"]);
     for own in &of.gradients {
+        let shown = |value| units::value(value, own.unit);
         table.row(vec![
             own.test.into(),
             own.quantity.into(),
-            or_dash(own.a.map(|own| own.value), 4),
-            or_dash(own.b.map(|own| own.value), 4),
+            units::name(own.unit).into(),
+            or_dash(own.a.map(|own| shown(own.value)), 4),
+            or_dash(own.b.map(|own| shown(own.value)), 4),
             percent(own.relative),
             or_dash(own.standard_errors, 3),
         ]);
@@ -199,25 +203,28 @@ fn cell(value: Option<f64>) -> String {
 pub(super) fn parameters_csv(of: &Comparison) -> String {
     let mut out = "parameter,unit,a,b,difference,relative,stderr_a,stderr_b,standard_errors\n".to_string();
     for own in &of.parameters {
+        let shown = |value: Option<f64>| value.map(|value| units::value(value, &own.unit));
         let numbers = [
-            own.a,
-            own.b,
-            own.difference,
+            shown(own.a),
+            shown(own.b),
+            shown(own.difference),
             own.relative,
-            own.stderr_a,
-            own.stderr_b,
+            shown(own.stderr_a),
+            shown(own.stderr_b),
             own.standard_errors,
         ];
-        let _ = writeln!(out, "{},{},{}", own.name, own.unit, numbers.map(cell).join(","));
+        let unit = units::name(&own.unit);
+        let _ = writeln!(out, "{},{unit},{}", own.name, numbers.map(cell).join(","));
     }
     out
 }
 
 /// Every channel line by line: dB and degrees.
 pub(super) fn ratios_csv(of: &Comparison) -> String {
-    let mut out =
-        "run,channel,frequency,a_dB,a_deg,b_dB,b_deg,measured_a_dB,measured_a_deg,measured_b_dB,measured_b_deg\n"
-            .to_string();
+    let frequency = units::heading("frequency", "Hz");
+    let mut out = format!(
+        "run,channel,{frequency},a_dB,a_deg,b_dB,b_deg,measured_a_dB,measured_a_deg,measured_b_dB,measured_b_deg\n"
+    );
     for ratio in &of.ratios {
         let run = ratio.run.as_deref().unwrap_or("");
         let measured = |place: usize| ratio.measured.get(place).map(|own| &own.value);
@@ -227,25 +234,38 @@ pub(super) fn ratios_csv(of: &Comparison) -> String {
                 .iter()
                 .flat_map(|polar| [polar.map(|own| own.magnitude[line]), polar.map(|own| own.phase[line])]);
             let cells: Vec<String> = cells.map(cell).collect();
+            let frequency = units::value(*frequency, "Hz");
             let _ = writeln!(out, "{run},{},{frequency},{}", ratio.channel, cells.join(","));
         }
     }
     out
 }
 
-/// Peaks and after-shakes, m/s²; speeds in m/s and heights in m.
+/// Peaks and after-shakes, speeds and heights.
 pub(super) fn passages_csv(of: &Comparison) -> String {
-    let mut out = "run,speed,height,mass,axis,peak_a,peak_b,peak_measured_a,peak_measured_b,\
-                   after_shake_a,after_shake_b,after_shake_measured_a,after_shake_measured_b\n"
-        .to_string();
+    let sides = ["a", "b", "measured_a", "measured_b"];
+    let of_metric = |metric: &str| {
+        sides
+            .map(|side| units::heading(&format!("{metric}_{side}"), "m/s^2"))
+            .join(",")
+    };
+    let mut out = format!(
+        "run,{},{},mass,axis,{},{}\n",
+        units::heading("speed", "m/s"),
+        units::heading("height", "m"),
+        of_metric("peak"),
+        of_metric("after_shake")
+    );
     for passage in &of.passages {
         for own in &passage.compared.metrics {
             let metric = |of: &super::records::Metric| {
                 let measured = |place: usize| of.measured.get(place).copied();
-                [Some(of.a), Some(of.b), measured(0), measured(1)].map(cell).join(",")
+                let shown = |value: Option<f64>| cell(value.map(|value| units::value(value, "m/s^2")));
+                [Some(of.a), Some(of.b), measured(0), measured(1)].map(shown).join(",")
             };
             let (peak, shake) = (metric(&own.peak), metric(&own.after_shake));
-            let (name, speed, height) = (&passage.name, passage.speed, passage.height);
+            let (speed, height) = (units::value(passage.speed, "m/s"), units::value(passage.height, "m"));
+            let name = &passage.name;
             let _ = writeln!(out, "{name},{speed},{height},{},{},{peak},{shake}", own.mass, own.axis);
         }
     }

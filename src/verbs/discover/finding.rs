@@ -6,13 +6,20 @@ use std::fmt::Write;
 use qcar_runtime::discover::answer::Finding;
 
 use crate::table::{Table, number, or_dash};
+use crate::units;
 
-pub(super) fn described(finding: &Finding, units: &BTreeMap<String, String>) -> String {
+pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> String {
     let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
     for (name, value, error) in &finding.parameters {
-        let error = or_dash(Some(*error).filter(|error| error.is_finite()), 2);
-        let unit = units.get(name).cloned().unwrap_or_default();
-        table.row(vec![name.clone(), unit, number(*value, 4), error]);
+        let unit = of.get(name).map_or("", String::as_str);
+        let shown = |value| units::value(value, unit);
+        let error = or_dash(Some(shown(*error)).filter(|error| error.is_finite()), 2);
+        table.row(vec![
+            name.clone(),
+            units::name(unit).into(),
+            number(shown(*value), 4),
+            error,
+        ]);
     }
     let share = 100.0 * finding.closed;
     let form = finding

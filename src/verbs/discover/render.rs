@@ -15,8 +15,10 @@ use super::finding::described;
 use super::learned;
 use super::left::{BeforeAfter, Left, channel, left};
 use super::places::{self, Missing};
+use crate::effects;
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
+use crate::units;
 
 /// The answer as `docs/json.md` describes it.
 #[derive(Serialize)]
@@ -282,8 +284,9 @@ pub(super) fn parameters(heading: &str, of: &Explanation) -> String {
 fn offsets_table(of: &Explanation) -> String {
     let mut table = Table::new(["channel", "quantity", "unit", "offset", "stderr"]);
     for own in offsets(of) {
-        let numbers = [number(own.offset, 4), or_dash(own.stderr, 2)];
-        let names = [own.channel, own.quantity.into(), own.unit.into()];
+        let shown = |value| units::value(value, own.unit);
+        let numbers = [number(shown(own.offset), 4), or_dash(own.stderr.map(shown), 2)];
+        let names = [own.channel, own.quantity.into(), units::name(own.unit).into()];
         table.row(names.into_iter().chain(numbers).collect());
     }
     table.text()
@@ -412,12 +415,13 @@ fn acts(best: &Missing) -> String {
 
 /// How clearly each effect would have been seen.
 fn visible(of: &Answer) -> String {
-    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size_in_SI"]);
+    let mut table = Table::new(["effect", "at", "times_the_limit", "of_this_size"]);
     for own in &of.discovery.visible {
-        let usual = own
-            .usual
-            .iter()
-            .map(|(name, value)| format!("{name} {}", number(*value, 3)));
+        let of_effect = effects::units(&own.effect);
+        let usual = own.usual.iter().map(|(name, value)| {
+            let si = of_effect.get(name).map_or("1", String::as_str);
+            units::with_unit(&format!("{name} {}", number(units::value(*value, si), 3)), si)
+        });
         table.row(vec![
             own.effect.clone(),
             own.at.clone(),
@@ -448,12 +452,13 @@ fn tiles(of: &Answer) -> String {
         "times_the_uncertainty",
     ]);
     for tile in of.discovery.before.gap.tiles.iter().take(8) {
+        let unit = unit_of_span(tile.kind);
         table.row(vec![
             channel(&tile.sensor),
             tile.kind.order().map_or("-".into(), |order| order.to_string()),
-            number(tile.span.0, 3),
-            number(tile.span.1, 3),
-            unit_of_span(tile.kind).into(),
+            number(units::value(tile.span.0, unit), 3),
+            number(units::value(tile.span.1, unit), 3),
+            units::name(unit).into(),
             number(tile.level, 3),
             number(tile.strength, 3),
         ]);

@@ -13,6 +13,7 @@ use qcar_runtime::response::ratio::ratio;
 use super::{Fitted, render};
 use crate::figure::{Across, Curve, Figure, Panel, Style};
 use crate::files::put;
+use crate::units;
 
 /// Refuses a folder that holds what a fit of another model or campaign gave.
 ///
@@ -111,7 +112,8 @@ pub(crate) fn compare(of: &Fitted) -> Vec<Compared<'_>> {
 }
 
 fn csv(of: &[Compared]) -> String {
-    let mut out = "run,channel,frequency,measured_re,measured_im,before_re,before_im,after_re,after_im\n".to_string();
+    let frequency = units::heading("frequency", "Hz");
+    let mut out = format!("run,channel,{frequency},measured_re,measured_im,before_re,before_im,after_re,after_im\n");
     for Compared {
         level,
         observation,
@@ -120,6 +122,7 @@ fn csv(of: &[Compared]) -> String {
     } in of
     {
         for (line, frequency) in observation.frequency.iter().enumerate() {
+            let frequency = units::value(*frequency, "Hz");
             let _ = write!(out, "{},{},{frequency}", level.name, observation.channel.name);
             for value in [observation.value[line], before[line], after[line]] {
                 let _ = write!(out, ",{},{}", value.re, value.im);

@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::Fitted;
 use crate::json::{self, Ordered};
 use crate::table::{Table, number, or_dash};
+use crate::units;
 
 /// Parameters by name, channels run by run.
 #[derive(Serialize)]
@@ -89,16 +90,17 @@ fn summary(of: &Fitted) -> String {
 fn parameters(of: &[ParameterFit]) -> String {
     let mut table = Table::new(["parameter", "unit", "start", "value", "stderr", "stderr_%", "remark"]);
     for parameter in of {
-        let names = [parameter.name.clone(), parameter.unit.clone()];
-        let values = [parameter.start, parameter.value].map(|value| number(value, 5));
+        let shown = |value| units::value(value, &parameter.unit);
+        let names = [parameter.name.clone(), units::name(&parameter.unit).into()];
+        let values = [parameter.start, parameter.value].map(|value| number(shown(value), 5));
         let percent = parameter.relative_stderr.map(|part| 100.0 * part);
-        let errors = [parameter.stderr, percent].map(|error| or_dash(error, 2));
+        let errors = [parameter.stderr.map(shown), percent].map(|error| or_dash(error, 2));
         table.row([&names[..], &values, &errors, &[remark(parameter)]].concat());
     }
     table.text()
 }
 
-fn remark(of: &ParameterFit) -> String {
+pub(super) fn remark(of: &ParameterFit) -> String {
     let bound = of.at_bound.map(|bound| match bound {
         Bound::Lower => "at the lower end of its range",
         Bound::Upper => "at the upper end of its range",

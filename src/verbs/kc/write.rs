@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Declared};
 use qcar_runtime::error::{InputError, Place, Problem};
 use toml::de::DeTable;
 
@@ -25,20 +25,44 @@ pub(super) fn start_values(campaign: &Campaign, gradients: &[Gradient]) -> Resul
                 let remedy = "widen the range, or check the curve";
                 problems.push(Problem::new(&file, place, format!("[{low}, {high}]"), expected, remedy));
             }
-            _ => text.replace_range(value_of(&text, name), &format!("{value:?}")),
+            _ => match value_of(&text, name) {
+                Some((place, unit)) => {
+                    let stated: f64 = format!("{:.4e}", unit.map_or(value, |unit| unit.shown(value)))
+                        .parse()
+                        .unwrap_or(value);
+                    text.replace_range(place, &format!("{stated:?}"));
+                }
+                None => problems.push(in_the_workbook(campaign, name, value)),
+            },
         }
     }
     InputError::unless_empty(problems, Some(()))?;
     put(&campaign.folder, "campaign.toml", &text)
 }
 
-/// Where the value of a parameter stands.
-fn value_of(text: &str, name: &str) -> Range<usize> {
+/// What stands in a workbook stays there.
+fn in_the_workbook(campaign: &Campaign, name: &str, value: f64) -> Problem {
+    let unit = campaign.parameter(name).map_or("", |own| &own.unit);
+    let remedy = format!("write {value} {unit} into its cell of the workbook, or add [parameters.{name}]");
+    let expected = format!("[parameters.{name}], whose value can be replaced");
+    let place = Place::Name(format!("parameters.{name}"));
+    Problem::new(
+        campaign.manifest(),
+        place,
+        "a parameter that its workbook states",
+        expected,
+        remedy,
+    )
+}
+
+/// Where the value of a parameter stands, and in which unit; nothing where the file does not state it.
+fn value_of(text: &str, name: &str) -> Option<(Range<usize>, Option<Declared>)> {
     let table = DeTable::parse(text).expect("the campaign was read from this text");
     let parameter = table
         .get_ref()
         .get("parameters")
         .and_then(|parameters| parameters.get_ref().get(name));
-    let value = parameter.and_then(|parameter| parameter.get_ref().get("value"));
-    value.expect("the campaign has this parameter").span()
+    let own = |key| parameter.and_then(|parameter| parameter.get_ref().get(key));
+    let unit = own("unit").and_then(|unit| Declared::of(unit.get_ref().as_str()?));
+    own("value").map(|value| (value.span(), unit))
 }

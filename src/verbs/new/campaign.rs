@@ -5,11 +5,13 @@ use std::fs;
 use std::path::{Component, Path, PathBuf};
 
 use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{About, Default, Parameter, StateKind};
 
 use super::{Named, must_be_new};
 use crate::catalogue;
+use crate::completion;
 use crate::failure::Failure;
 use crate::files::put;
 use crate::table::number;
@@ -24,7 +26,7 @@ pub(super) struct Arguments {
     #[command(flatten)]
     named: Named,
     /// The model that is to be fitted: name of a shipped one, or path of a model file
-    #[arg(long, default_value = "quarter_car")]
+    #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }
 
@@ -105,7 +107,7 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
         .filter(|parameter| !matches!(parameter.default, Default::Same(_)))
         .partition(|parameter| parameter.known);
     let mut out = format!(
-        "# A campaign of measurements; docs/campaign-format.md describes it. All is SI, all paths are relative to this \
+        "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
          folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
          # What is known before any fit.\n[vehicle]\n"
     );

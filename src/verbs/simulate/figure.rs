@@ -2,6 +2,7 @@
 
 use super::records::Record;
 use crate::figure::{Across, Curve, Figure, Panel, Style};
+use crate::units;
 
 /// Parts of a record, of each of which the lowest and the highest value are drawn.
 const PARTS: usize = 800;
@@ -11,10 +12,15 @@ pub(super) fn record(of: &Record) -> Figure {
         let [measured, simulated] = signals;
         Panel {
             title: error.channel.clone(),
-            vertical: format!("{}, {} ({:.1} % NRMS)", error.quantity, error.unit, 100.0 * error.nrms),
+            vertical: format!(
+                "{}, {} ({:.1} % NRMS)",
+                error.quantity,
+                units::name(error.unit),
+                100.0 * error.nrms
+            ),
             curves: vec![
-                curve("measured", Style::Measured, measured, of),
-                curve("simulated", Style::After, simulated, of),
+                curve("measured", Style::Measured, (measured, error.unit), of),
+                curve("simulated", Style::After, (simulated, error.unit), of),
             ],
         }
     });
@@ -25,7 +31,7 @@ pub(super) fn record(of: &Record) -> Figure {
     }
 }
 
-fn curve(label: &'static str, style: Style, samples: &[f64], of: &Record) -> Curve {
+fn curve(label: &'static str, style: Style, (samples, si): (&[f64], &str), of: &Record) -> Curve {
     let length = samples.len().div_ceil(PARTS).max(1);
     let time = |sample: usize| of.start + sample as f64 / of.rate;
     let ends = |(part, samples): (usize, &[f64])| {
@@ -35,7 +41,8 @@ fn curve(label: &'static str, style: Style, samples: &[f64], of: &Record) -> Cur
         let mut ends: Vec<(usize, f64)> = lowest.into_iter().chain(highest).map(|(k, y)| (k, *y)).collect();
         ends.sort_by_key(|(k, _)| *k);
         ends.dedup();
-        ends.into_iter().map(move |(k, y)| (time(part * length + k), y))
+        ends.into_iter()
+            .map(move |(k, y)| (time(part * length + k), units::value(y, si)))
     };
     let points = samples.chunks(length).enumerate().flat_map(ends).collect();
     Curve { label, style, points }

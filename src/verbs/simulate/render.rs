@@ -18,6 +18,10 @@ use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
 use crate::table::{Table, number};
+use crate::units;
+
+/// What peaks and after-shakes are in.
+const ACCELERATION: &str = "m/s^2";
 
 /// All runs.
 pub(super) struct Result<'a> {
@@ -95,9 +99,10 @@ impl Result<'_> {
                 own.role.into(),
                 own.channel.clone(),
                 own.quantity.into(),
-                own.unit.into(),
+                units::name(own.unit).into(),
             ];
-            let numbers = [number(own.measured_rms, 4), number(own.rms_error, 4), percent(own.nrms)];
+            let [measured, error] = [own.measured_rms, own.rms_error].map(|rms| number(units::value(rms, own.unit), 4));
+            let numbers = [measured, error, percent(own.nrms)];
             table.row(names.into_iter().chain(numbers).collect());
         }
         table.text()
@@ -105,8 +110,10 @@ impl Result<'_> {
 
     fn records_csv(&self) -> String {
         let row = |own: &RecordError| {
-            let names = format!("{},{},{},{},{}", own.run, own.role, own.channel, own.quantity, own.unit);
-            format!("{names},{},{},{}\n", own.measured_rms, own.rms_error, own.nrms)
+            let unit = units::name(own.unit);
+            let names = format!("{},{},{},{},{unit}", own.run, own.role, own.channel, own.quantity);
+            let [measured, error] = [own.measured_rms, own.rms_error].map(|rms| units::value(rms, own.unit));
+            format!("{names},{measured},{error},{}\n", own.nrms)
         };
         let head = "run,role,channel,quantity,unit,measured_rms,rms_error,nrms\n";
         head.to_string() + &self.errors().map(row).collect::<String>()
@@ -119,19 +126,22 @@ fn text(of: &Compared) -> String {
         "role",
         "mass",
         "axis",
+        "unit",
         "peak",
         "peak_error_%",
         "after_shake",
         "after_shake_error_%",
     ]);
+    let shown = |value| units::value(value, ACCELERATION);
     for d in &of.runs {
         let numbers = [
-            number(d.measured_peak, 4),
+            number(shown(d.measured_peak), 4),
             percent(d.peak_error),
-            number(d.measured_after_shake, 3),
+            number(shown(d.measured_after_shake), 3),
             percent(d.after_shake_error),
         ];
-        let place = [d.run.clone(), d.role.into(), d.mass.clone(), d.axis.into()];
+        let unit = units::name(ACCELERATION).into();
+        let place = [d.run.clone(), d.role.into(), d.mass.clone(), d.axis.into(), unit];
         runs.row(place.into_iter().chain(numbers).collect());
     }
     let mut sizes = Table::new([
@@ -189,20 +199,36 @@ fn percent(part: f64) -> String {
 
 /// The errors, a row for each run, mass and axis.
 pub(crate) fn csv(of: &Compared) -> String {
-    let head = "run,role,mass,axis,measured_peak,simulated_peak,peak_error,\
-                measured_after_shake,simulated_after_shake,after_shake_error\n";
+    let [measured_peak, simulated_peak, measured_shake, simulated_shake] = [
+        "measured_peak",
+        "simulated_peak",
+        "measured_after_shake",
+        "simulated_after_shake",
+    ]
+    .map(|what| units::heading(what, ACCELERATION));
+    let head = format!(
+        "run,role,mass,axis,{measured_peak},{simulated_peak},peak_error,{measured_shake},{simulated_shake},after_shake_error\n"
+    );
+    let shown = |value| units::value(value, ACCELERATION);
     let row = |d: &Difference| {
         let Difference {
             run, role, mass, axis, ..
         } = d;
-        let peaks = format!("{},{},{}", d.measured_peak, d.simulated_peak, d.peak_error);
+        let peaks = format!(
+            "{},{},{}",
+            shown(d.measured_peak),
+            shown(d.simulated_peak),
+            d.peak_error
+        );
         let shakes = format!(
             "{},{},{}",
-            d.measured_after_shake, d.simulated_after_shake, d.after_shake_error
+            shown(d.measured_after_shake),
+            shown(d.simulated_after_shake),
+            d.after_shake_error
         );
         format!("{run},{role},{mass},{axis},{peaks},{shakes}\n")
     };
-    head.to_string() + &of.runs.iter().map(row).collect::<String>()
+    head + &of.runs.iter().map(row).collect::<String>()
 }
 
 /// For each sweep or time history a file of what was measured beside what was simulated, and a figure of it.

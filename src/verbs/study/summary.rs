@@ -11,6 +11,7 @@ use serde::Serialize;
 use super::gather::{Study, Track};
 use super::rig::Ratio;
 use crate::table::{Table, number, or_dash};
+use crate::units;
 use crate::verbs::discover::render::{choice, sentence};
 use crate::verbs::simulate::compared::Sizes;
 
@@ -72,12 +73,12 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
         let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
     let _ = write!(out, "\n{}", gaps(of));
-    for (place, (finding, units)) in of.answer.discovery.findings.iter().zip(&of.answer.units).enumerate() {
+    for (place, (finding, of_names)) in of.answer.discovery.findings.iter().zip(&of.answer.units).enumerate() {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
         let value = |(name, value, error): &(String, f64, f64)| {
-            let unit = units.get(name).filter(|unit| *unit != "1");
-            let unit = unit.map_or(String::new(), |unit| format!(" {unit}"));
-            format!("{name} = {} ± {}{unit}", number(*value, 4), number(*error, 2))
+            let si = of_names.get(name).map_or("1", String::as_str);
+            let [value, error] = [value, error].map(|value| units::value(*value, si));
+            units::with_unit(&format!("{name} = {} ± {}", number(value, 4), number(error, 2)), si)
         };
         let values: Vec<String> = known.map(value).collect();
         let (choice, values) = (choice(&of.answer, place), values.join(", "));

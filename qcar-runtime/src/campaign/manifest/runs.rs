@@ -78,7 +78,7 @@ fn is_table(file: &str) -> bool {
 /// The rate of a run, Hz. In the file of a rig, `file`, it is the highest among its channels unless it is stated.
 fn sample_rate(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<f64> {
     let Some(file) = file.filter(|_| !section.has("sample_rate")) else {
-        return section.positive("sample_rate");
+        return section.positive("sample_rate", "Hz");
     };
     let taps: Vec<&Tap> = known.sensors?.iter().map(|sensor| &sensor.tap).collect();
     let highest = recorded::highest_rate(known.files, &known.folder.join(file), &taps);
@@ -103,10 +103,13 @@ const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
 
 fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
     let (peak_velocity, spacing) = (
-        section.positive("peak_velocity"),
+        section.positive("peak_velocity", "m/s"),
         section.choice("spacing", Spacing::NAMES),
     );
-    let (start, end) = (section.positive("start_frequency"), section.positive("end_frequency"));
+    let (start, end) = (
+        section.positive("start_frequency", "Hz"),
+        section.positive("end_frequency", "Hz"),
+    );
     let sample_rate = sample_rate(section, known, file);
     let (start_frequency, end_frequency, sample_rate) = (start?, end?, sample_rate?);
     if start_frequency >= end_frequency {
@@ -138,7 +141,10 @@ fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Opt
 }
 
 fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
-    let (peak_velocity, amplitude) = (section.positive("peak_velocity"), section.positive("amplitude"));
+    let (peak_velocity, amplitude) = (
+        section.positive("peak_velocity", "m/s"),
+        section.positive("amplitude", "m"),
+    );
     Some(Test::DynamicBounce {
         peak_velocity: peak_velocity?,
         amplitude: amplitude?,
@@ -146,7 +152,7 @@ fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
 }
 
 fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
-    let (speed, sample_rate) = (section.positive("speed"), sample_rate(section, known, file));
+    let (speed, sample_rate) = (section.positive("speed", "m/s"), sample_rate(section, known, file));
     let cleat = section.text("cleat")?;
     if let Some(roads) = known.roads
         && !roads.iter().any(|road| road.name == cleat)

@@ -51,6 +51,15 @@ impl<'a> Channel<'a> {
         })
     }
 
+    /// A column of a table without times is as long as it is filled.
+    pub fn up_to_its_last_value(mut self) -> Self {
+        if self.signal.time == TimeBase::Unknown {
+            let last = self.values.iter().rposition(|value| value.is_finite());
+            self.values.truncate(last.map_or(0, |last| last + 1));
+        }
+        self
+    }
+
     /// Its samples in the window, with what a filter to `rate` looks at beside it.
     pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even<'_>, InputError> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;

@@ -6,7 +6,8 @@ use qcar_signals::si::{Si, in_si};
 use qcar_signals::signal::{Signal, TimeBase};
 
 use super::super::contents::Tap;
-use super::super::tap::{examples, of_quantity};
+use super::super::tap::of_quantity;
+use super::super::unit::examples;
 use super::even::time;
 use crate::error::{InputError, Place, Problem};
 

@@ -1,0 +1,94 @@
+//! Force inputs on massless nodes: a node that only springs hold follows a force at once, and its velocity the rate of the
+//! force, which is no input.
+
+use std::collections::BTreeMap;
+
+use super::Scratch;
+use super::nodes::{Balance, nodes};
+use crate::diagnostic::{Diagnostic, structure};
+use crate::expr::{CoordinateId, LinkId, Symbol};
+use crate::model::{Link, Quantity, Signal};
+
+/// A force input for each node that it pushes, by its place in `Model::forces`.
+type Pushed = BTreeMap<CoordinateId, u16>;
+
+/// No motion is asked for that would need the rate of a force input.
+pub fn rates_of_forces_are_not_needed(scratch: &Scratch) -> Vec<Diagnostic> {
+    let model = scratch.model;
+    let balances: BTreeMap<CoordinateId, Option<Balance>> = nodes(scratch).into_iter().collect();
+    let mistake = |(&node, &force): (&CoordinateId, &u16)| {
+        let motion = match balances[&node]? {
+            Balance::Position if needs_velocity(scratch, node) => "velocity",
+            Balance::Position | Balance::Velocity if shows(scratch, node, Quantity::Acceleration) => "acceleration",
+            _ => return None,
+        };
+        let (node, force) = (
+            &model.coordinates[usize::from(node.0)],
+            &model.forces[usize::from(force)],
+        );
+        let force = (force.declared.span, force.name.as_str());
+        Some(structure::force_rate_needed(
+            (node.declared.span, &node.name),
+            force,
+            motion,
+        ))
+    };
+    let massless =
+        |node: &CoordinateId| matches!(balances.get(node), Some(Some(Balance::Position | Balance::Velocity)));
+    pushed(scratch, massless).iter().filter_map(mistake).collect()
+}
+
+/// What force inputs push, by themselves, through a law, or through links between massless nodes.
+fn pushed(scratch: &Scratch, massless: impl Fn(&CoordinateId) -> bool) -> Pushed {
+    let model = scratch.model;
+    let mut pushed = Pushed::new();
+    for (force, input) in (0..).zip(&model.forces) {
+        let own = input.on.iter().map(|(c, _)| *c);
+        pushed.extend(own.filter(&massless).map(|node| (node, force)));
+    }
+    for link in &model.links {
+        if let Some(&force) = link.law.force_inputs(&scratch.graph).first() {
+            pushed.extend(ends(link).filter(&massless).map(|node| (node, force)));
+        }
+    }
+    loop {
+        let known = pushed.len();
+        for link in &model.links {
+            let force = ends(link).find_map(|end| pushed.get(&end).copied());
+            let Some(force) = force else { continue };
+            for node in ends(link).filter(&massless) {
+                pushed.entry(node).or_insert(force);
+            }
+        }
+        if pushed.len() == known {
+            return pushed;
+        }
+    }
+}
+
+fn ends(link: &Link) -> impl Iterator<Item = CoordinateId> {
+    link.stretch.iter().map(|(c, _)| *c)
+}
+
+/// An output shows the velocity, or a state of a law grows with it.
+fn needs_velocity(scratch: &Scratch, node: CoordinateId) -> bool {
+    let links = (0..).map(LinkId).zip(&scratch.model.links);
+    let mut held = links.filter(|(_, link)| ends(link).any(|end| end == node));
+    let mut grows = |(id, link): (LinkId, &Link)| {
+        let rates = link.law.inner.iter().map(|inner| inner.rate);
+        scratch.graph.symbols(rates).contains(&Symbol::Rate(id))
+    };
+    shows(scratch, node, Quantity::Velocity) || held.any(&mut grows)
+}
+
+fn shows(scratch: &Scratch, node: CoordinateId, quantity: Quantity) -> bool {
+    let moves = |point: u16| {
+        let mut combination = scratch.model.points[usize::from(point)].combination.iter();
+        combination.any(|(c, _)| *c == node)
+    };
+    scratch.model.outputs.iter().any(|output| match output.signal {
+        Signal::Motion(c, own) => c == node && own == quantity,
+        Signal::Point(point, own) => own == quantity && moves(point),
+        Signal::LinkForce(_) | Signal::LinkStretch(_) => false,
+    })
+}

@@ -1,0 +1,81 @@
+//! What the compiler makes of a chain of masses grows no faster than its length to the power of 1.2. Expressions, operations and bytes are
+//! counted: no clock is asked.
+
+#[path = "../examples/chain.rs"]
+#[allow(dead_code, reason = "the example measures times")]
+mod chain;
+
+use qcar_dsl::compile::derive_wanted;
+use qcar_dsl::front::check_text;
+use qcar_dsl::response::Wanted;
+use qcar_dsl::schedule::Compiled;
+use qcar_dsl::show::{Stage, show};
+
+fn compiled(masses: usize, own: bool, wanted: Wanted) -> Compiled {
+    let checked = check_text(chain::source(masses, own), &|_, _| Err(String::new()));
+    derive_wanted(checked.unwrap_or_else(|report| panic!("{report}")), wanted)
+}
+
+/// Everything that can be counted, by its name.
+fn counts(of: &Compiled, shown: &[Stage]) -> Vec<(String, usize)> {
+    let programs = &of.programs;
+    let response = &programs.responses[0];
+    let counted = [
+        ("derivative", &programs.derivative),
+        ("outputs", &programs.outputs),
+        ("matrices", &programs.matrices),
+        ("sensitivities", &programs.sensitivities),
+        ("parameter Jacobian", &programs.parameter_jacobian),
+        ("response", &response.value),
+        ("response with Jacobian", &response.with_jacobian),
+        ("prepare", &programs.prepare),
+    ];
+    let operations = counted.map(|(name, program)| (name.to_string(), program.ops.len()));
+    let texts = shown
+        .iter()
+        .map(|&stage| (stage.name().to_string(), show(of, stage).len()));
+    let all = operations.into_iter().chain(texts);
+    all.chain([("expressions".to_string(), of.graph.size())]).collect()
+}
+
+fn grows_as_the_length(own: bool, wanted: Wanted, shown: &[Stage]) {
+    let counted = |masses| counts(&compiled(masses, own, wanted), shown);
+    for lengths in [(10, 80), (40, 80)] {
+        let most = (lengths.1 as f64 / lengths.0 as f64).powf(1.2);
+        for ((what, few), (_, many)) in counted(lengths.0).into_iter().zip(counted(lengths.1)) {
+            let grown = many as f64 / few as f64;
+            assert!(grown <= most, "{what} of {lengths:?} masses: {few} and {many}");
+        }
+    }
+}
+
+/// With parameters that all members share, all of it, and the Jacobian of every output too.
+#[test]
+fn a_chain_of_equal_members_grows_as_its_length() {
+    grows_as_the_length(false, Wanted::Jacobian, &Stage::ALL);
+}
+
+/// With parameters of each member, a Jacobian of every output has entries as the square of the length. Where none is wanted, nothing
+/// grows so.
+#[test]
+fn a_chain_of_many_parameters_grows_as_its_length_without_its_jacobian() {
+    let shown = Stage::ALL.into_iter().filter(|stage| *stage != Stage::Rust);
+    grows_as_the_length(true, Wanted::Values, &shown.collect::<Vec<_>>());
+}
+
+/// The values are the same operations, whether derivatives are wanted or not.
+#[test]
+fn values_do_not_depend_on_what_else_is_wanted() {
+    for (masses, own) in [(10, false), (10, true), (60, false), (60, true)] {
+        let [all, values] = [Wanted::Jacobian, Wanted::Values].map(|wanted| compiled(masses, own, wanted));
+        assert_eq!(
+            all.programs.responses[0].value.ops.len(),
+            values.programs.responses[0].value.ops.len()
+        );
+        assert!(values.about.responses[0].jacobian.is_empty());
+        assert_eq!(
+            all.about.responses[0].jacobian.len(),
+            masses * all.model.parameters.len()
+        );
+    }
+}

@@ -1,0 +1,108 @@
+//! Workbooks of Excel as they are written: the same bytes for the same content.
+
+use std::path::Path;
+
+use qcar_runtime::error::{InputError, Place, Problem};
+use rust_xlsxwriter::{Color, DocProperties, ExcelDateTime, Format, FormatBorder, Workbook, Worksheet, XlsxError};
+
+/// How cells look.
+pub struct Looks {
+    /// Over a sheet.
+    pub title: Format,
+    /// Over a column or a group of rows.
+    pub heading: Format,
+    /// What is for reading.
+    pub plain: Format,
+    /// What is to be filled in.
+    pub input: Format,
+}
+
+impl Default for Looks {
+    fn default() -> Self {
+        Looks {
+            title: Format::new().set_bold().set_font_size(14),
+            heading: Format::new().set_bold().set_background_color(Color::RGB(0xD9E2EC)),
+            input: Format::new()
+                .set_background_color(Color::RGB(0xFFF9E5))
+                .set_border(FormatBorder::Thin)
+                .set_border_color(Color::RGB(0xCCCCCC)),
+            plain: Format::new(),
+        }
+    }
+}
+
+/// An empty workbook.
+///
+/// # Errors
+/// None that a user could see.
+pub fn workbook() -> Result<Workbook, XlsxError> {
+    let mut workbook = Workbook::new();
+    // The time would make other bytes of the same content.
+    let properties = DocProperties::new().set_creation_datetime(&ExcelDateTime::from_ymd(2000, 1, 1)?);
+    workbook.set_properties(&properties);
+    Ok(workbook)
+}
+
+/// The bytes of a workbook that `fill` has filled, to be written as `file`.
+///
+/// # Errors
+/// What Excel could not hold: too many rows, or a name that it does not take.
+pub fn filled(file: &Path, fill: impl FnOnce(&mut Workbook) -> Result<(), XlsxError>) -> Result<Vec<u8>, InputError> {
+    let bytes = workbook().and_then(|mut workbook| {
+        fill(&mut workbook)?;
+        workbook.save_to_buffer()
+    });
+    bytes.map_err(|error| {
+        let (expected, remedy) = ("what Excel can hold", "shorten the names, or take fewer runs");
+        Problem::new(file, Place::File, error.to_string(), expected, remedy).into()
+    })
+}
+
+/// What a cell of a table holds.
+pub enum Cell {
+    /// A word.
+    Text(String),
+    /// A number, as it is shown; an empty cell where there is none.
+    Number(Option<f64>),
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.into())
+    }
+}
+
+impl From<f64> for Cell {
+    fn from(number: f64) -> Self {
+        Cell::Number(Some(number))
+    }
+}
+
+/// Adds a sheet with a table whose headings stay in sight.
+///
+/// # Errors
+/// More rows than a sheet has.
+pub fn table<'a>(
+    workbook: &'a mut Workbook,
+    name: &str,
+    headings: &[String],
+    rows: impl IntoIterator<Item = Vec<Cell>>,
+) -> Result<&'a mut Worksheet, XlsxError> {
+    let looks = Looks::default();
+    let sheet = workbook.add_worksheet();
+    sheet.set_name(name)?.set_freeze_panes(1, 0)?;
+    for (column, heading) in (0..).zip(headings) {
+        sheet.set_column_width(column, heading.chars().count().max(8) as f64 + 2.0)?;
+        sheet.write_string_with_format(0, column, heading, &looks.heading)?;
+    }
+    for (at, row) in (1..).zip(rows) {
+        for (column, cell) in (0..).zip(row) {
+            match cell {
+                Cell::Text(text) => sheet.write_string(at, column, text)?,
+                Cell::Number(Some(number)) if number.is_finite() => sheet.write_number(at, column, number)?,
+                Cell::Number(_) => sheet,
+            };
+        }
+    }
+    Ok(sheet)
+}

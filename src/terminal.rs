@@ -1,0 +1,169 @@
+//! What a terminal can show: how wide it is, and whether in colour. A pipe or a file gets lines as long as they are, without
+//! colour, unless the environment variable COLUMNS or --color says otherwise.
+
+use std::env;
+use std::io::IsTerminal;
+use std::sync::OnceLock;
+
+use clap::ValueEnum;
+use console::Term;
+
+/// When results and errors are coloured.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
+pub enum Color {
+    /// On a terminal, unless the environment variable NO_COLOR is set
+    #[default]
+    Auto,
+    /// Always
+    Always,
+    /// Never
+    Never,
+}
+
+/// Where text goes.
+#[derive(Clone, Copy, Default)]
+struct Outlet {
+    /// Columns, where there is a limit.
+    width: Option<usize>,
+    colored: bool,
+}
+
+impl Outlet {
+    fn of(is_terminal: bool, term: &Term, color: Color) -> Self {
+        let stated = env::var("COLUMNS").ok().and_then(|columns| columns.parse().ok());
+        let own = || {
+            is_terminal
+                .then(|| term.size_checked())
+                .flatten()
+                .map(|(_, columns)| columns.into())
+        };
+        let wanted = || {
+            env::var_os("NO_COLOR").is_none_or(|no| no.is_empty())
+                && env::var_os("TERM").is_none_or(|term| term != "dumb")
+        };
+        Outlet {
+            width: stated.or_else(own).filter(|width| *width >= NARROWEST),
+            colored: match color {
+                Color::Auto => is_terminal && wanted(),
+                Color::Always => true,
+                Color::Never => false,
+            },
+        }
+    }
+
+    fn styled(self, style: &str, text: &str) -> String {
+        match self.colored {
+            true => format!("\u{1b}[{style}m{text}\u{1b}[0m"),
+            false => text.into(),
+        }
+    }
+
+    /// Long lines broken between words, further ones indented. What is drawn stays as it is.
+    fn wrapped(self, text: &str) -> String {
+        let Some(width) = self.width else {
+            return text.into();
+        };
+        let lines = text.split_inclusive('\n').map(|line| {
+            let is_long = line.trim_end().chars().count() > width;
+            if is_long && !line.contains(DRAWN) {
+                broken(line, width)
+            } else {
+                line.into()
+            }
+        });
+        lines.collect()
+    }
+}
+
+/// What lines of diagnostics are drawn with.
+const DRAWN: [char; 4] = ['│', '╭', '╰', '┬'];
+/// What is narrower is no width that anybody reads tables in.
+const NARROWEST: usize = 40;
+/// What further lines of a paragraph begin with.
+const INDENT: &str = "  ";
+
+const BOLD: &str = "1";
+const RED: &str = "31";
+const YELLOW: &str = "33";
+
+/// Standard output and standard error; a library that nobody has told about a terminal writes for files.
+static OUTLETS: OnceLock<[Outlet; 2]> = OnceLock::new();
+
+/// Looks at the terminal. The first look of a process holds.
+pub fn look(color: Color) {
+    let out = Outlet::of(std::io::stdout().is_terminal(), &Term::stdout(), color);
+    let error = Outlet::of(std::io::stderr().is_terminal(), &Term::stderr(), color);
+    let _ = OUTLETS.set([out, error]);
+}
+
+fn outlets() -> [Outlet; 2] {
+    OUTLETS.get().copied().unwrap_or_default()
+}
+
+/// Columns that lines of standard output may have, where there is a limit.
+pub fn width() -> Option<usize> {
+    outlets()[0].width
+}
+
+/// The head of a table.
+pub fn heading(text: &str) -> String {
+    outlets()[0].styled(BOLD, text)
+}
+
+/// Sentences and tables for standard output: long sentences broken, notes marked.
+pub fn prose(text: &str) -> String {
+    let out = outlets()[0];
+    let text = out.wrapped(text);
+    match out.colored {
+        true => text.replace("\nnote: ", &format!("\n{} ", out.styled(YELLOW, "note:"))),
+        false => text,
+    }
+}
+
+/// What is wrong, for standard error: of each line the place is marked.
+pub fn complaint(text: &str) -> String {
+    let error = outlets()[1];
+    let marked = |line: &str| match line.split_once(": found ") {
+        Some((place, rest)) if error.colored && !line.starts_with(' ') => {
+            format!("{}: found {rest}", error.styled(RED, place))
+        }
+        _ => line.into(),
+    };
+    let wrapped = error.wrapped(text);
+    wrapped.split_inclusive('\n').map(marked).collect()
+}
+
+/// A line in pieces of at most so many characters, where there are spaces to break it.
+fn broken(line: &str, width: usize) -> String {
+    let text = line.trim_end_matches('\n');
+    let own_indent = &text[..text.len() - text.trim_start().len()];
+    let (mut out, mut length) = (own_indent.to_string(), own_indent.chars().count());
+    let mut is_first = true;
+    for word in text.trim_start().split(' ') {
+        let own = word.chars().count();
+        if !is_first && length + 1 + own > width {
+            out += &format!("\n{own_indent}{INDENT}");
+            length = own_indent.chars().count() + INDENT.len();
+        } else if !is_first {
+            out.push(' ');
+            length += 1;
+        }
+        out += word;
+        length += own;
+        is_first = false;
+    }
+    out + &line[text.len()..]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::broken;
+
+    #[test]
+    fn a_long_line_is_broken_between_words() {
+        assert_eq!(broken("note: one two three\n", 10), "note: one\n  two\n  three\n");
+        assert_eq!(broken("unbreakable words", 4), "unbreakable\n  words");
+        assert_eq!(broken("short\n", 80), "short\n");
+        assert_eq!(broken("  - a + b + c\n", 9), "  - a + b\n    + c\n");
+    }
+}

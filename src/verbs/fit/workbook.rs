@@ -1,0 +1,167 @@
+//! A fit as a workbook: parameters, how well channels are met, and measured and modelled transmissibilities with a chart of each.
+
+use std::ops::RangeInclusive;
+use std::path::Path;
+
+use nalgebra::Complex;
+use qcar_runtime::error::InputError;
+use rust_xlsxwriter::{Chart, ChartAxisCrossing, ChartAxisLabelPosition, ChartType, Workbook, Worksheet, XlsxError};
+
+use super::files::{Compared, compare};
+use super::{Fitted, render};
+use crate::files::put;
+use crate::spreadsheet::{Cell, filled, table};
+use crate::units;
+
+/// The name of every workbook of results.
+pub(crate) const FILE: &str = "results.xlsx";
+
+/// The sheet of the transmissibilities.
+const RATIOS: &str = "Transmissibilities";
+/// Who says so, in the order of the columns.
+const SOURCES: [&str; 3] = ["measured", "before", "after"];
+/// The first column of magnitudes; those of phases follow.
+const MAGNITUDES: u16 = 3;
+/// Charts beside each other, and the rows and columns from one to the next.
+const CHARTS: (usize, u32, u16) = (2, 16, 8);
+
+/// Writes it into a folder.
+///
+/// # Errors
+/// A folder that cannot be written to.
+pub(super) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
+    let bytes = filled(&folder.join(FILE), |workbook| sheets(workbook, of))?;
+    put(folder, FILE, &bytes)
+}
+
+/// Adds the sheets of a fit.
+pub(crate) fn sheets(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
+    parameters(workbook, of)?;
+    channels(workbook, of)?;
+    ratios(workbook, &compare(of))
+}
+
+fn parameters(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
+    let headings = [
+        "parameter",
+        "unit",
+        "start",
+        "value",
+        "stderr",
+        "stderr_%",
+        "from",
+        "to",
+        "remark",
+    ];
+    let row = |own: &qcar_runtime::fit::report::ParameterFit| {
+        let shown = |value: Option<f64>| Cell::Number(value.map(|value| units::value(value, &own.unit)));
+        vec![
+            own.name.as_str().into(),
+            units::name(&own.unit).into(),
+            shown(Some(own.start)),
+            shown(Some(own.value)),
+            shown(own.stderr),
+            Cell::Number(own.relative_stderr.map(|part| 100.0 * part)),
+            shown(own.range.map(|range| range.0)),
+            shown(own.range.map(|range| range.1)),
+            Cell::Text(render::remark(own)),
+        ]
+    };
+    table(
+        workbook,
+        "Parameters",
+        &headings.map(String::from),
+        of.fit.parameters.iter().map(row),
+    )
+    .map(drop)
+}
+
+fn channels(workbook: &mut Workbook, of: &Fitted) -> Result<(), XlsxError> {
+    let headings = [
+        "channel",
+        "run",
+        "role",
+        "in_the_cost",
+        "fit_magnitude_%",
+        "fit_phase_%",
+    ];
+    let row = |own: &qcar_runtime::fit::report::ChannelFit| {
+        vec![
+            own.name.as_str().into(),
+            own.run.as_str().into(),
+            own.role.into(),
+            if own.fitted { "yes" } else { "no" }.into(),
+            own.quality.fit_magnitude.into(),
+            own.quality.fit_phase.into(),
+        ]
+    };
+    table(
+        workbook,
+        "Fit",
+        &headings.map(String::from),
+        of.fit.channels.iter().map(row),
+    )
+    .map(drop)
+}
+
+/// All ratios below each other, and beside them a chart of each.
+fn ratios(workbook: &mut Workbook, all: &[Compared]) -> Result<(), XlsxError> {
+    let of_all = |unit: &'static str| SOURCES.map(|source| format!("{source} [{unit}]"));
+    let headings = [
+        ["run".into(), "channel".into(), "frequency [Hz]".into()],
+        of_all("dB"),
+        of_all("deg"),
+    ]
+    .concat();
+    let sheet = table(workbook, RATIOS, &headings, all.iter().flat_map(rows))?;
+    let mut next = 1;
+    for (place, own) in all.iter().enumerate() {
+        let last = next + own.observation.frequency.len() as u32 - 1;
+        chart(sheet, place, own, next..=last)?;
+        next = last + 1;
+    }
+    Ok(())
+}
+
+fn rows<'a>(of: &'a Compared) -> impl Iterator<Item = Vec<Cell>> + 'a {
+    let row = |(line, frequency): (usize, &f64)| {
+        let values = [of.observation.value[line], of.before[line], of.after[line]];
+        let decibels = values.map(|value: Complex<f64>| Cell::from(20.0 * value.norm().log10()));
+        let degrees = values.map(|value| Cell::from(value.arg().to_degrees()));
+        let named = [
+            Cell::from(of.level.name.as_str()),
+            (&*of.observation.channel.name).into(),
+            (*frequency).into(),
+        ];
+        named.into_iter().chain(decibels).chain(degrees).collect()
+    };
+    of.observation.frequency.iter().enumerate().map(row)
+}
+
+/// Magnitudes over frequency.
+fn chart(sheet: &mut Worksheet, place: usize, of: &Compared, rows: RangeInclusive<u32>) -> Result<(), XlsxError> {
+    let (first, last) = rows.into_inner();
+    let mut chart = Chart::new(ChartType::ScatterStraight);
+    chart
+        .title()
+        .set_name(&format!("{}, {}", of.observation.channel.name, of.level.name));
+    for (column, source) in (MAGNITUDES..).zip(SOURCES) {
+        let series = chart.add_series().set_name(source);
+        series.set_categories((RATIOS, first, MAGNITUDES - 1, last, MAGNITUDES - 1));
+        series.set_values((RATIOS, first, column, last, column));
+    }
+    chart.x_axis().set_name("frequency [Hz]").set_log_base(10);
+    let frequency = &of.observation.frequency;
+    if let (Some(low), Some(high)) = (frequency.first(), frequency.last()) {
+        chart.x_axis().set_min(*low).set_max(*high);
+    }
+    chart.x_axis().set_label_position(ChartAxisLabelPosition::Low);
+    chart
+        .y_axis()
+        .set_name("magnitude [dB]")
+        .set_crossing(ChartAxisCrossing::Min);
+    let (beside, high, wide) = CHARTS;
+    let (row, column) = ((place / beside) as u32 * high + 1, (place % beside) as u16 * wide);
+    let right = MAGNITUDES + 2 * SOURCES.len() as u16 + 1;
+    sheet.insert_chart(row, right + column, &chart).map(drop)
+}

@@ -1,0 +1,217 @@
+//! The sheet of the values: a row for each parameter, with cells for the front and for the rear axle.
+
+use qcar_runtime::campaign::workbook::{AXLES, VALUES};
+use rust_xlsxwriter::{DataValidation, DataValidationErrorStyle, DataValidationRule, Workbook, Worksheet, XlsxError};
+
+use super::rows::{GROUPS, Row};
+use crate::catalogue;
+use crate::spreadsheet::Looks;
+use crate::units;
+
+/// Columns of what a row is; those of each axle follow.
+const WHAT: [(&str, f64); 2] = [("Name", 58.0), ("Model variable", 20.0)];
+/// Columns of an axle: the value's own name, and what is behind its dot.
+const OF_AXLE: [(&str, &str); 5] = [
+    ("", ""),
+    ("Unit", ".unit"),
+    ("From", ".lower"),
+    ("To", ".upper"),
+    ("Fit", ".fit"),
+];
+/// Columns behind those of both axles: what names begin with.
+const LAST: [(&str, &str, f64); 2] = [("Comment", "comment.", 40.0), ("Kind of unit", "kind.", 14.0)];
+
+/// Rows above the table.
+const TOP: u32 = 8;
+
+/// A sheet under way, and the names of its cells.
+struct Sheet<'a> {
+    sheet: Worksheet,
+    looks: &'a Looks,
+    names: Vec<(String, u32, u16)>,
+}
+
+/// Adds the sheet.
+pub(super) fn write(
+    workbook: &mut Workbook,
+    looks: &Looks,
+    model: Option<&str>,
+    rows: &[Row],
+) -> Result<(), XlsxError> {
+    let mut out = Sheet {
+        sheet: Worksheet::new(),
+        looks,
+        names: Vec::new(),
+    };
+    out.sheet.set_name(VALUES)?;
+    out.head(model)?;
+    let mut at = TOP + 1;
+    for (group, title) in GROUPS.iter().enumerate() {
+        let mut of_group = rows.iter().filter(|row| row.group == group).peekable();
+        if of_group.peek().is_some() {
+            out.sheet.write_string_with_format(at, 0, *title, &looks.heading)?;
+            at += 1;
+        }
+        for row in of_group {
+            out.row(at, row)?;
+            at += 1;
+        }
+    }
+    workbook.push_worksheet(out.sheet);
+    for (name, row, column) in out.names {
+        let cell = rust_xlsxwriter::utility::row_col_to_cell_absolute(row, column);
+        workbook.define_name(name, &format!("={VALUES}!{cell}"))?;
+    }
+    Ok(())
+}
+
+impl Sheet<'_> {
+    /// What stands over the table.
+    fn head(&mut self, model: Option<&str>) -> Result<(), XlsxError> {
+        let looks = self.looks;
+        self.sheet.write_string_with_format(0, 0, "Vehicle", &looks.title)?;
+        let hint = "Fill in the coloured cells. A unit may be changed, then its row is in it. What an axle does not have \
+                    stays empty. All masses are those of one corner.";
+        self.sheet.write_string(1, 0, hint)?;
+        self.label(2, "Axle that is read without `axle` in a campaign", "axle")?;
+        self.word(2, 2, "axle", AXLES[0], &AXLES)?;
+        self.label(3, "Mass of the whole vehicle", "vehicle.mass")?;
+        self.measured(3, 2, "vehicle.mass", "kg", None)?;
+        self.label(4, "Share of the front axle", "vehicle.front_share")?;
+        self.measured(4, 2, "vehicle.front_share", "1", None)?;
+        let models: Vec<&str> = catalogue::names().collect();
+        for (row, axle) in (5..).zip(AXLES) {
+            self.label(row, &format!("Model of the {axle} axle"), &format!("{axle}.model"))?;
+            self.word(row, 2, &format!("{axle}.model"), model.unwrap_or(""), &models)?;
+        }
+        self.headings()
+    }
+
+    fn headings(&mut self) -> Result<(), XlsxError> {
+        let heading = &self.looks.heading;
+        for (column, (title, width)) in (0..).zip(WHAT) {
+            self.sheet.set_column_width(column, width)?;
+            self.sheet.write_string_with_format(TOP, column, title, heading)?;
+        }
+        let mut column = WHAT.len() as u16;
+        for axle in AXLES {
+            for (title, _) in OF_AXLE {
+                let title = if title.is_empty() { axle } else { title };
+                self.sheet.write_string_with_format(TOP, column, title, heading)?;
+                column += 1;
+            }
+        }
+        for (title, _, width) in LAST {
+            self.sheet.set_column_width(column, width)?;
+            self.sheet.write_string_with_format(TOP, column, title, heading)?;
+            column += 1;
+        }
+        self.sheet.set_freeze_panes(TOP + 1, WHAT.len() as u16)?;
+        Ok(())
+    }
+
+    fn label(&mut self, row: u32, doc: &str, name: &str) -> Result<(), XlsxError> {
+        self.sheet.write_string_with_format(row, 0, doc, &self.looks.plain)?;
+        self.sheet.write_string_with_format(row, 1, name, &self.looks.plain)?;
+        Ok(())
+    }
+
+    fn row(&mut self, at: u32, row: &Row) -> Result<(), XlsxError> {
+        self.label(at, &row.doc, &row.name)?;
+        let mut column = WHAT.len() as u16;
+        for (axle, given) in AXLES.into_iter().zip([row.front, None]) {
+            self.of_axle(at, column, &format!("{axle}.{}", row.name), row, given)?;
+            column += OF_AXLE.len() as u16;
+        }
+        let [comment, kind] = LAST.map(|(_, prefix, _)| format!("{prefix}{}", row.name));
+        self.sheet.write_blank(at, column, &self.looks.input)?;
+        self.names.push((comment, at, column));
+        self.sheet
+            .write_string_with_format(at, column + 1, &row.unit, &self.looks.plain)?;
+        self.names.push((kind, at, column + 1));
+        Ok(())
+    }
+
+    /// A value with its unit and, of what may be estimated, its bounds.
+    fn of_axle(&mut self, at: u32, column: u16, name: &str, row: &Row, given: Option<f64>) -> Result<(), XlsxError> {
+        self.measured(at, column, name, &row.unit, given)?;
+        if row.group == 0 {
+            return Ok(());
+        }
+        let range = row
+            .range
+            .map(|(low, high)| [low, high].map(|end| units::value(end, &row.unit)));
+        if let Some([low, high]) = range {
+            let plausible = validation(low, high, units::name(&row.unit))?;
+            self.sheet.add_data_validation(at, column, at, column, &plausible)?;
+        }
+        for (offset, end) in [(2, range.map(|ends| ends[0])), (3, range.map(|ends| ends[1]))] {
+            self.number(at, column + offset, end)?;
+            self.names
+                .push((format!("{name}{}", OF_AXLE[usize::from(offset)].1), at, column + offset));
+        }
+        let fit = if row.estimated { "yes" } else { "no" };
+        self.word(at, column + 4, &format!("{name}.fit"), fit, &["yes", "no"])
+    }
+
+    /// A cell for a number, with its unit to the right.
+    fn measured(&mut self, at: u32, column: u16, name: &str, si: &str, given: Option<f64>) -> Result<(), XlsxError> {
+        self.number(at, column, given.map(|value| units::value(value, si)))?;
+        self.names.push((name.into(), at, column));
+        let mut choices = vec![units::name(si), si];
+        choices.extend(others(si));
+        choices.dedup();
+        self.word(at, column + 1, &format!("{name}.unit"), units::name(si), &choices)
+    }
+
+    fn number(&mut self, at: u32, column: u16, value: Option<f64>) -> Result<(), XlsxError> {
+        match value {
+            Some(value) => self
+                .sheet
+                .write_number_with_format(at, column, value, &self.looks.input)?,
+            None => self.sheet.write_blank(at, column, &self.looks.input)?,
+        };
+        Ok(())
+    }
+
+    /// A cell for one of several words.
+    fn word(&mut self, at: u32, column: u16, name: &str, word: &str, choices: &[&str]) -> Result<(), XlsxError> {
+        match word {
+            "" => self.sheet.write_blank(at, column, &self.looks.input)?,
+            word => self
+                .sheet
+                .write_string_with_format(at, column, word, &self.looks.input)?,
+        };
+        // Other units and models of the user's own are read as well.
+        let list = DataValidation::new()
+            .allow_list_strings(choices)?
+            .set_error_style(DataValidationErrorStyle::Information)
+            .set_error_message(format!(
+                "Usual are {}.",
+                choices.join(", ").chars().take(200).collect::<String>()
+            ))?;
+        self.sheet.add_data_validation(at, column, at, column, &list)?;
+        self.names.push((name.into(), at, column));
+        Ok(())
+    }
+}
+
+/// Further units of a kind.
+fn others(si: &str) -> &'static [&'static str] {
+    match si {
+        "m" => &["mm"],
+        "N" => &["kN"],
+        "N/m" => &["N/mm"],
+        "N s/m" => &["N s/mm"],
+        _ => &[],
+    }
+}
+
+/// Asks back where a value lies beyond what is plausible.
+fn validation(low: f64, high: f64, unit: &str) -> Result<DataValidation, XlsxError> {
+    DataValidation::new()
+        .allow_decimal_number(DataValidationRule::Between(low, high))
+        .set_error_style(DataValidationErrorStyle::Warning)
+        .set_error_title("Not plausible")?
+        .set_error_message(format!("Plausible are numbers from {low} to {high} {unit}."))
+}
