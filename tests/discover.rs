@@ -478,6 +478,26 @@ fn two_sensors_of_which_one_is_wrong_are_a_class() {
     assert_eq!(answer["model_file"], Value::Null);
 }
 
+/// A sweep passes its frequencies one after the other, so that what fades while it runs looks like what depends on frequency.
+#[test]
+fn a_damper_that_fades_gets_a_law_over_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        effects: vec![Hidden::new("damper_fade", "damper", &[("share", 0.4)])],
+        ..Order::clean("c", 1031)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let learned = &answer["learned"];
+    assert_eq!(learned["at"], "damper", "{learned}");
+    assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
+    let words = learned["laws"][0]["words"].as_str().expect("a sentence");
+    assert!(words.starts_with("it goes from 1 when a run begins to 0.8"), "{words}");
+}
+
 /// A mount of a law that the catalogue has in no form: nothing is named, and a law is learned that stands for it.
 #[test]
 fn a_law_is_learned_where_the_catalogue_has_none() {
