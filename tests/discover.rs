@@ -10,16 +10,24 @@ use std::process::Command;
 use qcar_blind::hidden::Hidden;
 use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
+use qcar_runtime::discover::numbers::Numbers;
 use serde_json::Value;
 use swept::{swept, two_sensors};
 
 /// Runs `qcar discover` on a campaign.
 fn discover(campaign: &Path, out: Option<&Path>) -> Value {
+    let out = out.map(|out| ["--out", out.to_str().expect("a path of letters")]);
+    discover_with(campaign, out.as_ref().map_or(&[], |out| out))
+}
+
+/// The same with further arguments.
+fn discover_with(campaign: &Path, arguments: &[&str]) -> Value {
     let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
-    command.arg("discover").arg(campaign).args(["--format", "json"]);
-    if let Some(out) = out {
-        command.arg("--out").arg(out);
-    }
+    command
+        .arg("discover")
+        .arg(campaign)
+        .args(["--format", "json"])
+        .args(arguments);
     let output = command.output().expect("qcar runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     serde_json::from_slice(&output.stdout).expect("JSON")
@@ -478,6 +486,26 @@ fn two_sensors_of_which_one_is_wrong_are_a_class() {
     assert_eq!(answer["model_file"], Value::Null);
 }
 
+/// A sweep passes its frequencies one after the other, so that what fades while it runs looks like what depends on frequency.
+#[test]
+fn a_damper_that_fades_gets_a_law_over_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        effects: vec![Hidden::new("damper_fade", "damper", &[("share", 0.4)])],
+        ..Order::clean("c", 1031)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let learned = &answer["learned"];
+    assert_eq!(learned["at"], "damper", "{learned}");
+    assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
+    let words = learned["laws"][0]["words"].as_str().expect("a sentence");
+    assert!(words.starts_with("it goes from 1 when a run begins to 0.8"), "{words}");
+}
+
 /// A mount of a law that the catalogue has in no form: nothing is named, and a law is learned that stands for it.
 #[test]
 fn a_law_is_learned_where_the_catalogue_has_none() {
@@ -508,4 +536,56 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
         let output = output.expect("qcar runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
+}
+
+/// What a search assumes that no data give decides no answer: 30 % more or less of each number changes at most 2 % of them.
+#[test]
+fn no_answer_hangs_on_a_number() {
+    let hidden = [
+        vec![],
+        vec![Hidden::new(
+            "coulomb_friction",
+            "damper",
+            &[("f_coulomb", 60.0), ("k_presliding", 600e3)],
+        )],
+        vec![Hidden::new(
+            "bushing_relaxation",
+            "top_mount",
+            &[("k_maxwell", 250e3), ("relaxation_frequency", 10.0)],
+        )],
+    ];
+    let (mut asked, mut changed) = (0, Vec::new());
+    for (number, effects) in hidden.into_iter().enumerate() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let campaign = folder.path().join("campaign");
+        let order = Order {
+            cleats: false,
+            programme: Programme::fast(),
+            effects,
+            ..Order::clean("c", 2000 + number as u64)
+        };
+        make(order, &campaign).expect("a campaign");
+        let usual = names(&discover(&campaign, None));
+        for name in Numbers::NAMES {
+            for factor in [0.7, 1.3] {
+                let other = names(&discover_with(&campaign, &["--assume", &format!("{name}={factor}")]));
+                asked += 1;
+                if other != usual {
+                    changed.push(format!("{name} times {factor}: {other:?}, was {usual:?}"));
+                }
+            }
+        }
+    }
+    assert!(
+        50 * changed.len() <= asked,
+        "{} of {asked}: {changed:#?}",
+        changed.len()
+    );
+}
+
+/// The verdict, and the effects that are given a name.
+fn names(answer: &Value) -> (Value, Vec<(Value, Value)>) {
+    let effects = answer["effects"].as_array().cloned().unwrap_or_default();
+    let name = |own: &Value| (own["name"].clone(), own["at"].clone());
+    (answer["verdict"].clone(), effects.iter().map(name).collect())
 }

@@ -83,6 +83,11 @@ impl Numbers {
         1.0 - self.doubt
     }
 
+    /// The odds at which an alternative is certain.
+    pub fn odds_of_certain(&self) -> f64 {
+        self.certain() / self.doubt
+    }
+
     /// The least share of the excess that an answer has to close.
     pub fn explained(&self) -> f64 {
         1.0 - self.left

@@ -73,7 +73,8 @@ pub fn discover(
     } else if let Some(found) = doubtful(&sets, &discovery, evidence) {
         // Names may make up for a law that the catalogue does not have.
         let law = learn::single(alone, evidence, progress);
-        let law = law.filter(|law| law.log_posterior() > found.log_posterior());
+        let odds = evidence.numbers.odds_of_certain().ln();
+        let law = law.filter(|law| law.log_posterior() - found.log_posterior() > odds);
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
