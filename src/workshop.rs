@@ -12,7 +12,6 @@ use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::noise::Form;
 use qcar_runtime::model::Model;
-use qcar_runtime::response::parameters::Clock;
 use rayon::prelude::*;
 
 use crate::effects::Catalogue;
@@ -176,8 +175,7 @@ fn added(parameter: &NewParameter) -> Added {
         role: match parameter.role {
             patch::ParameterRole::Strength { vanishes_at } => ParameterRole::Strength { vanishes_at },
             patch::ParameterRole::Shape => ParameterRole::Shape,
-            patch::ParameterRole::Clock if parameter.unit == "1" => ParameterRole::Clock(Clock::PartOfRun),
-            patch::ParameterRole::Clock => ParameterRole::Clock(Clock::Seconds),
+            patch::ParameterRole::Clock => ParameterRole::Clock,
             patch::ParameterRole::Other => ParameterRole::Other,
         },
     }

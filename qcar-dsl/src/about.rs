@@ -61,6 +61,17 @@ pub struct Parameter {
     pub range: Option<(f64, f64)>,
     /// True where it is never estimated unless a campaign asks for it.
     pub known: bool,
+    /// Set where it is the time since a run began.
+    pub clock: Option<Clock>,
+}
+
+/// How the time since a run began is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// In s.
+    Seconds,
+    /// In parts of the run, for a clock without a unit.
+    PartOfRun,
 }
 
 /// A state of the model.

@@ -1,8 +1,8 @@
 //! Stages to [`About`]: names for what stands at each place of the vectors.
 
 use crate::about::{
-    About, Channel, Contact, ContactAxis, Excitation, Input, InputKind, Link, Mass, Output, Parameter, ResponseLayout,
-    Signal, SignalKind, Source, State, StateKind,
+    About, Channel, Clock, Contact, ContactAxis, Excitation, Input, InputKind, Link, Mass, Output, Parameter,
+    ResponseLayout, Signal, SignalKind, Source, State, StateKind,
 };
 use crate::check::Checked;
 use crate::expr::{CoordinateId, Expr, LinkId, Symbol};
@@ -78,6 +78,11 @@ fn parameter(p: &model::Parameter) -> Parameter {
         default: p.default,
         range: p.range,
         known: p.known,
+        clock: p.clock.then_some(if p.unit == Unit::ONE {
+            Clock::PartOfRun
+        } else {
+            Clock::Seconds
+        }),
     }
 }
 

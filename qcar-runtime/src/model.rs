@@ -191,6 +191,17 @@ pub struct Parameter {
     pub range: Option<(f64, f64)>,
     /// True where it is never estimated unless a campaign asks for it.
     pub known: bool,
+    /// Set where it is the time since a run began.
+    pub clock: Option<Clock>,
+}
+
+/// How the time since a run began is counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    /// In s.
+    Seconds,
+    /// In parts of the run: from 0 at its beginning to 1 at its end.
+    PartOfRun,
 }
 
 /// What a parameter is when nobody gives it a value.

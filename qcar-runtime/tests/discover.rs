@@ -10,8 +10,8 @@ use qcar_runtime::discover::noise::{Form, Nuisance};
 use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus, predict};
 use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
-use qcar_runtime::model::Model;
-use qcar_runtime::response::parameters::{Clock, Values};
+use qcar_runtime::model::{Clock, Model};
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::{Point, logarithmic};
 use strut::{Parts, Strut};
@@ -166,6 +166,13 @@ fn a_smooth_calibration_error_leaves_no_gap() {
     }
 }
 
+/// A strut with a parameter that is the time since a run began.
+fn timed(parameter: usize, clock: Clock) -> Strut {
+    let mut model = Strut::new(PLAIN);
+    model.about.parameters.to_mut()[parameter].clock = Some(clock);
+    model
+}
+
 /// Its value is another in each line of a sweep: that of the moment in which the sweep passes there.
 #[test]
 fn a_parameter_that_is_the_time_changes_through_a_run() {
@@ -182,8 +189,8 @@ fn a_parameter_that_is_the_time_changes_through_a_run() {
     let damping = model.about().parameters.iter().position(|p| p.name == "c_wheel_z");
     let damping = damping.expect("it has a damper");
     let still = resolve(&model, &TRUTH);
-    let drifting = still.clone().with_clocks(vec![(damping, Clock::Seconds)]);
-    let seen = predict(&model, &drifting, &[], &evidence, Role::Fit).expect("it has the sensors");
+    let drifting = timed(damping, Clock::Seconds);
+    let seen = predict(&drifting, &resolve(&drifting, &TRUTH), &[], &evidence, Role::Fit).expect("it has the sensors");
     let at = |time: f64| {
         let mut then = still.clone();
         then.set(damping, time);
@@ -198,10 +205,8 @@ fn a_parameter_that_is_the_time_changes_through_a_run() {
             assert!((value - expected).norm() < 1e-12 * expected.norm(), "line {k}");
         }
     }
-    let of_run = still
-        .clone()
-        .with_clocks(vec![(damping, Clock::PartOfRun)])
-        .at_part(0.25, 2000.0);
+    let of_run = timed(damping, Clock::PartOfRun);
+    let of_run = resolve(&of_run, &TRUTH).at_part(0.25, 2000.0);
     assert_eq!(of_run.as_slice()[damping], 0.25);
 }
 

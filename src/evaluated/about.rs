@@ -49,6 +49,10 @@ fn parameter(of: &dsl::Parameter) -> runtime::Parameter {
         },
         range: of.range,
         known: of.known,
+        clock: of.clock.map(|clock| match clock {
+            dsl::Clock::Seconds => runtime::Clock::Seconds,
+            dsl::Clock::PartOfRun => runtime::Clock::PartOfRun,
+        }),
     }
 }
 

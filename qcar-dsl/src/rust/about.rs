@@ -1,8 +1,8 @@
 //! `static ABOUT`: what the runtime shows of a generated model.
 
 use crate::about::{
-    About, Channel, ContactAxis, Entry, Excitation, Input, InputKind, Link, Mass, Output, Parameter, ResponseLayout,
-    Signal, SignalKind, Source, State, StateKind,
+    About, Channel, Clock, ContactAxis, Entry, Excitation, Input, InputKind, Link, Mass, Output, Parameter,
+    ResponseLayout, Signal, SignalKind, Source, State, StateKind,
 };
 use crate::model::{Default, Quantity};
 use crate::straight::{entry_name, parameter_jacobian_names, sensitivity_names};
@@ -80,8 +80,13 @@ fn parameters(about: &About) -> String {
             Default::Value(value) => format!("seam::Default::Value({value:?})"),
             Default::Same(other) => format!("seam::Default::Same({other})"),
         };
+        let clock = match p.clock {
+            None => "None",
+            Some(Clock::Seconds) => "Some(seam::Clock::Seconds)",
+            Some(Clock::PartOfRun) => "Some(seam::Clock::PartOfRun)",
+        };
         format!(
-            "{{ name: {}, unit: {}, doc: {}, default: {default}, range: {:?}, known: {} }}",
+            "{{ name: {}, unit: {}, doc: {}, default: {default}, range: {:?}, known: {}, clock: {clock} }}",
             text(&p.name),
             text(&p.unit),
             text(&p.doc),

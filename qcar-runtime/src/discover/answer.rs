@@ -93,6 +93,8 @@ pub struct Learned {
     pub laws: Vec<Finding>,
     /// Share of the excess gap of the runs that judge that they close.
     pub explained: f64,
+    /// The longest run, s: later than that no law over time is determined.
+    pub longest: f64,
     /// The explanation with them.
     pub explanation: Explanation,
 }

@@ -4,7 +4,6 @@
 use super::noise::Form;
 use crate::campaign::Axis;
 use crate::model::Model;
-use crate::response::parameters::Clock;
 
 /// Something that might be missing, at a place.
 pub struct Candidate {
@@ -68,7 +67,7 @@ pub enum ParameterRole {
     /// It says where the effect acts, over travel, speed or frequency.
     Shape,
     /// It is the time since a run began: each run gives it.
-    Clock(Clock),
+    Clock,
     /// None of these.
     Other,
 }

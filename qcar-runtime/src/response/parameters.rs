@@ -1,7 +1,7 @@
 //! From what is given to a value for every parameter of the model.
 
 use crate::error::{Place, Problem};
-use crate::model::{About, Default};
+use crate::model::{About, Clock, Default};
 use crate::spelling::nearest;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,15 +15,6 @@ pub struct Values {
     leader: Vec<usize>,
     /// Those that are the time since a run began.
     clocks: Vec<(usize, Clock)>,
-}
-
-/// How the time since a run began is counted.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Clock {
-    /// In s.
-    Seconds,
-    /// In parts of the run: from 0 at its beginning to 1 at its end.
-    PartOfRun,
 }
 
 /// Why a parameter has no value.
@@ -126,7 +117,8 @@ impl Values {
             .collect();
         errors.extend((0..stated.len()).filter_map(|k| invalid(about, k, leader[k] == k, stated[k])));
         if errors.is_empty() {
-            let clocks = Vec::new();
+            let clocks = about.parameters.iter().enumerate();
+            let clocks = clocks.filter_map(|(k, own)| Some((k, own.clock?))).collect();
             Ok(Self { p, leader, clocks })
         } else {
             Err(errors)
@@ -141,11 +133,6 @@ impl Values {
     /// The parameter that this one takes its value from; itself unless it is tied.
     pub fn leader(&self, parameter: usize) -> usize {
         self.leader[parameter]
-    }
-
-    /// With these parameters as the time since a run began, by their places.
-    pub fn with_clocks(self, clocks: Vec<(usize, Clock)>) -> Self {
-        Self { clocks, ..self }
     }
 
     /// True where something changes while a run goes on.

@@ -187,6 +187,7 @@ fn about() -> About {
         default: Default::None,
         range: None,
         known: false,
+        clock: None,
     };
     let state = |&(name, axis, kind): &(&'static str, &'static str, StateKind)| State {
         name: name.into(),

@@ -318,6 +318,7 @@ fn parameter(&(name, unit, _): &Given) -> Parameter {
         default: Default::None,
         range: None,
         known: name == "m_corner",
+        clock: None,
     }
 }
 

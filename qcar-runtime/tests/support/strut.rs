@@ -19,7 +19,7 @@ pub struct Parts {
 
 /// The axle.
 pub struct Strut {
-    about: About,
+    pub about: About,
     parts: Parts,
 }
 
@@ -340,6 +340,7 @@ fn about(parts: Parts) -> About {
                 default: Default::None,
                 range: None,
                 known: matches!(name, "m_corner" | "m_tm"),
+                clock: None,
             })
             .collect(),
         states: states.into(),

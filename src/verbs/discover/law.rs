@@ -51,7 +51,12 @@ pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<Learn
     let mut text = String::new();
     for finding in &learned.laws {
         let patched = bench.patched(&finding.effect, &finding.at, None)?;
-        laws.push(law(bench.patch(&finding.effect)?, finding, &patched.parameters));
+        laws.push(law(
+            bench.patch(&finding.effect)?,
+            finding,
+            &patched.parameters,
+            learned.longest,
+        ));
         text = patched.text(&why);
         bench = bench.holding(patched.model);
     }
@@ -60,7 +65,7 @@ pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<Learn
     Some(LearnedModel { laws, model })
 }
 
-fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter]) -> Law {
+fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter], longest: f64) -> Law {
     let found = |own: &NewParameter| {
         let known = finding.parameters.iter().find(|(name, ..)| *name == own.effect_name);
         let start = known.map_or(own.start, |(_, value, _)| *value);
@@ -68,7 +73,7 @@ fn law(patch: &Patch, finding: &Finding, declared: &[NewParameter]) -> Law {
     };
     let parameters: Vec<NewParameter> = declared.iter().map(found).collect();
     Law {
-        words: words(patch, &parameters, &errors(finding)),
+        words: words(patch, &parameters, &errors(finding), longest),
         units: parameters
             .iter()
             .map(|own| (own.effect_name.clone(), own.unit.to_string()))
@@ -94,13 +99,13 @@ impl LearnedModel {
     }
 }
 
-/// What a law is like: each of its curves in a sentence, or which of its coefficients count.
-fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors) -> String {
+/// What a law is like: each of its curves in a sentence, or which of its coefficients count. The longest run takes `longest` s.
+fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let curves = patch.curves();
     if curves.is_empty() {
         return shares(parameters);
     }
-    let sentences = curves.iter().map(|curve| of_curve(curve, parameters, errors));
+    let sentences = curves.iter().map(|curve| of_curve(curve, parameters, errors, longest));
     format!("{}; no memory", sentences.collect::<Vec<_>>().join("; "))
 }
 
@@ -126,7 +131,7 @@ const ALIKE: f64 = 0.1;
 const DETERMINED: f64 = 0.5;
 
 /// `over the speed it goes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions alike`
-fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> String {
+fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let named = |name: &str| parameters.iter().find(|own| own.effect_name == name);
     let scale = curve.scale.as_deref().and_then(named);
     let over = scale.or_else(|| named(&curve.over));
@@ -146,7 +151,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors) -> Stri
     let over = match curve.over.as_str() {
         "s" => "travel",
         "v" => "speed",
-        clock if is_clock(clock, parameters) => return of_time(&points, unit),
+        clock if is_clock(clock, parameters) => return of_time(&points, unit, longest),
         other => other,
     };
     let rest = points.iter().find(|(x, _)| *x == 0.0).map_or(0.0, |(_, y)| *y);
@@ -182,9 +187,10 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
     own.is_some_and(|own| own.role == ParameterRole::Clock)
 }
 
-/// `it goes from 1 when a run begins to 0.9 after 10, 0.7 after 30 s`
-fn of_time(points: &[(f64, f64)], unit: String) -> String {
-    let later = side(points, 1.0).into_iter();
+/// `it goes from 1 when a run begins to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run (s).
+fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
+    let end = if unit == "s" { longest } else { 1.0 };
+    let later = side(points, 1.0).into_iter().filter(|(time, _)| *time <= end);
     let told: Vec<String> = later
         .map(|(time, y)| format!("{} after {}", number(y, 3), number(time, 3)))
         .collect();
@@ -249,6 +255,7 @@ mod tests {
             &curve(),
             &parameters,
             &names.map(String::from).into_iter().zip(errors).collect(),
+            60.0,
         )
     }
 
@@ -267,12 +274,14 @@ mod tests {
     #[test]
     fn what_changes_with_time_is_told_by_the_time() {
         let points = [(0.0, 1.0), (10.0, 0.9), (30.0, 0.75), (100.0, 0.75)];
+        let told = |longest: f64| of_time(&points, "s".into(), longest);
         assert_eq!(
-            of_time(&points, "s".into()),
+            told(120.0),
             "it goes from 1 when a run begins to 0.9 after 10, 0.75 after 30 s"
         );
+        assert_eq!(told(20.0), "it goes from 1 when a run begins to 0.9 after 10 s");
         assert_eq!(
-            of_time(&points[..1], "1".into()),
+            of_time(&points[..1], "1".into(), 20.0),
             "how it changes with time is not determined"
         );
     }

@@ -36,6 +36,14 @@ pub fn through(
     Ok((0..predictions[0].len()).map(read).collect())
 }
 
+impl Evidence {
+    /// The longest run, s.
+    pub fn longest(&self) -> f64 {
+        let runs = self.runs.iter();
+        runs.map(|run| length(&run.stimulus)).fold(0.0, f64::max)
+    }
+}
+
 /// How long something moved, s.
 fn length(stimulus: &Stimulus) -> f64 {
     match stimulus {

@@ -5,12 +5,12 @@ use std::sync::Arc;
 
 use super::taken::Taken;
 use crate::campaign::Role;
-use crate::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
+use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
 use crate::discover::observe::{Evidence, Free, PredictError};
 use crate::discover::posterior::{Explanation, Gap, Given, Refit, Setting, Start, fit, settle};
 use crate::model::Model;
-use crate::response::parameters::{Clock, Values};
+use crate::response::parameters::Values;
 
 /// A model with effects in it.
 #[derive(Clone)]
@@ -18,8 +18,6 @@ pub struct Assembly {
     workshop: Arc<dyn Workshop>,
     setting: Setting,
     nuisance: Nuisance,
-    /// Parameters that are the time since a run began.
-    clocks: Vec<(String, Clock)>,
     effects: Vec<Placed>,
 }
 
@@ -49,7 +47,6 @@ pub struct Hypothesis<'a> {
     given: Vec<Given>,
     vehicle: &'a BTreeMap<String, f64>,
     nuisance: Nuisance,
-    clocks: Vec<(String, Clock)>,
 }
 
 /// Values of parameters by name, and errors of sensors, from which a fit begins.
@@ -91,7 +88,6 @@ impl Assembly {
             workshop,
             setting: setting.clone(),
             nuisance: Nuisance::of(evidence),
-            clocks: Vec::new(),
             effects: Vec::new(),
         })
     }
@@ -137,7 +133,6 @@ impl Assembly {
             given: self.setting.given.clone(),
             vehicle: &self.setting.vehicle,
             nuisance: self.nuisance.clone(),
-            clocks: self.clocks.clone(),
         }
     }
 
@@ -148,7 +143,6 @@ impl Assembly {
             Change::Model { model, parameters } => {
                 hypothesis.model = &**model;
                 hypothesis.given.extend(unknown(parameters));
-                hypothesis.clocks.extend(clocks(parameters));
             }
             Change::Sensor { .. } => hypothesis.nuisance = suspecting(&self.nuisance, candidate)?,
         }
@@ -163,7 +157,6 @@ impl Assembly {
                 let form = candidate.form.as_deref();
                 assembly.workshop = Arc::from(self.workshop.with(&candidate.effect, &candidate.at, form)?);
                 assembly.setting.given.extend(unknown(parameters));
-                assembly.clocks.extend(clocks(parameters));
             }
             Change::Sensor { .. } => assembly.nuisance = suspecting(&self.nuisance, candidate)?,
         }
@@ -195,14 +188,6 @@ fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
         name: parameter.name.clone(),
         value: parameter.start,
         range: Some(parameter.range),
-    })
-}
-
-/// What of an effect is the time since a run began.
-fn clocks(parameters: &[Added]) -> impl Iterator<Item = (String, Clock)> {
-    parameters.iter().filter_map(|own| match own.role {
-        ParameterRole::Clock(clock) => Some((own.name.clone(), clock)),
-        _ => None,
     })
 }
 
@@ -268,12 +253,7 @@ impl<'a> Hypothesis<'a> {
             (given.name.clone(), value)
         };
         let values = Values::resolve(about, &of_model.map(value).collect(), &self.vehicle.clone());
-        let place = |name: &str| about.parameters.iter().position(|own| own.name == name);
-        let clocks = self
-            .clocks
-            .iter()
-            .filter_map(|(name, clock)| Some((place(name)?, *clock)));
-        Ok(values.map_err(PredictError::Parameters)?.with_clocks(clocks.collect()))
+        values.map_err(PredictError::Parameters)
     }
 
     fn free(&self) -> Vec<Free> {

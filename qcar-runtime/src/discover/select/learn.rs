@@ -90,6 +90,7 @@ pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
     Learned {
         laws: laws.skip(base.assembly.effects().len()).map(law).collect(),
         explained,
+        longest: evidence.longest(),
         explanation: learned.explanation,
     }
 }

@@ -29,7 +29,7 @@ impl Taken {
                 let unknown = |p: &Added| Unknown::Parameter(p.effect_name.clone(), p.name.clone());
                 parameters
                     .iter()
-                    .filter(|own| !matches!(own.role, ParameterRole::Clock(_)))
+                    .filter(|own| own.role != ParameterRole::Clock)
                     .map(unknown)
                     .collect()
             }
