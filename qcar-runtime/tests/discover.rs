@@ -62,6 +62,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
             stimulus: Stimulus::Sweep {
                 reference: point("pad"),
                 signal: Vec::new(),
+                swept: None,
                 rate: 1000.0,
                 amplitude: frequency.iter().map(|f| level * std::f64::consts::TAU * f).collect(),
                 frequency: frequency.clone(),

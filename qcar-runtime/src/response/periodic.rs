@@ -18,6 +18,7 @@ mod balance;
 
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 use nalgebra::{Complex, DMatrix};
 
@@ -31,7 +32,7 @@ pub struct Periodic<'m> {
     excitation: usize,
     /// The states that move at all.
     states: Vec<usize>,
-    basis: Basis,
+    basis: Arc<Basis>,
 }
 
 /// A sine: `Re A exp(jωt)` of the excitation itself or one of its derivatives.
@@ -93,7 +94,7 @@ impl<'m> Periodic<'m> {
             model,
             excitation,
             states: moved(model, excitation),
-            basis: Basis::new(harmonics),
+            basis: Basis::shared(harmonics),
         }
     }
 
@@ -185,7 +186,7 @@ impl<'m> Periodic<'m> {
     /// A row for each sample of a period, a column for each input.
     fn inputs(&self, phasor: Complex<f64>, omega: f64) -> DMatrix<f64> {
         let inputs = &self.model.about().inputs;
-        let turns = (0..self.basis.samples()).map(|k| phasor * Complex::cis(self.basis.angle(k)));
+        let turns = (0..self.basis.samples()).map(|k| phasor * self.basis.turn(k));
         let turns: Vec<Complex<f64>> = turns.collect();
         let rate = Complex::new(0.0, omega);
         DMatrix::from_fn(turns.len(), inputs.len(), |k, input| match inputs[input].kind {

@@ -43,6 +43,7 @@ pub struct Passage {
 }
 
 /// A sweep as the sum of its multiples needs it.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Swept {
     rate: f64,
     samples: usize,
@@ -100,12 +101,21 @@ impl Swept {
 
     /// The responses of a signal of the same record at `frequencies` (Hz, increasing).
     pub fn responses(&self, signal: &[f64], frequencies: &[f64], around: Neighbourhood) -> Vec<HarmonicLine> {
+        self.responses_in(&transform(signal), frequencies, around)
+    }
+
+    /// The same of the signal's spectrum.
+    pub fn responses_in(
+        &self,
+        spectrum: &[Complex<f64>],
+        frequencies: &[f64],
+        around: Neighbourhood,
+    ) -> Vec<HarmonicLine> {
         let spacing = self.rate / self.samples as f64;
-        let spectrum = transform(signal);
         let line = |&frequency: &f64| {
             let half = around.lines.max((around.width * frequency / spacing) as usize);
             let lines = neighbourhood((frequency / spacing).round() as usize, half, spectrum.len());
-            self.line(&spectrum, frequency, spacing, lines)
+            self.line(spectrum, frequency, spacing, lines)
         };
         frequencies.par_iter().map(line).collect()
     }

@@ -15,9 +15,12 @@ pub use passage::Passage;
 pub(super) use passage::{HURRIED, PATIENT};
 pub use restart::{Restart, Spread, is_seen};
 
+use std::sync::Arc;
+
 use crate::campaign::{Axis, Role};
 use crate::roles::OnRig;
 use crate::transmissibility::Point;
+use crate::transmissibility::harmonics::Swept;
 
 /// A run of the campaign.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +45,8 @@ pub enum Stimulus {
         reference: Point,
         /// Its mean signal over the sides.
         signal: Vec<f64>,
+        /// Reads responses to it; `None` where its record is not at hand.
+        swept: Option<Arc<Swept>>,
         /// Hz.
         rate: f64,
         /// Hz, increasing: where responses were asked for.

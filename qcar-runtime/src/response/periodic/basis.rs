@@ -1,6 +1,8 @@
 //! Fourier series by their samples: `a_0 + Σ_n (a_n cos nθ + b_n sin nθ)`, kept as a_0, a_1, b_1, a_2, b_2, ...
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, PoisonError};
 
 use nalgebra::{Complex, DMatrix, DVectorView};
 
@@ -21,7 +23,16 @@ impl Basis {
     /// Samples enough that kinks of a law do not alias into the lower harmonics.
     const OVERSAMPLING: usize = 10;
 
-    pub fn new(harmonics: usize) -> Self {
+    /// One for all who ask for so many harmonics: a search asks for thousands, and each is full of sines.
+    pub fn shared(harmonics: usize) -> Arc<Self> {
+        static MADE: Mutex<BTreeMap<usize, Arc<Basis>>> = Mutex::new(BTreeMap::new());
+        let mut made = MADE.lock().unwrap_or_else(PoisonError::into_inner);
+        made.entry(harmonics)
+            .or_insert_with(|| Arc::new(Self::new(harmonics)))
+            .clone()
+    }
+
+    fn new(harmonics: usize) -> Self {
         let (terms, samples) = (2 * harmonics + 1, Self::OVERSAMPLING * harmonics + 2);
         let value = |k: usize, term: usize| {
             let angle = TAU * k as f64 / samples as f64 * term.div_ceil(2) as f64;
@@ -47,9 +58,9 @@ impl Basis {
         self.synthesis.nrows()
     }
 
-    /// The angle of a sample, rad.
-    pub fn angle(&self, sample: usize) -> f64 {
-        TAU * sample as f64 / self.samples() as f64
+    /// `exp(jθ)` at a sample.
+    pub fn turn(&self, sample: usize) -> Complex<f64> {
+        Complex::new(self.synthesis[(sample, 1)], self.synthesis[(sample, 2)])
     }
 
     /// `d/dθ` of a series has at `term` this factor times the coefficient of this other term; `None` for the constant.

@@ -1,6 +1,7 @@
 //! A sweep as evidence: the first, second and third harmonic of every sensor over the amplitude of the pad.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use nalgebra::Complex;
 
@@ -97,6 +98,7 @@ impl Evidence {
             stimulus: Stimulus::Sweep {
                 reference,
                 signal: excitation,
+                swept: Some(Arc::new(swept)),
                 rate,
                 frequency,
                 amplitude: passed.iter().map(|(_, own)| own.amplitude).collect(),

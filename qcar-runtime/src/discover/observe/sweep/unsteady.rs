@@ -6,12 +6,12 @@
 //! through the model, the responses are read from it by the estimator that read the measurement, and how much they differ
 //! from the steady harmonics is added to these wherever a search goes.
 
-use std::collections::BTreeMap;
+use std::borrow::Cow;
 
 use nalgebra::Complex;
 use rayon::prelude::*;
 
-use super::measured::{AROUND, ORDERS};
+use super::measured::AROUND;
 use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
 use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
@@ -63,19 +63,9 @@ fn of_run(
     evidence: &Evidence,
     run: usize,
 ) -> Result<Differences, PredictError> {
-    let Stimulus::Sweep {
-        reference,
-        signal,
-        rate,
-        band,
-        ..
-    } = &evidence.runs[run].stimulus
-    else {
+    let Some(driven) = Driven::of(model, evidence, run, louder)? else {
         return Ok(Vec::new());
     };
-    if signal.is_empty() {
-        return Ok(Vec::new());
-    }
     let about = model.about();
     let steady = if about.linear {
         linear(model, values, &[], evidence, run)?
@@ -85,25 +75,36 @@ fn of_run(
     let sensors = steady
         .iter()
         .map(|p| signal_of(about, &evidence.series[p.series].sensor));
-    let driven = Driven {
-        excitation: excitation(model, evidence, run, reference)?,
-        reference,
-        samples: &signal.iter().map(|sample| louder * sample).collect::<Vec<_>>(),
-        rate: *rate,
-        band: (band.0 / BEYOND, band.1 * BEYOND),
-    };
+    let sensors: Vec<Signal> = sensors.collect();
+    // A sensor has a series for each harmonic, of one and the same signal.
+    let different = each_once(&sensors);
     let shown = if about.linear {
-        driven.answered(model, values, &sensors.collect::<Vec<_>>())?
+        driven.answered(model, values, &different)?
     } else {
-        driven.replayed(model, values, &sensors.collect::<Vec<_>>())?
+        driven.replayed(model, values, &different)?
     };
-    let swept = Swept::new(driven.samples, *rate, *band, ORDERS);
-    let differences = steady.into_par_iter().zip(shown).map(|(steady, shown)| {
-        let seen = seen(&swept, &shown, &evidence.series[steady.series]);
-        let differences = seen.iter().zip(&steady.value).map(|(seen, steady)| seen - steady);
+    let spectra: Vec<_> = shown.par_iter().map(|signal| transform(signal)).collect();
+    let differences = steady.into_par_iter().zip(&sensors).map(|(steady, sensor)| {
+        let place = different.iter().position(|other| other == sensor).unwrap_or(0);
+        let seen = seen(driven.swept, &spectra[place], &evidence.series[steady.series]);
+        let differences = seen
+            .iter()
+            .zip(&steady.value)
+            .map(|(seen, steady)| seen / louder - steady);
         (steady.series, differences.collect())
     });
     Ok(differences.collect())
+}
+
+/// Each signal in the order in which it is first asked for.
+fn each_once(signals: &[Signal]) -> Vec<Signal> {
+    let mut different: Vec<Signal> = Vec::new();
+    for signal in signals {
+        if !different.contains(signal) {
+            different.push(signal.clone());
+        }
+    }
+    different
 }
 
 /// What the sensors of a sweep would have recorded, sample by sample, from rest on.
@@ -113,22 +114,8 @@ pub fn replayed(
     evidence: &Evidence,
     run: usize,
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
-    let Stimulus::Sweep {
-        reference,
-        signal,
-        rate,
-        band,
-        ..
-    } = &evidence.runs[run].stimulus
-    else {
+    let Some(driven) = Driven::of(model, evidence, run, 1.0)? else {
         return Ok(Vec::new());
-    };
-    let driven = Driven {
-        excitation: excitation(model, evidence, run, reference)?,
-        reference,
-        samples: signal,
-        rate: *rate,
-        band: (band.0 / BEYOND, band.1 * BEYOND),
     };
     let sensors = evidence.sensors(run);
     let signals: Vec<Signal> = sensors.iter().map(|sensor| signal_of(model.about(), sensor)).collect();
@@ -140,19 +127,50 @@ pub fn replayed(
 struct Driven<'a> {
     excitation: usize,
     reference: &'a Point,
-    samples: &'a [f64],
+    samples: Cow<'a, [f64]>,
+    /// Reads responses to the measured motion, which was `louder` times smaller.
+    swept: &'a Swept,
     rate: f64,
     /// Hz: what lies outside is not motion but noise.
     band: (f64, f64),
 }
 
-impl Driven<'_> {
+impl<'a> Driven<'a> {
+    /// The pad of a run that was driven harder by the factor `louder` than its reference shows; `None` where the run is no
+    /// sweep, or its record is not at hand.
+    fn of(model: &dyn Model, evidence: &'a Evidence, run: usize, louder: f64) -> Result<Option<Self>, PredictError> {
+        let Stimulus::Sweep {
+            reference,
+            signal,
+            swept: Some(swept),
+            rate,
+            band,
+            ..
+        } = &evidence.runs[run].stimulus
+        else {
+            return Ok(None);
+        };
+        let is_as_shown = louder == 1.0;
+        Ok(Some(Self {
+            excitation: excitation(model, evidence, run, reference)?,
+            reference,
+            samples: if is_as_shown {
+                Cow::Borrowed(signal)
+            } else {
+                signal.iter().map(|sample| louder * sample).collect()
+            },
+            swept,
+            rate: *rate,
+            band: (band.0 / BEYOND, band.1 * BEYOND),
+        }))
+    }
+
     /// What sensors then show of a nonlinear model.
     fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
         let recorded = Recorded {
             excitation: self.excitation,
             power: order_of(self.reference),
-            samples: self.samples,
+            samples: &self.samples,
         };
         let how = Between {
             rate: self.rate,
@@ -195,26 +213,17 @@ impl Driven<'_> {
             shown.truncate(self.samples.len());
             Ok(shown)
         };
-        // A sensor has a series for each harmonic, of one and the same signal.
-        let first = |sensor: &Signal| sensors.iter().position(|other| other == sensor);
-        let is_first = |place: &usize| first(&sensors[*place]) == Some(*place);
-        let different: Vec<usize> = (0..sensors.len()).filter(is_first).collect();
-        let shown = different.par_iter().map(|&place| Ok((place, answer(&sensors[place])?)));
-        let shown: BTreeMap<usize, Vec<f64>> = shown.collect::<Result<_, SignalError>>()?;
-        Ok(sensors
-            .iter()
-            .filter_map(|sensor| shown.get(&first(sensor)?).cloned())
-            .collect())
+        sensors.par_iter().map(answer).collect()
     }
 }
 
-/// The values of a series in a replayed signal.
-fn seen(swept: &Swept, signal: &[f64], series: &Series) -> Vec<Complex<f64>> {
+/// The values of a series in the spectrum of a replayed signal.
+fn seen(swept: &Swept, spectrum: &[Complex<f64>], series: &Series) -> Vec<Complex<f64>> {
     let Kind::Harmonic(order) = series.kind else {
         unreachable!("a sweep has no other series")
     };
     let responses: Vec<f64> = series.at.iter().map(|f| f * order as f64).collect();
-    let lines = swept.responses(signal, &responses, AROUND);
+    let lines = swept.responses_in(spectrum, &responses, AROUND);
     lines
         .iter()
         .map(|line| line.value[order - 1].unwrap_or_default())

@@ -31,6 +31,7 @@ fn group(places: &[f64], scale: f64) -> Group {
         run: discriminant(&Stimulus::Sweep {
             reference: sensor(),
             signal: Vec::new(),
+            swept: None,
             rate: 1.0,
             frequency: Vec::new(),
             amplitude: Vec::new(),
