@@ -8,7 +8,7 @@ use std::time::Instant;
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Parameter};
 use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
@@ -31,7 +31,7 @@ use crate::{catalogue, effects};
 // Where something would explain the gap.
 pub(crate) mod places;
 // What a model leaves of each sensor.
-mod left;
+pub(crate) mod left;
 // The law that was learned where no effect explains the gap.
 pub(crate) mod law;
 // One of the findings in words.
@@ -200,7 +200,7 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
 }
 
 /// The campaign's model beside the catalogue.
-fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
+pub(crate) fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
     let compiled = catalogue::compiled_of_campaign(campaign, model)?;
     let vehicle = campaign.vehicle.iter().cloned();
     let values: BTreeMap<String, f64> = vehicle
@@ -218,18 +218,23 @@ fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
 /// # Errors
 /// As [`bound`].
 fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
-    let mut given = campaign.parameters.clone();
-    given.extend(own(about, campaign));
-    bound(&mut given, about, campaign)?;
-    let given = given.into_iter().map(|p| Given {
+    let mut parameters = campaign.parameters.clone();
+    parameters.extend(own(about, campaign));
+    bound(&mut parameters, about, campaign)?;
+    Ok(of_parameters(&parameters, campaign))
+}
+
+/// Parameters with their ranges as a search takes them.
+pub(crate) fn of_parameters(parameters: &[Parameter], campaign: &Campaign) -> Setting {
+    let given = parameters.iter().map(|p| Given {
         range: p.range.filter(|_| p.fit),
-        name: p.name,
+        name: p.name.clone(),
         value: p.value,
     });
-    Ok(Setting {
+    Setting {
         given: given.collect(),
         vehicle: campaign.vehicle.iter().cloned().collect(),
-    })
+    }
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

@@ -26,6 +26,8 @@ use crate::progress::while_counting;
 use crate::terminal::prose;
 use crate::verbs::Format;
 
+// A model whose laws are nonlinear.
+mod nonlinear;
 // What K&C curves say beside it.
 mod clamped;
 // What is odd, but no error.
@@ -39,6 +41,9 @@ pub(crate) mod workbook;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
+/// A linear model is fitted to transmissibilities, level after level in one cost. A nonlinear one is fitted to all runs that
+/// it predicts, cleats and K&C curves too: to the first three harmonics of sweeps by harmonic balance, to records sample by
+/// sample, and to what each says by its own uncertainty.
 /// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. Estimated are the parameters
 /// that the campaign wants fitted, and what the model has beside them with a default and a range, but for what it calls
 /// known. A parameter that no fitted channel depends on takes its value from the K&C curve that measures it, where the
@@ -93,10 +98,13 @@ impl Choices {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref())?;
     if let Some(folder) = &arguments.out {
-        let campaign = Campaign::open(&arguments.campaign)?;
-        let model = catalogue::of_campaign(&campaign, arguments.choices.model.as_deref())?;
         files::check_folder(folder, &campaign.name, &model.about().name)?;
+    }
+    if !model.about().linear {
+        return nonlinear::run(campaign, arguments);
     }
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {

@@ -85,6 +85,29 @@ pub fn discover(
     Ok(discovery)
 }
 
+/// How well a model explains all runs, without a search for what it lacks: its parameters where the posterior is highest.
+///
+/// # Errors
+/// As [`discover`].
+pub fn alone(
+    workshop: Box<dyn Workshop>,
+    setting: &Setting,
+    evidence: &Evidence,
+    progress: Progress<'_>,
+) -> Result<Explanation, PredictError> {
+    if evidence.of_role(Role::Fit).next().is_none() {
+        return Err(PredictError::NothingToFit);
+    }
+    progress(News::Doing("searching from several starts"));
+    let base = base(Assembly::base(Arc::from(workshop), setting, evidence)?, evidence)?;
+    progress(News::Doing("searching to the end"));
+    let hypothesis = base.assembly.hypothesis();
+    let found = &base.explanation.refit;
+    let steady = looks(&evidence.less(&found.unsteady)).fine;
+    let refit = hypothesis.fit(&hypothesis.place(found), &steady, TO_THE_END)?;
+    hypothesis.explanation(refit, evidence)
+}
+
 /// True where a part of the set is an answer, and what the set has beyond that would be withdrawn.
 fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = predictive(sets, set, evidence);
@@ -191,6 +214,8 @@ fn tell(set: &Set, progress: Progress<'_>) {
 
 /// Searches for the base model: from the campaign's values, and from values spread over the ranges.
 const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
+/// Rounds and evaluations of a fit that is the answer itself.
+const TO_THE_END: (usize, usize) = (3, 60);
 const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The base model, fitted.

@@ -7,6 +7,7 @@ use nalgebra::Complex;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::Level;
 use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
@@ -49,16 +50,20 @@ pub(crate) fn check_folder(folder: &Path, campaign: &str, model: &str) -> Result
 pub(crate) fn write(of: &Fitted, folder: &Path) -> Result<(), InputError> {
     check_folder(folder, &of.campaign.name, &of.fit.model)?;
     let compared = compare(of);
-    put(folder, "parameters.toml", &parameters(of))?;
+    put(
+        folder,
+        "parameters.toml",
+        &parameters(&of.fit.model, &of.campaign.name, &of.fit.parameters),
+    )?;
     put(folder, "fit.json", &render::json(of))?;
     put(folder, "transmissibility.csv", &csv(&compared))?;
     put(folder, "transmissibility.svg", &figure(of, &compared).svg())
 }
 
 /// A parameter file as `--params` takes it.
-fn parameters(of: &Fitted) -> String {
-    let mut out = format!("# {} fitted to {}\n\n[parameters]\n", of.fit.model, of.campaign.name);
-    for parameter in of.fit.parameters.iter().filter(|parameter| parameter.tied_to.is_none()) {
+pub(super) fn parameters(model: &str, campaign: &str, of: &[ParameterFit]) -> String {
+    let mut out = format!("# {model} fitted to {campaign}\n\n[parameters]\n");
+    for parameter in of.iter().filter(|parameter| parameter.tied_to.is_none()) {
         let error = parameter
             .stderr
             .map_or(String::new(), |error| format!(", standard error {error:.2e}"));

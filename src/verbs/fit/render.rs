@@ -87,7 +87,7 @@ fn summary(of: &Fitted) -> String {
     out
 }
 
-fn parameters(of: &[ParameterFit]) -> String {
+pub(super) fn parameters(of: &[ParameterFit]) -> String {
     let mut table = Table::new(["parameter", "unit", "start", "value", "stderr", "stderr_%", "remark"]);
     for parameter in of {
         let shown = |value| units::value(value, &parameter.unit);

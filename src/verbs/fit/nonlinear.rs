@@ -1,0 +1,238 @@
+//! The fit of a nonlinear model: to all that a campaign holds, each level as it was driven.
+//!
+//! The residuals are those of discovery, over their uncertainty, and so are the errors of sensors that go with them.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::answer::News;
+use qcar_runtime::discover::candidate::Workshop;
+use qcar_runtime::discover::posterior::{Explanation, Setting};
+use qcar_runtime::discover::{Evidence, select};
+use qcar_runtime::error::InputError;
+use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
+use qcar_runtime::model::About;
+use qcar_runtime::response::parameters::Values;
+use serde::Serialize;
+
+use super::{Arguments, Choices, files, plan, render};
+use crate::failure::{Failure, flag};
+use crate::files::put;
+use crate::json::{self, Ordered};
+use crate::progress::Showing;
+use crate::table::{Table, number};
+use crate::terminal::prose;
+use crate::verbs::Format;
+use crate::verbs::discover::{bench, left, of_parameters};
+
+/// A nonlinear model that was fitted to a campaign.
+struct Nonlinear {
+    campaign: Campaign,
+    model: String,
+    evidence: Evidence,
+    parameters: Vec<ParameterFit>,
+    explanation: Explanation,
+    seconds: f64,
+}
+
+/// Does it.
+pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, Failure> {
+    refuse_of_linear(&arguments.choices)?;
+    let fitted = fit(campaign, &arguments.choices)?;
+    if let Some(folder) = &arguments.out {
+        fitted.write(folder)?;
+    }
+    let text = match arguments.format {
+        Format::Text => prose(&fitted.text()),
+        Format::Json => fitted.json(),
+    };
+    if fitted.explanation.refit.stop.converged() {
+        Ok(text)
+    } else {
+        Err(Failure::Finding(text))
+    }
+}
+
+/// # Errors
+/// Flags that say how the cost of a linear fit is made.
+fn refuse_of_linear(choices: &Choices) -> Result<(), InputError> {
+    let expected = "a fit of a linear model";
+    let remedy = "leave it out: a nonlinear model is fitted to every sensor, from three starts";
+    let channels =
+        (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
+    let starts = choices
+        .starts
+        .map(|starts| flag("--starts", starts.to_string(), expected, remedy));
+    InputError::unless_empty(channels.into_iter().chain(starts).collect(), Some(()))
+}
+
+fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
+    let begun = Instant::now();
+    let bench = bench(&campaign, choices.model.as_deref())?;
+    let about = bench.model().about().clone();
+    let setting = of_parameters(&plan(&campaign, &about, choices)?.parameters, &campaign);
+    let showing = Showing::new();
+    showing.tell(format!("{}: reading", campaign.name));
+    let evidence = Evidence::from_campaign(&campaign, &about)?;
+    let told = |news: News<'_>| {
+        if let News::Doing(what) = news {
+            showing.tell(format!("{}: {what}", campaign.name));
+        }
+    };
+    let explanation = select::alone(Box::new(bench), &setting, &evidence, &told);
+    drop(showing);
+    let explanation =
+        explanation.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    campaign.notices.extend(evidence.notices.iter().cloned());
+    Ok(Nonlinear {
+        model: about.name.to_string(),
+        parameters: parameters(&about, &setting, &explanation),
+        evidence,
+        explanation,
+        seconds: begun.elapsed().as_secs_f64(),
+        campaign,
+    })
+}
+
+fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<ParameterFit> {
+    let refit = &of.refit;
+    let given: BTreeMap<String, f64> = setting.given.iter().map(|own| (own.name.clone(), own.value)).collect();
+    let start = Values::resolve(about, &given, &setting.vehicle).unwrap_or_else(|_| refit.values.clone());
+    let errors = refit.stderr();
+    let parameter = |(place, own): (usize, &qcar_runtime::model::Parameter)| {
+        let value = refit.values.as_slice()[place];
+        let free = refit.free.iter().position(|free| free.parameter == place);
+        let leader = refit.values.leader(place);
+        let at_bound = free.and_then(|free| match refit.at_bound[free] {
+            0 => None,
+            side if side < 0 => Some(Bound::Lower),
+            _ => Some(Bound::Upper),
+        });
+        let error = free.map(|free| errors[free]).filter(|error| error.is_finite());
+        let why = match (free, at_bound) {
+            _ if leader != place => NoError::Tied,
+            (None, _) => NoError::Known,
+            (_, Some(_)) => NoError::AtBound,
+            _ => NoError::NotSeen,
+        };
+        ParameterFit {
+            name: own.name.to_string(),
+            unit: own.unit.to_string(),
+            value,
+            start: start.as_slice()[place],
+            range: free
+                .map(|free| (refit.free[free].lower, refit.free[free].upper))
+                .or(own.range),
+            fitted: free.is_some(),
+            stderr: error,
+            relative_stderr: error.map(|error| error / value.abs()),
+            stderr_parts: None,
+            at_bound,
+            why_no_stderr: error.is_none().then_some(why),
+            tied_to: (leader != place).then(|| about.parameters[leader].name.to_string()),
+            curve: None,
+        }
+    };
+    about.parameters.iter().enumerate().map(parameter).collect()
+}
+
+/// As JSON.
+#[derive(Serialize)]
+struct Fitted<'a> {
+    campaign: &'a str,
+    model: &'a str,
+    parameters: Ordered<&'a ParameterFit>,
+    gap: Of<Option<f64>>,
+    left: Vec<Left>,
+    stopped: &'a str,
+    converged: bool,
+    evaluations: usize,
+    notices: &'a [String],
+    seconds: f64,
+}
+
+/// A value for the runs that were fitted, and one for those that no fit has seen.
+#[derive(Serialize)]
+struct Of<T> {
+    fit: T,
+    held_out: T,
+}
+
+/// What is left of a sensor in a kind of run.
+#[derive(Serialize)]
+struct Left {
+    channel: String,
+    kind: &'static str,
+    percent: f64,
+}
+
+impl Nonlinear {
+    fn json(&self) -> String {
+        let refit = &self.explanation.refit;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let named = self.parameters.iter().map(|own| (own.name.clone(), own));
+        json::line(&Fitted {
+            campaign: &self.campaign.name,
+            model: &self.model,
+            parameters: named.collect(),
+            gap: Of {
+                fit: finite(self.explanation.gap.fit),
+                held_out: finite(self.explanation.gap.held_out),
+            },
+            left: self.left(),
+            stopped: refit.stop.sentence(),
+            converged: refit.stop.converged(),
+            evaluations: refit.evaluations,
+            notices: &self.campaign.notices,
+            seconds: self.seconds,
+        })
+    }
+
+    fn left(&self) -> Vec<Left> {
+        let left = left::left(&self.evidence, [&self.explanation; 2]);
+        let own = |left: left::Left| Left {
+            channel: left.channel,
+            kind: left.kind,
+            percent: left.after_percent,
+        };
+        left.into_iter().map(own).collect()
+    }
+
+    fn text(&self) -> String {
+        let (refit, gap) = (&self.explanation.refit, &self.explanation.gap);
+        let ended = if refit.stop.converged() {
+            "converged"
+        } else {
+            "did not converge"
+        };
+        let mut out = format!(
+            "{} fitted to {}: {ended}, {}\nresidual over its uncertainty: {} of the fitted runs",
+            self.model,
+            self.campaign.name,
+            refit.stop.sentence(),
+            number(gap.fit, 3),
+        );
+        if gap.held_out.is_finite() {
+            out += &format!(", {} of those held out", number(gap.held_out, 3));
+        }
+        out += &format!("; {} evaluations\n", refit.evaluations);
+        out.extend(self.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
+        let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
+        for left in self.left() {
+            table.row(vec![left.channel, left.kind.into(), number(left.percent, 3)]);
+        }
+        format!("{out}\n{}\n{}", render::parameters(&self.parameters), table.text())
+    }
+
+    /// Writes values and the answer.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    fn write(&self, folder: &Path) -> Result<(), InputError> {
+        let values = files::parameters(&self.model, &self.campaign.name, &self.parameters);
+        put(folder, "parameters.toml", &values)?;
+        put(folder, "fit.json", &self.json())
+    }
+}
