@@ -27,6 +27,7 @@ pub mod report;
 pub use observation::{Level, Observation};
 pub use plan::{Plan, Weighting};
 pub use report::Fit;
+pub(crate) use search::starts;
 pub use setup::Setup;
 
 use crate::model::Model;

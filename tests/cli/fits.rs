@@ -3,6 +3,9 @@
 use std::fs;
 use std::path::Path;
 
+use qcar_blind::hidden::Hidden;
+use qcar_blind::programme::Programme;
+use qcar_blind::{Order, make};
 use qcar_runtime::campaign::Truth;
 use serde_json::Value;
 
@@ -33,6 +36,56 @@ fn what_is_kept_stays_and_says_so() {
     }
     assert_eq!(fit["starts"], 2);
     assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+}
+
+/// Friction as stiff as this has no linear stand-in at any level; the generator shares no code with what fits.
+#[test]
+fn a_nonlinear_model_is_fitted_to_its_truth() {
+    let folder = tempfile::tempdir().unwrap();
+    let [campaign, model] = ["campaign", "with_friction.axle"].map(|name| folder.path().join(name));
+    let order = Order {
+        cleats: false,
+        programme: Programme::fast(),
+        effects: vec![Hidden::new(
+            "coulomb_friction",
+            "damper",
+            &[("f_coulomb", 60.0), ("k_presliding", 600e3)],
+        )],
+        ..Order::clean("c", 2101)
+    };
+    make(order, &campaign).unwrap();
+    let [campaign, model] = [&campaign, &model].map(|path| path.to_str().unwrap());
+    succeeds(&[
+        "patch",
+        "axle_c",
+        "coulomb_friction",
+        "--at",
+        "damper",
+        "--params",
+        campaign,
+        "--out",
+        model,
+    ]);
+    let fit = fitted(&[campaign, "--model", model]);
+    assert_eq!(fit["converged"], true, "{fit}");
+    let truth = Truth::read(&Path::new(campaign).join("truth.toml")).unwrap();
+    let hidden = truth
+        .effects
+        .iter()
+        .flat_map(|effect| effect.parameters.iter().cloned());
+    let unseen = ["m_tm", "k_wheel_x", "c_wheel_x"];
+    let seen: Vec<_> = truth.parameters.iter().cloned().chain(hidden).collect();
+    for (name, truth) in seen.iter().filter(|(name, _)| !unseen.contains(&&**name)) {
+        let own = &fit["parameters"][name];
+        let [value, error] = ["value", "stderr"].map(|key| own[key].as_f64().unwrap_or(f64::NAN));
+        assert!(
+            (value - truth).abs() < 3.0 * error,
+            "{name}: {value} ± {error}, truth {truth}"
+        );
+        assert!(error < 0.1 * truth, "{name}: {value} ± {error}");
+    }
+    assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+    assert!(fit["gap"]["held_out"].as_f64() < Some(1.5), "{}", fit["gap"]);
 }
 
 /// The rig excites nothing along the road; a K&C curve does.

@@ -8,6 +8,8 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
+// where a model alone explains best,
+mod alone;
 // how probable each set is,
 mod verdict;
 // what law is missing where the catalogue has none,
@@ -25,6 +27,8 @@ use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
 use verdict::{Set, closed, is_missing, judged, predictive};
 use visible::visible;
+
+pub use alone::{Alone, Minimum, alone};
 
 use super::answer::{Discovery, Learned, News, Progress, Rival, Verdict, told};
 use super::candidate::{Candidate, Workshop};
@@ -83,29 +87,6 @@ pub fn discover(
         discovery.visible = visible(&alone.assembly, refit, &looks(&steady).fine);
     }
     Ok(discovery)
-}
-
-/// How well a model explains all runs, without a search for what it lacks: its parameters where the posterior is highest.
-///
-/// # Errors
-/// As [`discover`].
-pub fn alone(
-    workshop: Box<dyn Workshop>,
-    setting: &Setting,
-    evidence: &Evidence,
-    progress: Progress<'_>,
-) -> Result<Explanation, PredictError> {
-    if evidence.of_role(Role::Fit).next().is_none() {
-        return Err(PredictError::NothingToFit);
-    }
-    progress(News::Doing("searching from several starts"));
-    let base = base(Assembly::base(Arc::from(workshop), setting, evidence)?, evidence)?;
-    progress(News::Doing("searching to the end"));
-    let hypothesis = base.assembly.hypothesis();
-    let found = &base.explanation.refit;
-    let steady = looks(&evidence.less(&found.unsteady)).fine;
-    let refit = hypothesis.fit(&hypothesis.place(found), &steady, TO_THE_END)?;
-    hypothesis.explanation(refit, evidence)
 }
 
 /// True where a part of the set is an answer, and what the set has beyond that would be withdrawn.
@@ -214,8 +195,6 @@ fn tell(set: &Set, progress: Progress<'_>) {
 
 /// Searches for the base model: from the campaign's values, and from values spread over the ranges.
 const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
-/// Rounds and evaluations of a fit that is the answer itself.
-const TO_THE_END: (usize, usize) = (3, 60);
 const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The base model, fitted.

@@ -86,7 +86,7 @@ fn distinct(outcomes: &[Outcome]) -> Vec<Minimum> {
 
 /// The given start, then points spread over the bounds: evenly on a logarithmic scale where both ends are positive.
 /// A variable without finite bounds keeps its start value.
-fn starts(given: &[f64], bounds: &Bounds, count: usize, seed: u64) -> Vec<Vec<f64>> {
+pub(crate) fn starts(given: &[f64], bounds: &Bounds, count: usize, seed: u64) -> Vec<Vec<f64>> {
     let growth = growth(given.len());
     let spread = |j: usize, k: usize| {
         // The golden section of the seed moves the whole sequence and leaves its spread as it is.

@@ -7,10 +7,11 @@ use std::path::Path;
 use std::time::Instant;
 
 use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::News;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior::{Explanation, Setting};
-use qcar_runtime::discover::{Evidence, select};
+use qcar_runtime::discover::select::{self, Alone, Minimum};
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::model::About;
@@ -33,13 +34,14 @@ struct Nonlinear {
     model: String,
     evidence: Evidence,
     parameters: Vec<ParameterFit>,
-    explanation: Explanation,
+    starts: usize,
+    found: Alone,
     seconds: f64,
 }
 
 /// Does it.
 pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, Failure> {
-    refuse_of_linear(&arguments.choices)?;
+    refuse_channels(&arguments.choices)?;
     let fitted = fit(campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         fitted.write(folder)?;
@@ -48,7 +50,7 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
         Format::Text => prose(&fitted.text()),
         Format::Json => fitted.json(),
     };
-    if fitted.explanation.refit.stop.converged() {
+    if fitted.found.explanation.refit.stop.converged() {
         Ok(text)
     } else {
         Err(Failure::Finding(text))
@@ -56,23 +58,21 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 }
 
 /// # Errors
-/// Flags that say how the cost of a linear fit is made.
-fn refuse_of_linear(choices: &Choices) -> Result<(), InputError> {
-    let expected = "a fit of a linear model";
-    let remedy = "leave it out: a nonlinear model is fitted to every sensor, from three starts";
+/// Channels, which the cost of a linear fit is made of.
+fn refuse_channels(choices: &Choices) -> Result<(), InputError> {
+    let expected = "a linear model, whose cost is made of channels";
+    let remedy = "leave it out: a nonlinear model is fitted to what every sensor shows";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
-    let starts = choices
-        .starts
-        .map(|starts| flag("--starts", starts.to_string(), expected, remedy));
-    InputError::unless_empty(channels.into_iter().chain(starts).collect(), Some(()))
+    InputError::unless_empty(channels.into_iter().collect(), Some(()))
 }
 
 fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
     let begun = Instant::now();
     let bench = bench(&campaign, choices.model.as_deref())?;
     let about = bench.model().about().clone();
-    let setting = of_parameters(&plan(&campaign, &about, choices)?.parameters, &campaign);
+    let plan = plan(&campaign, &about, choices)?;
+    let setting = of_parameters(&plan.parameters, &campaign);
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(&campaign, &about)?;
@@ -81,16 +81,16 @@ fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> 
             showing.tell(format!("{}: {what}", campaign.name));
         }
     };
-    let explanation = select::alone(Box::new(bench), &setting, &evidence, &told);
+    let found = select::alone(Box::new(bench), &setting, &evidence, plan.starts, &told);
     drop(showing);
-    let explanation =
-        explanation.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
+    let found = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     campaign.notices.extend(evidence.notices.iter().cloned());
     Ok(Nonlinear {
         model: about.name.to_string(),
-        parameters: parameters(&about, &setting, &explanation),
+        parameters: parameters(&about, &setting, &found.explanation),
         evidence,
-        explanation,
+        starts: plan.starts,
+        found,
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
     })
@@ -110,7 +110,9 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
             side if side < 0 => Some(Bound::Lower),
             _ => Some(Bound::Upper),
         });
-        let error = free.map(|free| errors[free]).filter(|error| error.is_finite());
+        // What is not known better than that it lies evenly in its range is not seen.
+        let width = |free: usize| (refit.free[free].upper - refit.free[free].lower) / 12.0_f64.sqrt();
+        let error = free.filter(|&free| errors[free] < width(free)).map(|free| errors[free]);
         let why = match (free, at_bound) {
             _ if leader != place => NoError::Tied,
             (None, _) => NoError::Known,
@@ -148,7 +150,8 @@ struct Fitted<'a> {
     left: Vec<Left>,
     stopped: &'a str,
     converged: bool,
-    evaluations: usize,
+    starts: usize,
+    other_minima: Vec<Other<'a>>,
     notices: &'a [String],
     seconds: f64,
 }
@@ -158,6 +161,13 @@ struct Fitted<'a> {
 struct Of<T> {
     fit: T,
     held_out: T,
+}
+
+/// A minimum that is less probable than the answer.
+#[derive(Serialize)]
+struct Other<'a> {
+    log_odds: f64,
+    parameters: Ordered<&'a f64>,
 }
 
 /// What is left of a sensor in a kind of run.
@@ -170,7 +180,7 @@ struct Left {
 
 impl Nonlinear {
     fn json(&self) -> String {
-        let refit = &self.explanation.refit;
+        let refit = &self.found.explanation.refit;
         let finite = |value: f64| value.is_finite().then_some(value);
         let named = self.parameters.iter().map(|own| (own.name.clone(), own));
         json::line(&Fitted {
@@ -178,20 +188,31 @@ impl Nonlinear {
             model: &self.model,
             parameters: named.collect(),
             gap: Of {
-                fit: finite(self.explanation.gap.fit),
-                held_out: finite(self.explanation.gap.held_out),
+                fit: finite(self.found.explanation.gap.fit),
+                held_out: finite(self.found.explanation.gap.held_out),
             },
             left: self.left(),
             stopped: refit.stop.sentence(),
             converged: refit.stop.converged(),
-            evaluations: refit.evaluations,
+            starts: self.starts,
+            other_minima: self.found.others.iter().map(|own| self.other(own)).collect(),
             notices: &self.campaign.notices,
             seconds: self.seconds,
         })
     }
 
+    /// A minimum by the parameters that are fitted.
+    fn other<'a>(&self, of: &'a Minimum) -> Other<'a> {
+        let fitted = self.parameters.iter().filter(|own| own.fitted);
+        let value = |own: &ParameterFit| Some((own.name.clone(), of.named.get(&own.name)?));
+        Other {
+            log_odds: of.log_odds,
+            parameters: fitted.filter_map(value).collect(),
+        }
+    }
+
     fn left(&self) -> Vec<Left> {
-        let left = left::left(&self.evidence, [&self.explanation; 2]);
+        let left = left::left(&self.evidence, [&self.found.explanation; 2]);
         let own = |left: left::Left| Left {
             channel: left.channel,
             kind: left.kind,
@@ -201,7 +222,7 @@ impl Nonlinear {
     }
 
     fn text(&self) -> String {
-        let (refit, gap) = (&self.explanation.refit, &self.explanation.gap);
+        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.gap);
         let ended = if refit.stop.converged() {
             "converged"
         } else {
@@ -217,13 +238,26 @@ impl Nonlinear {
         if gap.held_out.is_finite() {
             out += &format!(", {} of those held out", number(gap.held_out, 3));
         }
-        out += &format!("; {} evaluations\n", refit.evaluations);
+        out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
         out.extend(self.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
         let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
         for left in self.left() {
             table.row(vec![left.channel, left.kind.into(), number(left.percent, 3)]);
         }
         format!("{out}\n{}\n{}", render::parameters(&self.parameters), table.text())
+    }
+
+    fn other_minima(&self) -> String {
+        match &self.found.others[..] {
+            [] => "which met no other minimum".into(),
+            [next, others @ ..] => {
+                let odds = number(next.log_odds, 2);
+                format!(
+                    "which met {} other minima, against the next of which the log odds are {odds}",
+                    1 + others.len()
+                )
+            }
+        }
     }
 
     /// Writes values and the answer.

@@ -1,0 +1,136 @@
+//! A model alone, without a search for what it lacks: where in its ranges it explains the runs best, and where almost as well.
+
+use std::collections::BTreeMap;
+
+use rayon::prelude::*;
+
+use super::assembly::{Assembly, Hypothesis, Place};
+use super::{looks, race::Fidelity};
+use crate::campaign::Role;
+use crate::discover::answer::{News, Progress};
+use crate::discover::candidate::Workshop;
+use crate::discover::observe::{Evidence, PredictError};
+use crate::discover::posterior::{Explanation, Given, Refit, Setting};
+use crate::fit::starts;
+use crate::least_squares::Bounds;
+
+/// Rounds and evaluations of each search: of all starts, of the best half of them, and of the minima that are left.
+const SEARCHES: [(usize, usize); 3] = [(1, 8), (1, 30), (2, 30)];
+/// Of the answer.
+const TO_THE_END: (usize, usize) = (3, 60);
+/// Searches have met the same minimum where the logarithms of its evidence differ by less: odds of less than three to one.
+const SAME: f64 = 1.0;
+
+/// The best explanation by a model, and its other minima.
+pub struct Alone {
+    /// Where the posterior is highest.
+    pub explanation: Explanation,
+    /// Other minima, the most probable first.
+    pub others: Vec<Minimum>,
+}
+
+/// A place where searches have ended, and which is less probable than the best.
+pub struct Minimum {
+    /// Logarithm of the odds against it.
+    pub log_odds: f64,
+    /// The parameters there by name.
+    pub named: BTreeMap<String, f64>,
+}
+
+/// Fits a model to all runs: from the values that are given, and from others all over the ranges.
+///
+/// # Errors
+/// Where the model lacks what was measured, a parameter has no value, or nothing is to be fitted.
+pub fn alone(
+    workshop: Box<dyn Workshop>,
+    setting: &Setting,
+    evidence: &Evidence,
+    count: usize,
+    progress: Progress<'_>,
+) -> Result<Alone, PredictError> {
+    if evidence.of_role(Role::Fit).next().is_none() {
+        return Err(PredictError::NothingToFit);
+    }
+    let assembly = Assembly::base(workshop.into(), setting, evidence)?;
+    let (hypothesis, looks) = (assembly.hypothesis(), looks(evidence));
+    progress(News::Doing(&format!("searching from {count} starts")));
+    let minima = minima(&hypothesis, spread(assembly.given(), count), &looks)?;
+    progress(News::Doing("searching to the end"));
+    let best = hypothesis.fit(&hypothesis.place(&minima[0]), &looks.fine, SEARCHES[2])?;
+    let settled = hypothesis.explanation(best, evidence)?.refit;
+    // What sweeps show beyond steady harmonics is taken off what was measured, which the steady harmonics then are held against.
+    let steady = super::looks(&evidence.less(&settled.unsteady)).fine;
+    let refit = hypothesis.fit(&hypothesis.place(&settled), &steady, TO_THE_END)?;
+    let other = |other: &Refit| Minimum {
+        log_odds: minima[0].log_evidence - other.log_evidence,
+        named: hypothesis.place(other).named,
+    };
+    Ok(Alone {
+        explanation: hypothesis.explanation(refit, evidence)?,
+        others: minima[1..].iter().map(other).collect(),
+    })
+}
+
+/// Different minima, the most probable first.
+fn minima(
+    hypothesis: &Hypothesis<'_>,
+    from: Vec<BTreeMap<String, f64>>,
+    looks: &Fidelity,
+) -> Result<Vec<Refit>, PredictError> {
+    let places = from.into_iter().map(|named| Place {
+        named,
+        ..Place::given(&looks.coarse)
+    });
+    let mut found = searched(hypothesis, places.collect(), &looks.coarse, SEARCHES[0])?;
+    found.truncate(found.len().div_ceil(2));
+    let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
+    let found = different(searched(hypothesis, places, &looks.coarse, SEARCHES[1])?);
+    let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
+    Ok(different(searched(hypothesis, places, &looks.medium, SEARCHES[2])?))
+}
+
+/// Where searches from these places end, the most probable first.
+fn searched(
+    hypothesis: &Hypothesis<'_>,
+    places: Vec<Place>,
+    evidence: &Evidence,
+    budget: (usize, usize),
+) -> Result<Vec<Refit>, PredictError> {
+    let fits = places.par_iter().map(|place| hypothesis.fit(place, evidence, budget));
+    let mut refusal = PredictError::NoNumber;
+    let mut found = Vec::new();
+    for fit in fits.collect::<Vec<_>>() {
+        match fit {
+            Ok(refit) if refit.log_evidence.is_finite() => found.push(refit),
+            Ok(_) => (),
+            // What cannot be predicted from one start may be from another.
+            Err(error) => refusal = error,
+        }
+    }
+    found.sort_by(|a, b| b.log_evidence.total_cmp(&a.log_evidence));
+    if found.is_empty() { Err(refusal) } else { Ok(found) }
+}
+
+/// Each minimum once.
+fn different(sorted: Vec<Refit>) -> Vec<Refit> {
+    let mut different: Vec<Refit> = Vec::new();
+    for refit in sorted {
+        let last = different.last();
+        if last.is_none_or(|last| last.log_evidence - refit.log_evidence > SAME) {
+            different.push(refit);
+        }
+    }
+    different
+}
+
+/// The values that are given, and others all over the ranges.
+fn spread(given: &[Given], count: usize) -> Vec<BTreeMap<String, f64>> {
+    let free: Vec<(&Given, (f64, f64))> = given.iter().filter_map(|own| Some((own, own.range?))).collect();
+    let bounds = Bounds {
+        lower: free.iter().map(|(_, range)| range.0).collect(),
+        upper: free.iter().map(|(_, range)| range.1).collect(),
+    };
+    let values: Vec<f64> = free.iter().map(|(own, _)| own.value).collect();
+    let named = |x: Vec<f64>| free.iter().map(|(own, _)| own.name.clone()).zip(x).collect();
+    starts(&values, &bounds, count, 0).into_iter().map(named).collect()
+}
