@@ -39,7 +39,7 @@ const RIGID: f64 = 0.01;
 const STILL: f64 = 1e-6;
 
 /// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
-pub fn modes(model: &dyn Model, values: &Values) -> Vec<Mode> {
+pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values);
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
     // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
@@ -98,7 +98,7 @@ fn likeness(first: &Mode, second: &Mode) -> f64 {
 }
 
 /// A at rest.
-fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
+fn dynamics(model: &(impl Model + ?Sized), values: &Values) -> DMatrix<f64> {
     let about = model.about();
     let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
     let mut nonzeros = vec![0.0; about.matrices.len()];
@@ -112,7 +112,7 @@ fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
     a
 }
 
-fn mode(model: &dyn Model, a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
+fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
     let vector = eigenvector(a, root);
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
