@@ -53,22 +53,30 @@ pub trait Model: Send + Sync {
 
     /// [`Model::prepare`] of several parameter sets at once, each row one value of all of them.
     fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
-        one_by_one([p, &[], &[]], constants, |p, _, _, constants| self.prepare(p, constants));
+        one_by_one([p, &[], &[]], constants, |p, _, _, constants| {
+            self.prepare(p, constants)
+        });
     }
 
     /// [`Model::derivative`] of several prepared parameter sets, each at a state and input of its own.
     fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
-        one_by_one([constants, x, u], dx, |constants, x, u, dx| self.derivative(constants, x, u, dx));
+        one_by_one([constants, x, u], dx, |constants, x, u, dx| {
+            self.derivative(constants, x, u, dx)
+        });
     }
 
     /// [`Model::matrices`] of several parameter sets, each at a state and input of its own. The bits are the same.
     fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
-        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| self.matrices(p, x, u, nonzeros));
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.matrices(p, x, u, nonzeros)
+        });
     }
 
     /// [`Model::sensitivities`] of several parameter sets, each at a state and input of its own.
     fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
-        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| self.sensitivities(p, x, u, nonzeros));
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.sensitivities(p, x, u, nonzeros)
+        });
     }
 
     /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.

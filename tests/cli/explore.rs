@@ -65,7 +65,7 @@ fn parts_make_the_rows_of_the_whole() {
         let line = format!("{AXLE} --design {design} --metrics peak,modes --rides 20mm@30km/h,30mm@20km/h");
         let kind = design.split(' ').next().unwrap();
         let whole = written(folder.path(), &line, &format!("{kind}.csv"));
-        let mut joined = Vec::new();
+        let mut joined: Vec<u8> = Vec::new();
         for part in 1..=4 {
             let text = written(
                 folder.path(),

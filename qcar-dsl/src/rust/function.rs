@@ -18,7 +18,10 @@ pub fn functions(compiled: &Compiled) -> Vec<String> {
         false => Width::One,
     });
     let mut widths: Vec<Width> = widths.collect();
-    let sets = straight.functions("").into_iter().filter(|own| SETS.contains(&own.name.as_str()));
+    let sets = straight
+        .functions("")
+        .into_iter()
+        .filter(|own| SETS.contains(&own.name.as_str()));
     functions.extend(sets.map(of_sets));
     widths.resize(functions.len(), Width::Sets);
     let all = functions.iter().zip(widths);
@@ -30,7 +33,10 @@ const SETS: [&str; 4] = ["prepare", "derivative", "matrices", "sensitivities"];
 
 fn of_sets(function: Function) -> Function {
     Function {
-        doc: format!("[`{}`] of several parameter sets at once, each with its own state and input.", function.name),
+        doc: format!(
+            "[`{}`] of several parameter sets at once, each with its own state and input.",
+            function.name
+        ),
         name: format!("{}_sets", function.name),
         ..function
     }
@@ -135,12 +141,7 @@ fn caller(signature: &Signature, cut: &Pieces) -> String {
         .iter()
         .map(|(name, kind)| format!("{name}: {kind}"))
         .collect();
-    text += &heading(
-        &signature.function.name,
-        arguments,
-        wide,
-        cut.program.outputs.len(),
-    );
+    text += &heading(&signature.function.name, arguments, wide, cut.program.outputs.len());
     text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
         text += &format!(
@@ -242,7 +243,11 @@ impl<'a> Printer<'a> {
             .into_iter()
             .partition(|(local, _)| self.signature.width.varies(local.argument));
         let read = |(local, value): &(Local, Value)| {
-            let line = if self.signature.width.varies(local.argument) { self.line() } else { "" };
+            let line = if self.signature.width.varies(local.argument) {
+                self.line()
+            } else {
+                ""
+            };
             format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
         };
         let once: Vec<String> = once.iter().map(read).collect();

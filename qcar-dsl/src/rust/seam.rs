@@ -111,7 +111,11 @@ pub fn sets(about: &About) -> String {
         ("prepare", of_p().collect(), about.constants),
         ("derivative", prepared.chain(point).collect(), about.states.len()),
         ("matrices", of_p().chain(point).collect(), about.matrices.len()),
-        ("sensitivities", of_p().chain(point).collect(), about.sensitivities.len()),
+        (
+            "sensitivities",
+            of_p().chain(point).collect(),
+            about.sensitivities.len(),
+        ),
     ];
     let written = functions.iter().map(|(function, arguments, rows)| {
         let fields = arguments.iter().map(|(_, size)| format!("&'a [seam::Lanes; {size}]"));

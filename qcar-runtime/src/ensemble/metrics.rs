@@ -3,9 +3,9 @@
 use thiserror::Error;
 
 use crate::campaign::RoleNames;
-use crate::compare::{Alignment, CompareError, Errors, Weighting, Windows, vibration_dose};
+use crate::compare::{Alignment, CompareError, Weighting, Windows, sizes};
 use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
-use crate::modes::modes;
+use crate::modes;
 use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::ratio::between;
@@ -166,20 +166,32 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
             return Ok(Vec::new());
         };
         let onset = Alignment::at_peak(record(first), record(first))?.onset;
-        let alignment = Alignment { onset, delay: 0 };
-        let errors =
-            |own: &Acceleration| Errors::between(record(own), record(own), &alignment, rate, &Windows::default());
-        let errors = self.accelerations.iter().map(errors).collect::<Result<Vec<_>, _>>()?;
-        let dose = |own: &Acceleration| vibration_dose(&own.weighting.apply(record(own), rate), rate);
+        let sizes = |own: &Acceleration| sizes(record(own), onset, rate, &Windows::default());
+        let sizes = self.accelerations.iter().map(sizes).collect::<Result<Vec<_>, _>>()?;
         let of = |metric: &Metric| -> Vec<f64> {
             match metric {
-                Metric::Peak => errors.iter().map(|own| own.peaks[1]).collect(),
-                Metric::AfterShake => errors.iter().map(|own| own.after_shakes[1]).collect(),
-                Metric::Dose => self.accelerations.iter().map(dose).collect(),
+                Metric::Peak => sizes.iter().map(|[peak, _]| *peak).collect(),
+                Metric::AfterShake => sizes.iter().map(|[_, after_shake]| *after_shake).collect(),
+                Metric::Dose => self.doses(ride, rate),
                 Metric::Transmissibility | Metric::Modes => Vec::new(),
             }
         };
         Ok(self.chosen.iter().flat_map(of).collect())
+    }
+
+    /// The dose of each acceleration; those with one weighting are weighted in step.
+    fn doses(&self, ride: &Ride, rate: f64) -> Vec<f64> {
+        let mut doses = vec![0.0; self.accelerations.len()];
+        for weighting in [Weighting::Wk, Weighting::Wd] {
+            let all = self.accelerations.iter().enumerate();
+            let own: Vec<_> = all.filter(|(_, own)| own.weighting == weighting).collect();
+            let records: Vec<&[f64]> = own.iter().map(|(_, own)| ride.outputs[own.output].as_slice()).collect();
+            let found = weighting.doses(&records, rate);
+            own.iter()
+                .zip(found)
+                .for_each(|((place, _), dose)| doses[*place] = dose);
+        }
+        doses
     }
 
     /// The summit of each ratio, one response serving all that it drives.
@@ -220,8 +232,8 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
     }
 
     fn modes(&self, values: &Values) -> Vec<f64> {
-        let found = modes(self.model, values);
-        let mut numbers: Vec<f64> = found.iter().flat_map(|mode| [mode.frequency, mode.damping]).collect();
+        let found = modes::frequencies(self.model, values).into_iter();
+        let mut numbers: Vec<f64> = found.flat_map(|(frequency, damping)| [frequency, damping]).collect();
         numbers.resize(2 * most_modes(self.model.about()), f64::NAN);
         numbers
     }

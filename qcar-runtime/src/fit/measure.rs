@@ -71,7 +71,12 @@ fn level(
         .iter()
         .map(|(channel, _)| (place(&channel.denominator), place(&channel.numerator)))
         .collect();
-    let related = Related::new(&history, &reference, pairs.iter().flat_map(|(from, to)| [from, to]), options)?;
+    let related = Related::new(
+        &history,
+        &reference,
+        pairs.iter().flat_map(|(from, to)| [from, to]),
+        options,
+    )?;
     let ratios = pairs.iter().map(|pair| related.ratio(&history, pair));
     let differences = differences(&history, &reference, &pairs, (&related, options))?;
     sides_agree(&history, &reference, &pairs, &differences)?;
@@ -255,7 +260,9 @@ fn differences(
             continue;
         }
         let one = |dropped: Side| {
-            let wanted = doubled.iter().filter(|point| pairs.iter().any(|(from, to)| [from, to].contains(point)));
+            let wanted = doubled
+                .iter()
+                .filter(|point| pairs.iter().any(|(from, to)| [from, to].contains(point)));
             Related::new(&without(history, &doubled, dropped), reference, wanted, options)
         };
         let (first, second) = (one(sides[1])?, one(sides[0])?);
