@@ -131,13 +131,17 @@ impl Pair {
         sets_equal(&constants, [&ps, &[], &[]], |[p, _, _], to| alone.prepare(p, to));
         let mut rates = vec![[0.0; LANES]; about.states.len()];
         sets.derivative_sets(&constants, &xs, &us, &mut rates);
-        sets_equal(&rates, [&constants, &xs, &us], |[c, x, u], to| alone.derivative(c, x, u, to));
+        sets_equal(&rates, [&constants, &xs, &us], |[c, x, u], to| {
+            alone.derivative(c, x, u, to)
+        });
         let mut matrices = vec![[0.0; LANES]; about.matrices.len()];
         sets.matrices_sets(&ps, &xs, &us, &mut matrices);
         sets_equal(&matrices, [&ps, &xs, &us], |[p, x, u], to| alone.matrices(p, x, u, to));
         let mut sensitivities = vec![[0.0; LANES]; about.sensitivities.len()];
         sets.sensitivities_sets(&ps, &xs, &us, &mut sensitivities);
-        sets_equal(&sensitivities, [&ps, &xs, &us], |[p, x, u], to| alone.sensitivities(p, x, u, to));
+        sets_equal(&sensitivities, [&ps, &xs, &us], |[p, x, u], to| {
+            alone.sensitivities(p, x, u, to)
+        });
     }
 
     /// Thirty-five points: whole blocks and a rest. Generated code sees one after the other.
