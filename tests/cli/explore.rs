@@ -174,7 +174,7 @@ fn results_of_something_else_are_refused() {
         &run(&format!("{CAR} --count 9")),
         &["`rows` is 8", "`rows` is 9", "choose another file"],
     );
-    refused(&run(&format!("{line} --set m_corner=400")), &["`parameters`"]);
+    refused(&run(&format!("{line} --set m_corner=410")), &["`parameters`"]);
     refused(&run(&format!("{line} --units engineering")), &["`columns`"]);
     // A row that this command would not have written, at the end of those that it had.
     let [done, part] = ["sets.csv", "sets.csv.part"].map(|name| folder.path().join(name));
