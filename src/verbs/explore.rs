@@ -144,7 +144,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         part: arguments.part,
         program: &program,
     };
-    Ok(filled::fill(&ensemble, &choice, &arguments.out)?)
+    filled::fill(&ensemble, &choice, &arguments.out)
 }
 
 /// # Errors
@@ -268,6 +268,7 @@ fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
         return Ok(None);
     }
     let rides = over::rides(&arguments.rides)?;
+    vary::refuse_facts(&arguments.vary)?;
     let Some(file) = &arguments.model.params else {
         let remedy = "add --params with a campaign, or a file that has [vehicle]";
         return Err(flag(

@@ -231,6 +231,11 @@ fn wishes_are_read_with_care() {
         refused(&ran, said);
         assert!(!folder.path().join("sets.csv.part").exists(), "{wish}");
     }
+    let tyre = format!("{AXLE} --vary static_tire_load=-5%..5% --count 2 --rides 20mm@30km/h --out sets.csv");
+    refused(
+        &run_line(folder.path(), &tyre),
+        &["--vary static_tire_load", "a fact of the vehicle with --rides"],
+    );
     let other = run_line(folder.path(), &format!("{CAR} --count 2 --out sets.txt"));
     refused(&other, &["sets.txt", ".parquet"]);
     let nowhere = run_line(
@@ -254,6 +259,29 @@ fn sets_that_are_impossible_have_rows_without_metrics() {
     assert_eq!(column(&table, "failed"), [0.0, 0.0, 1.0]);
     let frequency = column(&table, "mode_1_frequency [Hz]");
     assert!(frequency[0] > 0.0 && frequency[2].is_nan());
+}
+
+/// So fast that a sample is longer than the patch: every row is there, and the exit status says that none has metrics.
+#[test]
+fn a_design_without_any_metrics_is_a_finding() {
+    let folder = repository();
+    let ran = run_line(
+        folder.path(),
+        &format!("{AXLE} --count 2 --rides 20mm@300km/h --out rides.csv"),
+    );
+    assert_eq!(ran.status, 1, "{}{}", ran.stdout, ran.stderr);
+    assert!(
+        ran.stdout.contains("2 rows") && ran.stdout.contains("sample rate"),
+        "{}",
+        ran.stdout
+    );
+    assert_eq!(
+        fs::read_to_string(folder.path().join("rides.csv"))
+            .unwrap()
+            .lines()
+            .count(),
+        3
+    );
 }
 
 /// Natural frequencies and damping ratios are roots of `|λ²M + λC + K|` of two masses on springs and dampers.

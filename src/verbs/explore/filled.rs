@@ -8,6 +8,7 @@ use qcar_runtime::model::Model;
 
 use super::ledger::{Choice, Ledger, Standing};
 use super::sink::{Kept, Sink, unfinished};
+use crate::failure::Failure;
 use crate::interruption;
 use crate::progress::Showing;
 use crate::units;
@@ -25,12 +26,12 @@ struct Failed {
 /// Writes all rows of a part that are not there yet, and says what is there then.
 ///
 /// # Errors
-/// Results of something else under that name, and a place that cannot be written to.
+/// Results of something else under that name, and a place that cannot be written to; a finding where no row has metrics.
 pub(super) fn fill<M: Model + ?Sized>(
     ensemble: &Ensemble<'_, M>,
     choice: &Choice,
     path: &Path,
-) -> Result<String, InputError> {
+) -> Result<String, Failure> {
     let columns = ensemble.columns();
     let headings: Vec<String> = columns.iter().map(|own| units::heading(&own.name, &own.unit)).collect();
     let sets = choice.part.sets(ensemble.design.count().unwrap_or(u64::MAX));
@@ -54,7 +55,7 @@ pub(super) fn fill<M: Model + ?Sized>(
     ));
     let (mut sink, kept) = Sink::open(path, &headings, &ledger.text(), |row| (sets.start + row / each) as f64)?;
     if kept.rows > rows {
-        return Err(not_ours(path, "more rows than there are"));
+        return Err(not_ours(path, "more rows than there are").into());
     }
     // The set of the last row is computed again: a row that this program would not have written is seen there.
     let from = sets.start + kept.rows.saturating_sub(1) / each;
@@ -66,7 +67,11 @@ pub(super) fn fill<M: Model + ?Sized>(
         path,
     )?;
     sink.finish()?;
-    Ok(said + &notes(&failed, &kept))
+    let said = said + &notes(&failed, &kept);
+    match failed.rows as u64 == rows && rows > 0 {
+        true => Err(Failure::Finding(said)),
+        false => Ok(said),
+    }
 }
 
 fn write<M: Model + ?Sized>(

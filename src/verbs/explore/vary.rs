@@ -89,6 +89,24 @@ pub(super) fn axes(about: &About, values: &Values, wanted: &[Vary]) -> Result<Ve
     InputError::unless_empty(problems, Some(axes))
 }
 
+/// Facts of the vehicle that make the tyre and its load.
+const OF_TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
+
+/// Refuses what the tyre of all sets is made of.
+///
+/// # Errors
+/// A fact of the vehicle that varies.
+pub(super) fn refuse_facts(wanted: &[Vary]) -> Result<(), Problem> {
+    match wanted.iter().find(|own| OF_TYRE.contains(&own.name.as_str())) {
+        None => Ok(()),
+        Some(own) => {
+            let remedy = "vary it without --rides, or explore once for each of its values";
+            let expected = "a parameter that the rolling tyre does not stand on";
+            Err(wrong(own, "a fact of the vehicle with --rides", expected, remedy))
+        }
+    }
+}
+
 fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>> {
     let place = about
         .parameters
