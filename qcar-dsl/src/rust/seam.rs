@@ -104,23 +104,20 @@ impl Block<{rows}> for {name}<'_> {{
 
 /// The functions of several parameter sets, of which the runtime compiles each once for each instruction set.
 pub fn sets(about: &About) -> String {
-    let point = [("x", "STATES"), ("u", "INPUTS")];
-    let of_p = || std::iter::once(("p", "PARAMETERS"));
-    let prepared = std::iter::once(("constants", "CONSTANTS"));
-    let functions: [(&str, Vec<(&str, &str)>, usize); 4] = [
-        ("prepare", of_p().collect(), about.constants),
-        ("derivative", prepared.chain(point).collect(), about.states.len()),
-        ("matrices", of_p().chain(point).collect(), about.matrices.len()),
+    let functions: [(&str, &[&str], usize); 4] = [
+        ("prepare", &["PARAMETERS"], about.constants),
+        ("derivative", &["CONSTANTS", "STATES", "INPUTS"], about.states.len()),
+        ("matrices", &["PARAMETERS", "STATES", "INPUTS"], about.matrices.len()),
         (
             "sensitivities",
-            of_p().chain(point).collect(),
+            &["PARAMETERS", "STATES", "INPUTS"],
             about.sensitivities.len(),
         ),
     ];
-    let written = functions.iter().map(|(function, arguments, rows)| {
-        let fields = arguments.iter().map(|(_, size)| format!("&'a [seam::Lanes; {size}]"));
+    let written = functions.iter().map(|(function, sizes, rows)| {
+        let fields = sizes.iter().map(|size| format!("&'a [seam::Lanes; {size}]"));
         let fields: Vec<String> = fields.collect();
-        let taken: Vec<String> = (0..arguments.len()).map(|place| format!("self.{place}")).collect();
+        let taken: Vec<String> = (0..sizes.len()).map(|place| format!("self.{place}")).collect();
         format!(
             "
 struct {name}<'a>({fields});
