@@ -21,12 +21,14 @@ mod vary;
 mod over;
 // On which of several machines.
 mod part;
-// Rows that are written,
-mod sink;
+// Rows that were written before a run was stopped,
+mod kept;
 // as text
 mod csv;
-// or in groups.
+// or in groups,
 mod grouped;
+// and where all of them go.
+mod sink;
 // What they are of.
 mod ledger;
 // All rows, one block after another.

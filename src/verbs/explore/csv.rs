@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 
-use super::sink::Kept;
+use super::kept::Kept;
 
 /// A table that grows line by line.
 pub(super) struct Csv {

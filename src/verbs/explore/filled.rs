@@ -6,8 +6,9 @@ use qcar_runtime::ensemble::{Column, Ensemble, Rows};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
+use super::kept::Kept;
 use super::ledger::{Choice, Ledger, Standing};
-use super::sink::{Kept, Sink, unfinished};
+use super::sink::{Sink, unfinished};
 use crate::failure::Failure;
 use crate::interruption;
 use crate::progress::Showing;

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufWriter, Read, Seek, SeekFrom, Write};
 
-use super::sink::Kept;
+use super::kept::Kept;
 use crate::parquet::{GROUP, MAGIC, Shape};
 
 /// A table that grows group by group.

@@ -8,17 +8,9 @@ use qcar_runtime::error::{InputError, Place, Problem};
 
 use super::csv::Csv;
 use super::grouped::Grouped;
+use super::kept::Kept;
 use crate::files::finish;
 use crate::parquet::Shape;
-
-/// What is there already.
-#[derive(Default)]
-pub(super) struct Kept {
-    /// Whole rows.
-    pub rows: u64,
-    /// The last of them.
-    pub last: Option<Vec<f64>>,
-}
 
 /// A table that grows.
 pub(super) struct Sink {
