@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use qcar_runtime::ensemble::{self, Axis, DIMENSIONS, Design, Ensemble, Metrics, POINTS, Posterior, Scheme, Track};
-use qcar_runtime::error::{InputError, Problem};
+use qcar_runtime::error::InputError;
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Variant, tyre_of};
@@ -151,7 +151,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 /// # Errors
 /// A posterior of another model.
-fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) -> Result<(), Problem> {
+fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) -> Result<(), InputError> {
     match (fitted, &arguments.posterior) {
         (Some(fitted), Some(file)) if *fitted != *about.name => {
             let found = format!("{}, a fit of model `{fitted}`", file.display());
@@ -161,7 +161,8 @@ fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) 
                 found,
                 &expected,
                 "name the model that was fitted, or another fit",
-            ))
+            )
+            .into())
         }
         _ => Ok(()),
     }
@@ -225,7 +226,7 @@ fn design(
 
 /// # Errors
 /// More sets than are told apart, and more parameters than Sobol's sequence has dimensions.
-fn check_size(scheme: &Scheme, axes: usize) -> Result<(), Problem> {
+fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
     // Whole numbers up to here are exact in a column of numbers.
     const MOST: u64 = 1 << 53;
     let count = match scheme {
@@ -236,17 +237,12 @@ fn check_size(scheme: &Scheme, axes: usize) -> Result<(), Problem> {
     let most = if sobol { POINTS } else { MOST };
     if count > most {
         let expected = format!("at most {most} sets");
-        return Err(flag(
-            "--count",
-            format!("{count} sets"),
-            &expected,
-            "take a smaller number",
-        ));
+        return Err(flag("--count", format!("{count} sets"), &expected, "take a smaller number").into());
     }
     if sobol && axes > DIMENSIONS {
         let expected = format!("at most {DIMENSIONS} parameters for Sobol's sequence");
         let remedy = "vary fewer, or take --design lhs";
-        return Err(flag("--vary", format!("{axes} parameters"), &expected, remedy));
+        return Err(flag("--vary", format!("{axes} parameters"), &expected, remedy).into());
     }
     Ok(())
 }

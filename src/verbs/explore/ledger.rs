@@ -27,14 +27,22 @@ pub(super) struct Ledger {
     seed: u64,
     /// Ends of what varies; of a posterior its ranges.
     varied: Ordered<(f64, f64)>,
-    /// Values and standard errors of a posterior, and a draw, which tells its correlations.
-    posterior: Option<(Vec<(f64, f64)>, Vec<f64>)>,
+    posterior: Option<Drawn>,
     rides: Vec<(f64, f64)>,
     /// Radius and static deflection of the tyre, and the load on it.
     tyre: Option<[f64; 3]>,
     part: String,
     pub rows: u64,
     columns: Vec<String>,
+}
+
+/// What a posterior is.
+#[derive(Serialize)]
+struct Drawn {
+    /// Values and standard errors.
+    estimates: Vec<(f64, f64)>,
+    /// The first draw, which tells its correlations.
+    first: Vec<f64>,
 }
 
 /// Whether there is something to be done.
@@ -152,9 +160,12 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
     Err(Problem::new(file, Place::File, found, expected, remedy).into())
 }
 
-fn posterior(design: &Design) -> Option<(Vec<(f64, f64)>, Vec<f64>)> {
+fn posterior(design: &Design) -> Option<Drawn> {
     let estimates = design.posterior()?.estimates().iter();
-    Some((estimates.map(|own| (own.value, own.stderr)).collect(), design.set(0)))
+    Some(Drawn {
+        estimates: estimates.map(|own| (own.value, own.stderr)).collect(),
+        first: design.set(0),
+    })
 }
 
 /// FNV-1a of 64 bits (Fowler, Noll and Vo).

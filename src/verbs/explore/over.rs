@@ -3,7 +3,7 @@
 use std::str::FromStr;
 
 use qcar_runtime::campaign::Declared;
-use qcar_runtime::error::Problem;
+use qcar_runtime::error::InputError;
 use qcar_runtime::simulate::Standard;
 
 use crate::failure::flag;
@@ -40,7 +40,7 @@ impl FromStr for Over {
 ///
 /// # Errors
 /// A height that makes no cleat.
-pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, Problem> {
+pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, InputError> {
     let mut rides = Vec::new();
     for own in wanted {
         match own {

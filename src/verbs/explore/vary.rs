@@ -96,13 +96,13 @@ const OF_TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 ///
 /// # Errors
 /// A fact of the vehicle that varies.
-pub(super) fn refuse_facts(wanted: &[Vary]) -> Result<(), Problem> {
+pub(super) fn refuse_facts(wanted: &[Vary]) -> Result<(), InputError> {
     match wanted.iter().find(|own| OF_TYRE.contains(&own.name.as_str())) {
         None => Ok(()),
         Some(own) => {
             let remedy = "vary it without --rides, or explore once for each of its values";
             let expected = "a parameter that the rolling tyre does not stand on";
-            Err(wrong(own, "a fact of the vehicle with --rides", expected, remedy))
+            Err(wrong(own, "a fact of the vehicle with --rides", expected, remedy).into())
         }
     }
 }
