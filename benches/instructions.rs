@@ -39,7 +39,10 @@ library_benchmark_group!(
 );
 
 /// The counting itself.
-#[allow(clippy::disallowed_methods, reason = "the macro of gungraun ends the process of a bench")]
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the macro of gungraun ends the process of a bench"
+)]
 mod counted {
     use super::models;
     gungraun::main!(library_benchmark_groups = models);

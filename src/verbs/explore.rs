@@ -44,7 +44,7 @@ use vary::Vary;
 /// A row is a parameter set and a ride: its number, what varies, and the metrics. Rows come in the order of the design and are the
 /// same whatever the number of threads. A command that was stopped goes on where it is repeated: rows stand in FILE.part until
 /// all of them are there, and FILE.design.json says what they are of.
-/// Rides need [vehicle] with r_tire, static_tire_def and static_tire_load in the file or campaign of --params.
+/// Rides need r_tire, static_tire_def and static_tire_load, facts of the vehicle, in the file or campaign of --params.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar explore quarter_car --vary k_tire=180..220N/mm --vary m_wheel=-10%..10% --count 1000 --out sets.csv\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --vary c_wheel_z=-30%..30% --count 16 --rides 20mm@30km/h,standard --out rides.parquet\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --design grid --count 5 --metrics modes --part 2/4 --out part-2.csv"
