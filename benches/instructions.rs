@@ -10,7 +10,7 @@ mod subject;
 use gungraun::{library_benchmark, library_benchmark_group};
 use std::hint::black_box;
 use std::process::{Command, Stdio};
-use subject::Subject;
+use subject::{Sets, Subject};
 
 #[library_benchmark]
 #[bench::axle_d(Subject::new())]
@@ -20,15 +20,29 @@ fn matrices_and_jacobians(mut subject: Subject) -> Subject {
 }
 
 #[library_benchmark]
+#[bench::axle_d(Sets::new())]
+fn matrices_and_jacobians_of_eight_sets(mut sets: Sets) -> Sets {
+    black_box(&mut sets).linearise();
+    sets
+}
+
+#[library_benchmark]
 #[bench::axle_d(Subject::new())]
 fn response_and_jacobian(mut subject: Subject) -> Subject {
     black_box(&mut subject).respond();
     subject
 }
 
-library_benchmark_group!(name = models; benchmarks = matrices_and_jacobians, response_and_jacobian);
+library_benchmark_group!(
+    name = models;
+    benchmarks = matrices_and_jacobians, matrices_and_jacobians_of_eight_sets, response_and_jacobian
+);
 
 /// The counting itself.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the macro of gungraun ends the process of a bench"
+)]
 mod counted {
     use super::models;
     gungraun::main!(library_benchmark_groups = models);

@@ -9,7 +9,7 @@ use qcar_dsl::rust::module;
 use qcar_runtime::campaign::{Parameter, Role};
 use qcar_runtime::fit::{Level, Observation, Plan, Setup, Weighting};
 use std::path::Path;
-use subject::{MODEL, Subject, frequency};
+use subject::{MODEL, Sets, Subject, frequency};
 
 fn main() {
     let about = MODEL.about();
@@ -26,6 +26,13 @@ fn main() {
 fn matrices_and_jacobians(bencher: Bencher) {
     let mut subject = Subject::new();
     bencher.bench_local(|| black_box(&mut subject).linearise());
+}
+
+/// The same of eight parameter sets together.
+#[divan::bench(sample_size = 1000)]
+fn matrices_and_jacobians_of_eight_sets(bencher: Bencher) {
+    let mut sets = Sets::new();
+    bencher.bench_local(|| black_box(&mut sets).linearise());
 }
 
 /// Three hundred lines of five channels with the full Jacobian.

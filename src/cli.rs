@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
-    check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
-    score, show, simulate, study,
+    check, compare, completions, diff, discover, effects, explore, export, fit, frf, import, inspect, kc, matrices,
+    new, patch, score, show, simulate, study,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -49,6 +49,7 @@ enum Verb {
     Fit(fit::Arguments),
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
+    Explore(explore::Arguments),
     Discover(discover::Arguments),
     Study(study::Arguments),
     Compare(compare::Arguments),
@@ -78,6 +79,7 @@ impl Cli {
             Verb::Fit(arguments) => fit::run(&arguments),
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
+            Verb::Explore(arguments) => explore::run(&arguments),
             Verb::Discover(arguments) => discover::run(&arguments),
             Verb::Study(arguments) => study::run(&arguments),
             Verb::Compare(arguments) => compare::run(&arguments),

@@ -63,6 +63,26 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
     }
 }
 
+/// Gives a file that is whole the name under which it is looked for.
+///
+/// # Errors
+/// What the system says.
+pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
+    let mut written = close();
+    fs::rename(unfinished, path).map_err(|error| {
+        let remedy = "move what stands there away, and repeat the command";
+        Problem::new(
+            path,
+            Place::File,
+            error.to_string(),
+            "a name for the finished file",
+            remedy,
+        )
+    })?;
+    written.push(path.into());
+    Ok(())
+}
+
 /// Waits for the file that is being written. As long as the list of complete files is held, no other is begun.
 pub fn close() -> MutexGuard<'static, Vec<PathBuf>> {
     WRITTEN.lock().unwrap_or_else(PoisonError::into_inner)

@@ -21,6 +21,8 @@ pub mod histories;
 pub mod report;
 // Results as workbooks.
 pub mod spreadsheet;
+// Results as columns of numbers.
+pub mod parquet;
 // Signs of life meanwhile.
 pub mod progress;
 // What becomes of both when the user stops the work.

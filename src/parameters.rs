@@ -10,6 +10,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use qcar_runtime::campaign::{self, Campaign, Declared, FACTS, dimension, examples};
+use qcar_runtime::ensemble::Posterior;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, About, Default};
 use qcar_runtime::response::parameters::{ParameterError, Values};
@@ -140,6 +141,15 @@ impl Beside {
             vehicle: numbers(&file.vehicle),
         })
     }
+}
+
+/// The distribution of what a fit has estimated, and the name of its model.
+///
+/// # Errors
+/// A file that cannot be read, that `qcar fit` has not written, or that no distribution follows from.
+pub fn posterior(path: &Path) -> Result<(Posterior, String), InputError> {
+    let answer = Answer::read(path)?;
+    Ok((answer.posterior(path)?, answer.model))
 }
 
 fn overlaid<'a>(paths: impl IntoIterator<Item = &'a Path>) -> Result<ParameterFile, InputError> {

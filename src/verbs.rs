@@ -40,6 +40,8 @@ pub mod fit;
 pub mod score;
 // driven over its roads,
 pub mod simulate;
+// over cleats with many parameter sets,
+pub mod explore;
 // and what it lacks.
 pub mod discover;
 // All of that at once,

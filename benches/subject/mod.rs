@@ -1,6 +1,6 @@
 //! What is measured: the five vertical masses of axle_d at three hundred lines.
 
-use qcar_runtime::model::{Model, ResponseMut};
+use qcar_runtime::model::{LANES, Lanes, Model, ResponseMut};
 
 qcar_derive::axle! {
     axle axle_d_z from "models/families/corner.axle" {
@@ -85,6 +85,39 @@ impl Subject {
             jacobian: Some((slopes_re, slopes_im)),
         };
         MODEL.response(0, &self.constants, &self.omega, into);
+    }
+}
+
+/// Several parameter sets together.
+pub struct Sets {
+    p: Vec<Lanes>,
+    x: Vec<Lanes>,
+    u: Vec<Lanes>,
+    /// The nonzeros of A, B, C and D.
+    pub matrices: Vec<Lanes>,
+    /// Those of their parameter Jacobians.
+    pub sensitivities: Vec<Lanes>,
+}
+
+impl Sets {
+    /// Room for everything, and plausible axles.
+    pub fn new() -> Sets {
+        let about = MODEL.about();
+        let row = |p: &f64| std::array::from_fn(|set| p * (1.0 + 0.01 * set as f64));
+        let room = |rows: usize| vec![[0.0; LANES]; rows];
+        Sets {
+            p: Subject::new().p.iter().map(row).collect(),
+            x: room(about.states.len()),
+            u: room(about.inputs.len()),
+            matrices: room(about.matrices.len()),
+            sensitivities: room(about.sensitivities.len()),
+        }
+    }
+
+    /// A, B, C, D and all their parameter Jacobians.
+    pub fn linearise(&mut self) {
+        MODEL.matrices_sets(&self.p, &self.x, &self.u, &mut self.matrices);
+        MODEL.sensitivities_sets(&self.p, &self.x, &self.u, &mut self.sensitivities);
     }
 }
 

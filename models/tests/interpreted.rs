@@ -5,7 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::{self, Evaluator};
-use qcar_runtime::model::{Contact, Model, Points, ResponseMut};
+use qcar_runtime::model::{Contact, LANES, Lanes, Model, Points, ResponseMut};
 
 /// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
 mod zoo {
@@ -112,8 +112,36 @@ impl Pair {
             |to| interpreted.parameter_jacobian(&p, &x, &u, to),
         );
         self.compare_points(c, &p, numbers);
+        self.compare_sets(&p, &x, &u);
         self.compare_responses(c, numbers);
         self.compare_rolling(c, &x, &u, numbers);
+    }
+
+    /// Several parameter sets at once, each with its own state and input: what each gives alone.
+    fn compare_sets(&self, p: &[f64], x: &[f64], u: &[f64]) {
+        let about = self.model.about();
+        let row = |(place, value): (usize, &f64)| -> Lanes {
+            std::array::from_fn(|set| value * (1.0 + 0.01 * (set * (place + 1)) as f64))
+        };
+        let rows = |of: &[f64]| -> Vec<Lanes> { of.iter().enumerate().map(row).collect() };
+        let (ps, xs, us) = (rows(p), rows(x), rows(u));
+        let mut constants = vec![[0.0; LANES]; about.constants];
+        self.model.prepare_sets(&ps, &mut constants);
+        let (sets, alone) = (self.model, &self.evaluator);
+        sets_equal(&constants, [&ps, &[], &[]], |[p, _, _], to| alone.prepare(p, to));
+        let mut rates = vec![[0.0; LANES]; about.states.len()];
+        sets.derivative_sets(&constants, &xs, &us, &mut rates);
+        sets_equal(&rates, [&constants, &xs, &us], |[c, x, u], to| {
+            alone.derivative(c, x, u, to)
+        });
+        let mut matrices = vec![[0.0; LANES]; about.matrices.len()];
+        sets.matrices_sets(&ps, &xs, &us, &mut matrices);
+        sets_equal(&matrices, [&ps, &xs, &us], |[p, x, u], to| alone.matrices(p, x, u, to));
+        let mut sensitivities = vec![[0.0; LANES]; about.sensitivities.len()];
+        sets.sensitivities_sets(&ps, &xs, &us, &mut sensitivities);
+        sets_equal(&sensitivities, [&ps, &xs, &us], |[p, x, u], to| {
+            alone.sensitivities(p, x, u, to)
+        });
     }
 
     /// Thirty-five points: whole blocks and a rest. Generated code sees one after the other.
@@ -216,4 +244,17 @@ fn equal(length: usize, generated: impl Fn(&mut [f64]), interpreted: impl Fn(&mu
         );
     }
     one
+}
+
+/// The rows of all sets are those that `alone` gives for each of them, bit by bit.
+fn sets_equal(rows: &[Lanes], from: [&[Lanes]; 3], alone: impl Fn([&[f64]; 3], &mut [f64])) {
+    for set in 0..LANES {
+        let own = from.map(|rows| rows.iter().map(|row| row[set]).collect::<Vec<f64>>());
+        let mut expected = vec![0.0; rows.len()];
+        alone([&own[0], &own[1], &own[2]], &mut expected);
+        for (place, (row, expected)) in rows.iter().zip(&expected).enumerate() {
+            let same = row[set].to_bits() == expected.to_bits() || (row[set].is_nan() && expected.is_nan());
+            assert!(same, "set {set}, row {place}: {:e} and {expected:e}", row[set]);
+        }
+    }
 }

@@ -33,7 +33,7 @@ pub fn module(compiled: &Compiled) -> String {
         typed::sizes(&compiled.about),
         parameters::parameters(compiled),
         typed::functions(compiled),
-        seam::implementation(compiled) + &seam::blocks(&compiled.about),
+        seam::implementation(compiled) + &seam::blocks(&compiled.about) + &seam::sets(&compiled.about),
         about::about(&compiled.about),
         format!("{STRAIGHT}{}}}\n", indent(&function::functions(compiled).join("\n"))),
     ];
@@ -57,7 +57,7 @@ pub fn module(compiled: &Compiled) -> String {
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
 const USES: &str =
-    "use ::qcar_runtime::generated::{Block, LINES, StateSpace, fixed, fixed_mut, no_response, respond, sign};
+    "use ::qcar_runtime::generated::{Block, LINES, Sets, StateSpace, fixed, fixed_mut, no_response, respond, sign, together};
 use ::qcar_runtime::model as seam;
 use ::qcar_runtime::model::{Entry, Matrix};
 use ::qcar_runtime::nalgebra::SVector;

@@ -5,5 +5,5 @@ mod errors;
 mod histogram;
 
 pub use comfort::{Weighting, rms, vibration_dose};
-pub use errors::{Alignment, CompareError, Errors, Windows};
+pub use errors::{Alignment, CompareError, Errors, Windows, sizes};
 pub use histogram::{Histogram, Summary};

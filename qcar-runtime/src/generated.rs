@@ -5,11 +5,11 @@
 
 use nalgebra::SMatrix;
 
-use crate::model::{About, ResponseMut};
+use crate::model::{About, LANES, Lanes, ResponseMut};
 use crate::vectors::{Loops, widest};
 
 /// How many lines of a frequency response are computed together: a cache line of each row.
-pub const LINES: usize = 8;
+pub const LINES: usize = LANES;
 
 /// The state-space form `dx = A x + B u`, `y = C x + D u` of a model with N states, M inputs and O outputs.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -64,7 +64,7 @@ pub fn table<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64;
 /// Where there are fewer.
 #[inline]
 #[track_caller]
-pub fn fixed<const N: usize>(slice: &[f64]) -> &[f64; N] {
+pub fn fixed<T, const N: usize>(slice: &[T]) -> &[T; N] {
     slice.first_chunk().unwrap_or_else(|| too_short(slice.len(), N))
 }
 
@@ -75,7 +75,7 @@ pub fn fixed<const N: usize>(slice: &[f64]) -> &[f64; N] {
 /// Where there are fewer.
 #[inline]
 #[track_caller]
-pub fn fixed_mut<const N: usize>(slice: &mut [f64]) -> &mut [f64; N] {
+pub fn fixed_mut<T, const N: usize>(slice: &mut [T]) -> &mut [T; N] {
     let length = slice.len();
     slice.first_chunk_mut().unwrap_or_else(|| too_short(length, N))
 }
@@ -147,6 +147,39 @@ pub fn respond<const R: usize>(omega: &[f64], mut into: ResponseMut<'_>, block: 
         frequencies[..rest.len()].copy_from_slice(rest);
         compute(&frequencies, &mut rows);
         scatter(&rows, &mut into, omega.len(), chunks.len() * LINES, rest.len());
+    }
+}
+
+/// Straight-line code for several parameter sets at once, with `R` results.
+///
+/// `compute` is to be inlined always: it is compiled once for each instruction set that [`together`] knows.
+pub trait Sets<const R: usize> {
+    /// The results, a row for each.
+    fn compute(&self, rows: &mut [Lanes; R]);
+}
+
+/// Computes what is wanted of several parameter sets, with the widest vectors of this machine.
+///
+/// # Panics
+///
+/// Where there are fewer rows than results.
+#[inline]
+pub fn together<const R: usize>(sets: &impl Sets<R>, rows: &mut [Lanes]) {
+    let rows = fixed_mut(rows);
+    widest(Together { sets, rows });
+}
+
+struct Together<'a, S, const R: usize> {
+    sets: &'a S,
+    rows: &'a mut [Lanes; R],
+}
+
+impl<S: Sets<R>, const R: usize> Loops for Together<'_, S, R> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(self) {
+        self.sets.compute(self.rows);
     }
 }
 

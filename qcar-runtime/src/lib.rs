@@ -33,6 +33,8 @@ pub mod modes;
 pub mod least_squares;
 // The rig fit of thesis section 3.5.
 pub mod fit;
+// Random numbers, the same everywhere.
+mod random;
 // The road under a rolling tyre.
 pub mod road;
 // Contact geometry of the tyre.
@@ -43,6 +45,8 @@ pub mod solver;
 pub mod simulate;
 // Peak and after-shake errors, comfort metrics.
 pub mod compare;
+// Thousands of parameter sets, each driven over rides and measured.
+pub mod ensemble;
 // Gradients of K&C curves.
 pub mod kc;
 // Where the measurement disagrees with the model, and what would explain it.

@@ -51,6 +51,34 @@ pub trait Model: Send + Sync {
         points.one_by_one(nonzeros, |x, u, nonzeros| self.parameter_jacobian(p, x, u, nonzeros));
     }
 
+    /// [`Model::prepare`] of several parameter sets at once, each row one value of all of them.
+    fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
+        one_by_one([p, &[], &[]], constants, |p, _, _, constants| {
+            self.prepare(p, constants)
+        });
+    }
+
+    /// [`Model::derivative`] of several prepared parameter sets, each at a state and input of its own.
+    fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
+        one_by_one([constants, x, u], dx, |constants, x, u, dx| {
+            self.derivative(constants, x, u, dx)
+        });
+    }
+
+    /// [`Model::matrices`] of several parameter sets, each at a state and input of its own. The bits are the same.
+    fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.matrices(p, x, u, nonzeros)
+        });
+    }
+
+    /// [`Model::sensitivities`] of several parameter sets, each at a state and input of its own.
+    fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.sensitivities(p, x, u, nonzeros)
+        });
+    }
+
     /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
     ///
     /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
@@ -91,6 +119,26 @@ pub struct Contact {
     pub force: [f64; 2],
 }
 
+/// How many parameter sets, or lines of a frequency response, are computed together.
+pub const LANES: usize = 8;
+
+/// One value of each of several parameter sets.
+pub type Lanes = [f64; LANES];
+
+/// Lets `work` find from the values of each set what stands there in the rows `into`.
+fn one_by_one(from: [&[Lanes]; 3], into: &mut [Lanes], mut work: impl FnMut(&[f64], &[f64], &[f64], &mut [f64])) {
+    let mut of_set = from.map(|rows| vec![0.0; rows.len()]);
+    let mut found = vec![0.0; into.len()];
+    for set in 0..LANES {
+        for (values, rows) in of_set.iter_mut().zip(from) {
+            values.iter_mut().zip(rows).for_each(|(value, row)| *value = row[set]);
+        }
+        let [a, b, c] = &of_set;
+        work(a, b, c, &mut found);
+        into.iter_mut().zip(&found).for_each(|(row, value)| row[set] = *value);
+    }
+}
+
 /// States and inputs at several points: structure of arrays, so that a model may work on many points at once.
 #[derive(Clone, Copy, Debug)]
 pub struct Points<'a> {
@@ -105,13 +153,18 @@ pub struct Points<'a> {
 impl Points<'_> {
     /// Lets `work` find from the states and inputs of each point what stands there in the rows `into`.
     fn one_by_one(&self, into: &mut [f64], mut work: impl FnMut(&[f64], &[f64], &mut [f64])) {
-        let column =
-            |rows: &[f64], point: usize| -> Vec<f64> { rows.iter().skip(point).step_by(self.count).copied().collect() };
+        let room = |rows: &[f64]| vec![0.0; rows.len() / self.count.max(1)];
+        let (mut x, mut u, mut found) = (room(self.x), room(self.u), room(into));
+        let take = |rows: &[f64], point: usize, column: &mut [f64]| {
+            let rows = rows.iter().skip(point).step_by(self.count);
+            column.iter_mut().zip(rows).for_each(|(value, row)| *value = *row);
+        };
         for point in 0..self.count {
-            let mut found = column(into, point);
-            work(&column(self.x, point), &column(self.u, point), &mut found);
-            for (row, value) in into.chunks_exact_mut(self.count).zip(found) {
-                row[point] = value;
+            take(self.x, point, &mut x);
+            take(self.u, point, &mut u);
+            work(&x, &u, &mut found);
+            for (row, value) in into.chunks_exact_mut(self.count).zip(&found) {
+                row[point] = *value;
             }
         }
     }

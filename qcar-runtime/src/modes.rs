@@ -39,21 +39,36 @@ const RIGID: f64 = 0.01;
 const STILL: f64 = 1e-6;
 
 /// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
-pub fn modes(model: &dyn Model, values: &Values) -> Vec<Mode> {
+pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
     let a = dynamics(model, values);
+    roots(&a).iter().map(|root| mode(model, &a, *root)).collect()
+}
+
+/// Frequency (Hz) and damping ratio of each of them, without their shapes.
+pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, f64)> {
+    let roots = roots(&dynamics(model, values)).into_iter();
+    roots.map(|root| (frequency(root), damping(root))).collect()
+}
+
+/// The eigenvalues that vibrate, lowest frequency first.
+fn roots(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
     // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
     if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
         return Vec::new();
     }
     let roots = a.clone().complex_eigenvalues();
-    let mut modes: Vec<Mode> = roots
-        .iter()
-        .filter(|root| vibrates(root))
-        .map(|&root| mode(model, &a, root))
-        .collect();
-    modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-    modes
+    let mut roots: Vec<Complex<f64>> = roots.iter().copied().filter(vibrates).collect();
+    roots.sort_by(|a, b| frequency(*a).total_cmp(&frequency(*b)));
+    roots
+}
+
+fn frequency(root: Complex<f64>) -> f64 {
+    root.norm() / TAU
+}
+
+fn damping(root: Complex<f64>) -> f64 {
+    -root.re / root.norm()
 }
 
 /// Modes of two models that are the same vibration, by their places in both lists; each mode is in one pair at most.
@@ -98,7 +113,7 @@ fn likeness(first: &Mode, second: &Mode) -> f64 {
 }
 
 /// A at rest.
-fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
+fn dynamics(model: &(impl Model + ?Sized), values: &Values) -> DMatrix<f64> {
     let about = model.about();
     let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
     let mut nonzeros = vec![0.0; about.matrices.len()];
@@ -112,7 +127,7 @@ fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
     a
 }
 
-fn mode(model: &dyn Model, a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
+fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
     let vector = eigenvector(a, root);
     let states = model.about().states.iter().zip(vector.iter());
     let positions = states.filter(|(state, _)| state.kind == StateKind::Position);
@@ -126,8 +141,8 @@ fn mode(model: &dyn Model, a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
     };
     let shape = positions.iter().map(part).filter(|part| part.amplitude.norm() > STILL);
     Mode {
-        frequency: root.norm() / TAU,
-        damping: -root.re / root.norm(),
+        frequency: frequency(root),
+        damping: damping(root),
         shape: shape.collect(),
     }
 }

@@ -12,14 +12,24 @@ pub const UNTOLD: Told<'static> = &|_, _| ();
 
 /// Does `work` on all items in parallel, and tells at the start and after each; the results are in the order of the items.
 pub fn map<T: Sync, U: Send>(items: &[T], told: Told<'_>, work: impl Fn(&T) -> U + Sync + Send) -> Vec<U> {
+    map_with(items, told, || (), |(), item| work(item))
+}
+
+/// The same with `room`, which a thread keeps from one item to the next and which changes no result.
+pub fn map_with<T: Sync, R, U: Send>(
+    items: &[T],
+    told: Told<'_>,
+    room: impl Fn() -> R + Sync + Send,
+    work: impl Fn(&mut R, &T) -> U + Sync + Send,
+) -> Vec<U> {
     let done = AtomicUsize::new(0);
     told(0, items.len());
-    let one = |item| {
-        let result = work(item);
+    let one = |room: &mut R, item| {
+        let result = work(room, item);
         told(done.fetch_add(1, Ordering::Relaxed) + 1, items.len());
         result
     };
-    items.par_iter().map(one).collect()
+    items.par_iter().map_init(room, one).collect()
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Spectra of uniformly sampled signals: of a whole record, and averaged over its segments (Welch).
 
 use std::f64::consts::TAU;
+use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 
 use nalgebra::{Complex, DMatrix};
 use realfft::RealFftPlanner;
@@ -58,9 +59,15 @@ impl Trend {
     }
 }
 
+/// The plans of all lengths that were asked for: to make one takes as long as some transforms.
+fn plans() -> MutexGuard<'static, RealFftPlanner<f64>> {
+    static PLANS: LazyLock<Mutex<RealFftPlanner<f64>>> = LazyLock::new(|| Mutex::new(RealFftPlanner::new()));
+    PLANS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
 /// The discrete Fourier transform of a whole record: lines 0 to n/2, `rate / n` apart, each `Σ x_k exp(-iωt_k)`.
 pub fn transform(samples: &[f64]) -> Vec<Complex<f64>> {
-    let plan = RealFftPlanner::new().plan_fft_forward(samples.len());
+    let plan = plans().plan_fft_forward(samples.len());
     let (mut input, mut lines) = (samples.to_vec(), plan.make_output_vec());
     plan.process(&mut input, &mut lines)
         .expect("the plan was made for these lengths");
@@ -69,7 +76,7 @@ pub fn transform(samples: &[f64]) -> Vec<Complex<f64>> {
 
 /// The real signal of `samples` samples that has these lines of [`transform`], from 0 on, and nothing above them.
 pub fn synthesize(lines: &[Complex<f64>], samples: usize) -> Vec<f64> {
-    let plan = RealFftPlanner::new().plan_fft_inverse(samples);
+    let plan = plans().plan_fft_inverse(samples);
     let (mut input, mut output) = (plan.make_input_vec(), plan.make_output_vec());
     let scale = 1.0 / samples as f64;
     for (input, line) in input.iter_mut().zip(lines) {

@@ -172,23 +172,57 @@ pub fn transmissibilities(
     pairs: &[(Point, Point)],
     options: &Options,
 ) -> Result<Vec<Transmissibility>, InputError> {
-    let mut involved = vec![reference.clone()];
-    for point in pairs.iter().flat_map(|(from, to)| [from, to]) {
-        if !involved.contains(point) {
-            involved.push(point.clone());
+    let involved = pairs.iter().flat_map(|(from, to)| [from, to]);
+    let related = Related::new(history, reference, involved, options)?;
+    Ok(pairs.iter().map(|pair| related.ratio(history, pair)).collect())
+}
+
+/// Points and their responses to the first of them.
+pub struct Related {
+    points: Vec<Point>,
+    lines: Vec<Line>,
+}
+
+impl Related {
+    /// Relates `points` to `reference`, which may be one of them.
+    ///
+    /// # Errors
+    /// As [`transmissibilities`].
+    pub fn new<'a>(
+        history: &History,
+        reference: &Point,
+        points: impl IntoIterator<Item = &'a Point>,
+        options: &Options,
+    ) -> Result<Self, InputError> {
+        let mut involved = vec![reference.clone()];
+        for point in points {
+            if !involved.contains(point) {
+                involved.push(point.clone());
+            }
         }
+        let lines = responses(history, &involved, options)?;
+        let points = involved;
+        Ok(Self { points, lines })
     }
-    let lines = responses(history, &involved, options)?;
-    let place = |point: &Point| {
-        involved
-            .iter()
-            .position(|p| p == point)
-            .expect("it was put there above")
-    };
-    Ok(pairs
-        .iter()
-        .map(|pair| ratio(history, pair, (place(&pair.0), place(&pair.1)), &lines))
-        .collect())
+
+    /// The response of a point to the reference, line by line; `None` of a point that is not among them.
+    pub fn response(&self, point: &Point) -> Option<impl Iterator<Item = Complex<f64>>> {
+        let place = self.place(point)?;
+        Some(self.lines.iter().map(move |line| line.value[place]))
+    }
+
+    /// The ratio of two of the points, `(from, to)`.
+    ///
+    /// # Panics
+    /// Where one is not among them.
+    pub fn ratio(&self, history: &History, pair: &(Point, Point)) -> Transmissibility {
+        let place = |point: &Point| self.place(point).expect("it is among them");
+        ratio(history, pair, (place(&pair.0), place(&pair.1)), &self.lines)
+    }
+
+    fn place(&self, point: &Point) -> Option<usize> {
+        self.points.iter().position(|own| own == point)
+    }
 }
 
 /// The responses of all `points` to the first of them, with their joint covariance.

@@ -163,3 +163,22 @@ fn the_dose_of_a_constant_grows_with_the_fourth_root_of_time() {
     assert!((vibration_dose(&[2.0; 1000], 1000.0) - 2.0).abs() < 1e-12);
     assert!((vibration_dose(&[2.0; 16000], 1000.0) - 4.0).abs() < 1e-12);
 }
+
+/// More records than are weighted in step; each has the dose that it has alone, but for rounding.
+#[test]
+fn doses_of_several_records_are_those_of_each() {
+    let record = |phase: f64| -> Vec<f64> {
+        let sample = |k: usize| (0.05 * k as f64 + phase).sin() * (1.0 + phase) + f64::from(u8::from(k == 700));
+        (0..1500).map(sample).collect()
+    };
+    let records: Vec<Vec<f64>> = (0..11).map(|k| record(f64::from(k))).collect();
+    let slices: Vec<&[f64]> = records.iter().map(Vec::as_slice).collect();
+    for weighting in [Weighting::Wk, Weighting::Wd] {
+        let together = weighting.doses(&slices, 1000.0);
+        assert_eq!(together.len(), records.len());
+        for (record, dose) in records.iter().zip(together) {
+            let alone = vibration_dose(&weighting.apply(record, 1000.0), 1000.0);
+            assert!((dose / alone - 1.0).abs() < 1e-12, "{dose}, {alone}");
+        }
+    }
+}

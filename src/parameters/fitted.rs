@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use qcar_runtime::ensemble::{Estimate, Posterior};
 use qcar_runtime::error::{InputError, Place, Problem};
 use serde::Deserialize;
 use serde_json::Value;
@@ -16,6 +17,13 @@ pub(super) struct Answer {
     /// The name of the model.
     pub model: String,
     parameters: BTreeMap<String, Parameter>,
+    all_correlations: Option<Vec<Correlation>>,
+}
+
+#[derive(Deserialize)]
+struct Correlation {
+    between: (String, String),
+    value: f64,
 }
 
 #[derive(Deserialize)]
@@ -23,6 +31,7 @@ struct Parameter {
     value: f64,
     unit: String,
     stderr: Option<f64>,
+    range: Option<(f64, f64)>,
     tied_to: Option<String>,
 }
 
@@ -46,6 +55,28 @@ impl Answer {
         })
     }
 
+    /// How probable other values are: the distribution of all estimates that have an error.
+    ///
+    /// # Errors
+    /// A fit that no distribution follows from.
+    pub fn posterior(&self, path: &Path) -> Result<Posterior, InputError> {
+        let wrong = |found: String| {
+            let expected = "estimates with standard errors and all correlations";
+            let remedy = "repeat the fit with `qcar fit --out`";
+            Problem::new(path, Place::File, found, expected, remedy)
+        };
+        let correlations = self.all_correlations.as_ref();
+        let correlations = correlations.ok_or_else(|| wrong("no `all_correlations`".into()))?;
+        let estimates: Vec<Estimate> = self.parameters.iter().filter_map(estimate).collect();
+        if estimates.is_empty() {
+            return Err(wrong("no parameter with a standard error".into()).into());
+        }
+        let place = |name: &String| estimates.iter().position(|own| own.name == *name);
+        let pair = |own: &Correlation| Some((place(&own.between.0)?, place(&own.between.1)?, own.value));
+        let correlations: Vec<_> = correlations.iter().filter_map(pair).collect();
+        Posterior::new(estimates, &correlations).map_err(|error| wrong(error.to_string()).into())
+    }
+
     /// The values; what takes the value of another parameter is left to do so.
     pub fn parameters(&self, path: &Path) -> ParameterFile {
         let own = self.parameters.iter().filter(|(_, own)| own.tied_to.is_none());
@@ -65,4 +96,14 @@ impl Answer {
             ..ParameterFile::default()
         }
     }
+}
+
+/// A parameter with an error, within the bounds of its fit.
+fn estimate((name, own): (&String, &Parameter)) -> Option<Estimate> {
+    Some(Estimate {
+        name: name.clone(),
+        value: own.value,
+        stderr: own.stderr.filter(|error| *error > 0.0)?,
+        range: own.range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY)),
+    })
 }

@@ -141,7 +141,11 @@ struct ChannelResponse {
     d_im: Ordered<Vec<f64>>,
 }
 
-fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Failure> {
+/// The channels of these names, all where there is none.
+///
+/// # Errors
+/// A model without channels, and names that it does not have.
+pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a Channel>, Failure> {
     let find = |name: &String| about.channels.iter().find(|channel| channel.name == **name);
     let known: Vec<_> = about
         .channels
@@ -254,7 +258,7 @@ fn decibels(name: &str, unit: &str) -> String {
 }
 
 /// The unit of a channel, such as `(m/s^2)/N`.
-fn unit(about: &About, channel: &Channel) -> String {
+pub(crate) fn unit(about: &About, channel: &Channel) -> String {
     let [above, below] = [&channel.numerator, &channel.denominator].map(|signal| unit_of(about, signal));
     let grouped = |unit: String| {
         if unit.contains(['/', ' ']) {

@@ -6,6 +6,7 @@ mod common;
 mod compare;
 mod document;
 mod effects;
+mod explore;
 mod export;
 mod fits;
 mod help;

@@ -12,33 +12,98 @@ use super::names::names;
 /// All straight-line functions of a model.
 pub fn functions(compiled: &Compiled) -> Vec<String> {
     let straight = Straight::new(compiled);
-    let functions = straight.functions("a block of lines");
-    let written = functions.iter().map(|function| {
-        let signature = Signature {
-            function,
-            doc: function.doc.lines().map(String::from).collect(),
-            arguments: function
-                .arguments
-                .iter()
-                .map(|&argument| (argument, kind(argument)))
-                .collect(),
-            leaf: &|leaf| straight.local(leaf, function.arguments),
-            lines: function.is_response(),
-        };
-        self::function(&signature)
+    let mut functions = straight.functions("a block of lines");
+    let widths = functions.iter().map(|function| match function.is_response() {
+        true => Width::Lines,
+        false => Width::One,
     });
-    written.collect()
+    let mut widths: Vec<Width> = widths.collect();
+    let sets = straight
+        .functions("")
+        .into_iter()
+        .filter(|own| SETS.contains(&own.name.as_str()));
+    functions.extend(sets.map(of_sets));
+    widths.resize(functions.len(), Width::Sets);
+    let all = functions.iter().zip(widths);
+    all.map(|(own, width)| written(&straight, own, width)).collect()
 }
 
-fn kind(argument: &str) -> &'static str {
-    match argument {
-        "p" => "&[f64; PARAMETERS]",
-        "constants" => "&[f64; CONSTANTS]",
-        "x" => "&[f64; STATES]",
-        "u" => "&[f64; INPUTS]",
-        "contact" => "&seam::Contact",
-        FREQUENCIES => "&[f64; LINES]",
+/// The functions that are there for several parameter sets at once, too.
+const SETS: [&str; 4] = ["prepare", "derivative", "matrices", "sensitivities"];
+
+fn of_sets(function: Function) -> Function {
+    Function {
+        doc: format!(
+            "[`{}`] of several parameter sets at once, each with its own state and input.",
+            function.name
+        ),
+        name: format!("{}_sets", function.name),
+        ..function
+    }
+}
+
+fn written(straight: &Straight, function: &Function, width: Width) -> String {
+    self::function(&Signature {
+        function,
+        doc: function.doc.lines().map(String::from).collect(),
+        arguments: function
+            .arguments
+            .iter()
+            .map(|&argument| (argument, kind(argument, width)))
+            .collect(),
+        leaf: &|leaf| straight.local(leaf, function.arguments),
+        width,
+    })
+}
+
+fn kind(argument: &str, width: Width) -> &'static str {
+    match (argument, width) {
+        ("p", Width::Sets) => "&[[f64; LINES]; PARAMETERS]",
+        ("constants", Width::Sets) => "&[[f64; LINES]; CONSTANTS]",
+        ("x", Width::Sets) => "&[[f64; LINES]; STATES]",
+        ("u", Width::Sets) => "&[[f64; LINES]; INPUTS]",
+        ("p", _) => "&[f64; PARAMETERS]",
+        ("constants", _) => "&[f64; CONSTANTS]",
+        ("x", _) => "&[f64; STATES]",
+        ("u", _) => "&[f64; INPUTS]",
+        ("contact", _) => "&seam::Contact",
+        (FREQUENCIES, _) => "&[f64; LINES]",
         _ => "f64",
+    }
+}
+
+/// Operations of a piece over several sets. Where a loop writes to some 250 rows, LLVM takes it for not worth vectors, and eight sets
+/// take as long as one after the other; with pieces of 30 to 100 operations they take a third.
+const OF_SETS: usize = 60;
+
+/// How much a function computes in a call. What is more than one is a loop that the optimiser vectorises.
+#[derive(Clone, Copy, PartialEq)]
+enum Width {
+    /// One of everything.
+    One,
+    /// A block of lines of a frequency response.
+    Lines,
+    /// A block of parameter sets.
+    Sets,
+}
+
+impl Width {
+    fn is_wide(self) -> bool {
+        self != Width::One
+    }
+
+    /// Whether an argument has another value for each turn of the loop.
+    fn varies(self, argument: &str) -> bool {
+        self == Width::Sets || argument == FREQUENCIES
+    }
+
+    /// What a turn is, for a count of operations.
+    fn turn(self) -> &'static str {
+        match self {
+            Width::One => "",
+            Width::Lines => " a line",
+            Width::Sets => " a set",
+        }
     }
 }
 
@@ -51,13 +116,16 @@ struct Signature<'a> {
     arguments: Vec<(&'static str, &'static str)>,
     /// Where a leaf is read, and what a reviewer calls it.
     leaf: &'a dyn Fn(Leaf) -> Local,
-    /// True for a frequency response: a block of lines at once, in a loop that the optimiser vectorises.
-    lines: bool,
+    /// How much at once.
+    width: Width,
 }
 
 /// The Rust text of a program: one function, or one that calls several in turn.
 fn function(signature: &Signature) -> String {
-    let cut = Pieces::cut(signature.function.program);
+    let cut = match signature.width {
+        Width::Sets => Pieces::cut_to(signature.function.program, OF_SETS),
+        Width::One | Width::Lines => Pieces::cut(signature.function.program),
+    };
     let pieces = (0..cut.pieces.len()).map(|piece| Printer::new(signature, &cut, piece).function());
     match cut.pieces.len() {
         1 => pieces.collect(),
@@ -72,19 +140,15 @@ fn function(signature: &Signature) -> String {
 /// The function that hands its arguments to the pieces.
 fn caller(signature: &Signature, cut: &Pieces) -> String {
     let names: Vec<&str> = signature.arguments.iter().map(|(name, _)| *name).collect();
-    let zero = if signature.lines { "[0.0; LINES]" } else { "0.0" };
-    let mut text = doc(&signature.doc, computed(cut.program).count(), signature.lines) + inline(signature, true);
+    let wide = signature.width.is_wide();
+    let zero = if wide { "[0.0; LINES]" } else { "0.0" };
+    let mut text = doc(&signature.doc, computed(cut.program).count(), signature.width) + inline(signature, true);
     let arguments = signature
         .arguments
         .iter()
         .map(|(name, kind)| format!("{name}: {kind}"))
         .collect();
-    text += &heading(
-        &signature.function.name,
-        arguments,
-        signature.lines,
-        cut.program.outputs.len(),
-    );
+    text += &heading(&signature.function.name, arguments, wide, cut.program.outputs.len());
     text += &format!("    let mut kept = [{zero}; {}];\n", cut.kept.len());
     for piece in 1..=cut.pieces.len() {
         text += &format!(
@@ -96,9 +160,9 @@ fn caller(signature: &Signature, cut: &Pieces) -> String {
     text + "}\n"
 }
 
-fn doc(lines: &[String], count: usize, a_line: bool) -> String {
+fn doc(lines: &[String], count: usize, width: Width) -> String {
     let operations = if count == 1 { "operation" } else { "operations" };
-    let count = format!("{count} {operations}{}.", if a_line { " a line" } else { "" });
+    let count = format!("{count} {operations}{}.", width.turn());
     let lines = lines.iter().cloned().chain([String::new(), count]);
     lines
         .map(|line| format!("{}\n", format!("/// {line}").trim_end()))
@@ -114,7 +178,7 @@ fn heading(name: &str, mut arguments: Vec<String>, lines: bool, results: usize) 
 /// runs thousands of times in a ride into what asks for it; any other piece stays a function of its own, since inlined
 /// again they would be as long as the whole.
 fn inline(signature: &Signature, whole: bool) -> &'static str {
-    match (signature.lines, whole) {
+    match (signature.width.is_wide(), whole) {
         (true, _) => "#[inline(always)]\n",
         (false, true) if signature.function.name == "rolling_derivative" => "#[inline]\n",
         (false, true) => "",
@@ -146,22 +210,22 @@ impl<'a> Printer<'a> {
     }
 
     fn function(&self) -> String {
-        let (name, lines) = (&self.signature.function.name, &self.signature.lines);
+        let (name, width) = (&self.signature.function.name, self.signature.width);
         let count = self.cut.pieces[self.piece].len();
         let results = self.cut.program.outputs.len();
         if self.cut.pieces.len() == 1 {
             let (doc, heading) = (
-                doc(&self.signature.doc, count, *lines),
-                heading(name, self.arguments(), *lines, results),
+                doc(&self.signature.doc, count, width),
+                heading(name, self.arguments(), width.is_wide(), results),
             );
             return doc + inline(self.signature, true) + &heading + &self.body();
         }
         let number = self.piece + 1;
-        let kept = format!("kept: &mut {}", array(*lines, self.cut.kept.len()));
+        let kept = format!("kept: &mut {}", array(width.is_wide(), self.cut.kept.len()));
         let arguments = self.arguments().into_iter().chain([kept]).collect();
-        doc(&[format!("Piece {number} of [`{name}`].")], count, *lines)
+        doc(&[format!("Piece {number} of [`{name}`].")], count, width)
             + inline(self.signature, false)
-            + &heading(&format!("{name}_{number}"), arguments, *lines, results)
+            + &heading(&format!("{name}_{number}"), arguments, width.is_wide(), results)
             + &self.body()
     }
 
@@ -184,9 +248,13 @@ impl<'a> Printer<'a> {
         let (a_line, once): (Vec<_>, Vec<_>) = self
             .leaves()
             .into_iter()
-            .partition(|(local, _)| local.argument == FREQUENCIES);
+            .partition(|(local, _)| self.signature.width.varies(local.argument));
         let read = |(local, value): &(Local, Value)| {
-            let line = if local.argument == FREQUENCIES { self.line() } else { "" };
+            let line = if self.signature.width.varies(local.argument) {
+                self.line()
+            } else {
+                ""
+            };
             format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
         };
         let once: Vec<String> = once.iter().map(read).collect();
@@ -213,7 +281,7 @@ impl<'a> Printer<'a> {
             .chain(stored)
             .chain(computed)
             .collect();
-        match self.signature.lines {
+        match self.signature.width.is_wide() {
             true => format!(
                 "{}    for line in 0..LINES {{\n{}    }}\n}}\n",
                 indent(&once, 1),
@@ -223,9 +291,9 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// The index of the line, where there are several.
+    /// The index of the line or the set, where there are several.
     fn line(&self) -> &'static str {
-        if self.signature.lines { "[line]" } else { "" }
+        if self.signature.width.is_wide() { "[line]" } else { "" }
     }
 
     /// The statement that computes a value, and those that put it where it is wanted.

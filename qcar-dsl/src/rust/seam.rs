@@ -43,7 +43,7 @@ impl seam::Model for {name} {{
     fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {{
         straight::parameter_jacobian(fixed(p), fixed(x), fixed(u), fixed_mut(nonzeros));
     }}
-{response}{rolling}}}
+{SETS}{response}{rolling}}}
 ",
         point = "fixed(x), fixed(u)",
         response = response(about),
@@ -101,6 +101,59 @@ impl Block<{rows}> for {name}<'_> {{
         .flat_map(|place| [block(place, ""), block(place, "_jacobian")])
         .collect()
 }
+
+/// The functions of several parameter sets, of which the runtime compiles each once for each instruction set.
+pub fn sets(about: &About) -> String {
+    let functions: [(&str, &[&str], usize); 4] = [
+        ("prepare", &["PARAMETERS"], about.constants),
+        ("derivative", &["CONSTANTS", "STATES", "INPUTS"], about.states.len()),
+        ("matrices", &["PARAMETERS", "STATES", "INPUTS"], about.matrices.len()),
+        (
+            "sensitivities",
+            &["PARAMETERS", "STATES", "INPUTS"],
+            about.sensitivities.len(),
+        ),
+    ];
+    let written = functions.iter().map(|(function, sizes, rows)| {
+        let fields = sizes.iter().map(|size| format!("&'a [seam::Lanes; {size}]"));
+        let fields: Vec<String> = fields.collect();
+        let taken: Vec<String> = (0..sizes.len()).map(|place| format!("self.{place}")).collect();
+        format!(
+            "
+struct {name}<'a>({fields});
+
+impl Sets<{rows}> for {name}<'_> {{
+    #[inline(always)]
+    fn compute(&self, rows: &mut [seam::Lanes; {rows}]) {{
+        straight::{function}_sets({taken}, rows);
+    }}
+}}
+",
+            name = camel(&format!("{function}_sets")),
+            fields = fields.join(", "),
+            taken = taken.join(", "),
+        )
+    });
+    written.collect()
+}
+
+const SETS: &str = "
+    fn prepare_sets(&self, p: &[seam::Lanes], constants: &mut [seam::Lanes]) {
+        together(&PrepareSets(fixed(p)), constants);
+    }
+
+    fn derivative_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], dx: &mut [seam::Lanes]) {
+        together(&DerivativeSets(fixed(constants), fixed(x), fixed(u)), dx);
+    }
+
+    fn matrices_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
+        together(&MatricesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+    }
+
+    fn sensitivities_sets(&self, p: &[seam::Lanes], x: &[seam::Lanes], u: &[seam::Lanes], nonzeros: &mut [seam::Lanes]) {
+        together(&SensitivitiesSets(fixed(p), fixed(x), fixed(u)), nonzeros);
+    }
+";
 
 const ROLLING: &str = "
     #[inline]

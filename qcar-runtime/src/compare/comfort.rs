@@ -2,6 +2,9 @@
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 
+use crate::model::{LANES, Lanes};
+use crate::vectors::{Loops, widest};
+
 /// A frequency weighting of ISO 2631-1, annex A.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Weighting {
@@ -25,11 +28,36 @@ impl Weighting {
     /// The weighted record: the transfer functions of the standard as digital filters, by the bilinear transform with
     /// the frequency of each term kept. Starts at rest.
     pub fn apply(self, record: &[f64], sample_rate: f64) -> Vec<f64> {
-        let mut weighted = record.to_vec();
-        for section in self.sections(sample_rate) {
-            section.filter(&mut weighted, sample_rate);
-        }
+        let mut weighted = vec![0.0; record.len()];
+        let keep = |sample: usize, out: &Lanes| weighted[sample] = out[0];
+        self.filter(&[record], sample_rate, keep);
         weighted
+    }
+
+    /// The vibration dose value of each record, all of one length, as [`vibration_dose`] has it of the weighted one; several
+    /// are weighted in step.
+    pub fn doses(self, records: &[&[f64]], sample_rate: f64) -> Vec<f64> {
+        let mut doses = Vec::with_capacity(records.len());
+        for together in records.chunks(LANES) {
+            let mut sum = [0.0; LANES];
+            let add = |_, out: &Lanes| sum.iter_mut().zip(out).for_each(|(sum, a)| *sum += (a * a) * (a * a));
+            self.filter(together, sample_rate, add);
+            doses.extend(sum[..together.len()].iter().map(|sum| (sum / sample_rate).powf(0.25)));
+        }
+        doses
+    }
+
+    /// Tells of every sample what comes out.
+    fn filter(self, records: &[&[f64]], sample_rate: f64, told: impl FnMut(usize, &Lanes)) {
+        let sections = self.sections(sample_rate);
+        let digital = sections.iter().map(|section| section.digital(sample_rate));
+        let mut cascade = [Digital::default(); SECTIONS];
+        cascade.iter_mut().zip(digital).for_each(|(to, own)| *to = own);
+        widest(Cascade {
+            records,
+            sections: &cascade,
+            told,
+        });
     }
 
     /// Band limits, transition from acceleration to velocity and, for Wk, the upward step (table A.1).
@@ -76,15 +104,62 @@ struct Section {
 }
 
 impl Section {
-    fn filter(&self, record: &mut [f64], sample_rate: f64) {
+    fn digital(&self, sample_rate: f64) -> Digital {
         let (b, a) = (bilinear(&self.above, sample_rate), bilinear(&self.below, sample_rate));
-        let (mut first, mut second) = (0.0, 0.0);
-        for sample in record {
-            let input = *sample;
-            let output = (b[0] * input + first) / a[0];
-            first = b[1] * input - a[1] * output + second;
-            second = b[2] * input - a[2] * output;
-            *sample = output;
+        Digital {
+            above: b.map(|b| b / a[0]),
+            below: [a[1] / a[0], a[2] / a[0]],
+        }
+    }
+}
+
+/// A ratio of two polynomials in 1/z; that below begins with 1.
+#[derive(Clone, Copy)]
+struct Digital {
+    above: [f64; 3],
+    below: [f64; 2],
+}
+
+impl Default for Digital {
+    /// Leaves a signal as it is.
+    fn default() -> Self {
+        Digital {
+            above: [1.0, 0.0, 0.0],
+            below: [0.0; 2],
+        }
+    }
+}
+
+/// As many as Wk has.
+const SECTIONS: usize = 4;
+
+/// Several records through sections in a row, sample by sample: no section waits for the end of the one before.
+struct Cascade<'a, T> {
+    records: &'a [&'a [f64]],
+    sections: &'a [Digital; SECTIONS],
+    told: T,
+}
+
+impl<T: FnMut(usize, &Lanes)> Loops for Cascade<'_, T> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(mut self) {
+        let mut waiting = [[[0.0; LANES]; 2]; SECTIONS];
+        for sample in 0..self.records.first().map_or(0, |record| record.len()) {
+            let mut signal = [0.0; LANES];
+            for (signal, record) in signal.iter_mut().zip(self.records) {
+                *signal = record[sample];
+            }
+            for (own, [first, second]) in self.sections.iter().zip(&mut waiting) {
+                for lane in 0..LANES {
+                    let (input, output) = (signal[lane], own.above[0] * signal[lane] + first[lane]);
+                    first[lane] = own.above[1] * input - own.below[0] * output + second[lane];
+                    second[lane] = own.above[2] * input - own.below[1] * output;
+                    signal[lane] = output;
+                }
+            }
+            (self.told)(sample, &signal);
         }
     }
 }

@@ -81,6 +81,20 @@ fn upward_peak(record: &[f64]) -> Option<(usize, f64)> {
     peak.filter(|&(_, height)| height > 0.0)
 }
 
+/// Largest magnitude in the impact and root mean square in the after-shake of a record without noise, m/s², whose impact
+/// begins at the sample `onset`.
+///
+/// # Errors
+/// A record that ends before the after-shake starts.
+pub fn sizes(record: &[f64], onset: usize, sample_rate: f64, windows: &Windows) -> Result<[f64; 2], CompareError> {
+    let samples = |seconds: f64| (seconds * sample_rate).round() as isize;
+    let onset = onset as isize;
+    let impact_end = onset + samples(windows.impact);
+    check_reaches("simulation", record, impact_end)?;
+    let shake = cut(record, impact_end, impact_end + samples(windows.after_shake));
+    Ok([magnitude(cut(record, onset, impact_end)), mean_square(shake).sqrt()])
+}
+
 impl Errors {
     /// Compares two records of one acceleration, both at `sample_rate` (Hz).
     ///

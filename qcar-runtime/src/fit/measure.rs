@@ -6,7 +6,7 @@ use crate::campaign::{Campaign, Channel as Sensor, History, Quantity, Run, Side,
 use crate::error::{InputError, Place, Problem};
 use crate::model::{self, About, Channel, Signal, SignalKind};
 use crate::progress::{self, Told};
-use crate::transmissibility::{Options, Point, Transmissibility, points, transmissibilities};
+use crate::transmissibility::{Options, Point, Related, Transmissibility, points};
 use nalgebra::Complex;
 
 /// Measures the channels of every sweep and time history of a campaign that excites the model.
@@ -71,8 +71,14 @@ fn level(
         .iter()
         .map(|(channel, _)| (place(&channel.denominator), place(&channel.numerator)))
         .collect();
-    let ratios = transmissibilities(&history, &reference, &pairs, options)?;
-    let differences = differences(&history, &reference, &pairs, options)?;
+    let related = Related::new(
+        &history,
+        &reference,
+        pairs.iter().flat_map(|(from, to)| [from, to]),
+        options,
+    )?;
+    let ratios = pairs.iter().map(|pair| related.ratio(&history, pair));
+    let differences = differences(&history, &reference, &pairs, (&related, options))?;
     sides_agree(&history, &reference, &pairs, &differences)?;
     let observations = all.iter().zip(ratios).zip(differences);
     let observations = observations
@@ -242,7 +248,7 @@ fn differences(
     history: &History,
     reference: &Point,
     pairs: &[(Point, Point)],
-    options: &Options,
+    (both, options): (&Related, &Options),
 ) -> Result<Vec<Vec<Difference>>, InputError> {
     let mut all = vec![Vec::new(); pairs.len()];
     for (pair, sides) in [
@@ -253,19 +259,29 @@ fn differences(
         if doubled.is_empty() {
             continue;
         }
-        let one = |dropped: Side| transmissibilities(&without(history, &doubled, dropped), reference, pairs, options);
-        let (first, second) = (one(sides[1])?, one(sides[0])?);
-        for ((all, first), second) in all.iter_mut().zip(first).zip(second) {
-            let half = first
-                .value
+        let one = |dropped: Side| {
+            let wanted = doubled
                 .iter()
-                .zip(&second.value)
-                .map(|(a, b)| (a / b).ln() * Complex::from(0.5))
-                .collect();
+                .filter(|point| pairs.iter().any(|(from, to)| [from, to].contains(point)));
+            Related::new(&without(history, &doubled, dropped), reference, wanted, options)
+        };
+        let (first, second) = (one(sides[1])?, one(sides[0])?);
+        for (all, ends) in all.iter_mut().zip(pairs) {
+            let [a, b] = [&first, &second].map(|side| ratio_of_side(side, both, ends));
+            let half = a.zip(b).map(|(a, b)| (a / b).ln() * Complex::from(0.5)).collect();
             all.push(Difference { pair, half });
         }
     }
     Ok(all)
+}
+
+/// The ratio of two points by the sensors of one side; where a point has none of its own, by those of both.
+fn ratio_of_side(side: &Related, both: &Related, (from, to): &(Point, Point)) -> impl Iterator<Item = Complex<f64>> {
+    let response = |point: &Point| match side.response(point) {
+        Some(own) => own.collect::<Vec<_>>(),
+        None => both.response(point).expect("all were estimated").collect(),
+    };
+    response(to).into_iter().zip(response(from)).map(|(to, from)| to / from)
 }
 
 /// Sensors of two sides are averaged, which means nothing where one of them has another unit or sign than the other.

@@ -4,6 +4,7 @@
 //! effectiveness of quasirandom sequences" (2018): `frac(s + j α^k)`, with 1/α the root of `x^(n+1) = x + 1`. They
 //! depend on the seed alone, and each search on its start alone, so the result does not depend on the threads.
 
+use super::cost::Cost;
 use super::setup::Setup;
 use crate::least_squares::{Bounds, Options, Outcome, minimize};
 use crate::model::Model;
@@ -42,14 +43,19 @@ pub(super) struct Minimum {
 impl<M: Model + ?Sized> Setup<'_, M> {
     /// One local search from given values of the free parameters; this is what a fit spends its time on.
     pub fn local(&self, start: &[f64]) -> Outcome {
-        minimize(&mut self.cost(), start, &self.bounds, &OPTIONS)
+        self.search(&mut self.cost(), start)
+    }
+
+    fn search(&self, cost: &mut Cost<'_, '_, M>, start: &[f64]) -> Outcome {
+        minimize(cost, start, &self.bounds, &OPTIONS)
     }
 }
 
 impl Search {
     pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, told: Told<'_>) -> Self {
         let points = starts(&setup.start(), &setup.bounds, setup.plan.starts.max(1), setup.plan.seed);
-        let outcomes: Vec<Outcome> = progress::map(&points, told, |start| setup.local(start));
+        // A thread's searches share the room for responses and their logarithms.
+        let outcomes = progress::map_with(&points, told, || setup.cost(), |cost, start| setup.search(cost, start));
         let evaluations = outcomes.iter().map(|outcome| outcome.evaluations).sum();
         let minima = distinct(&outcomes);
         // Without any converged search the first one is reported, with why it stopped.

@@ -1,4 +1,4 @@
-//! The cleat runs of thesis table 3.3, for an axle of which none was measured.
+//! Runs over a cleat that nobody has measured, among them those of thesis table 3.3.
 
 use super::ride::Drive;
 use crate::road::{Road, RoadError, Shape};
@@ -34,11 +34,16 @@ impl Standard {
         let conditions = SPEEDS
             .iter()
             .flat_map(|&speed| HEIGHTS.iter().map(move |&height| (speed, height)));
-        let run = |(speed, height)| {
-            let road = road(height, speed * DURATION)?;
-            Ok(Self { speed, height, road })
-        };
-        conditions.map(run).collect()
+        conditions.map(|(speed, height)| Self::over(height, speed)).collect()
+    }
+
+    /// A run over a cleat of a height (m) at a speed (m/s).
+    ///
+    /// # Errors
+    /// A height that makes no cleat.
+    pub fn over(height: f64, speed: f64) -> Result<Self, RoadError> {
+        let road = road(height, speed * duration(speed))?;
+        Ok(Self { speed, height, road })
     }
 
     /// The whole run.
@@ -47,8 +52,17 @@ impl Standard {
             road: &self.road,
             speed: self.speed,
             sample_rate: SAMPLE_RATE,
-            samples: (DURATION * SAMPLE_RATE) as usize,
+            samples: (duration(self.speed) * SAMPLE_RATE) as usize,
         }
+    }
+}
+
+/// A slower wheel needs longer for the run-in, s.
+fn duration(speed: f64) -> f64 {
+    if speed < SPEEDS[0] {
+        DURATION + RUN_IN / speed - RUN_IN / SPEEDS[0]
+    } else {
+        DURATION
     }
 }
 

@@ -15,6 +15,7 @@ pub(crate) struct Result<'a> {
     model: &'a str,
     parameters: Ordered<&'a ParameterFit>,
     correlations: &'a [Correlation],
+    all_correlations: &'a [Correlation],
     channels: &'a [ChannelFit],
     cost: f64,
     start_cost: f64,
@@ -42,6 +43,7 @@ pub(crate) fn result(of: &Fitted) -> Result<'_> {
             .map(|parameter| (parameter.name.clone(), parameter))
             .collect(),
         correlations: &fit.correlations,
+        all_correlations: &fit.all_correlations,
         channels: &fit.channels,
         cost: fit.cost,
         start_cost: fit.start_cost,

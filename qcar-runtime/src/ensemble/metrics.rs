@@ -1,0 +1,295 @@
+//! What is measured of a parameter set: of its rides, its transmissibilities and its modes.
+
+use thiserror::Error;
+
+use crate::campaign::RoleNames;
+use crate::compare::{Alignment, CompareError, Weighting, Windows, sizes};
+use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
+use crate::modes;
+use crate::response::Response;
+use crate::response::parameters::Values;
+use crate::response::ratio::between;
+use crate::roles::{RoleError, Roles};
+use crate::simulate::Ride;
+
+/// A kind of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Metric {
+    /// Largest acceleration of each mass and axis in the impact.
+    Peak,
+    /// Root mean square of each acceleration in the after-shake.
+    AfterShake,
+    /// Vibration dose of each acceleration over the whole ride, weighted by ISO 2631-1.
+    Dose,
+    /// Highest magnitude of each channel and its frequency.
+    Transmissibility,
+    /// Natural frequencies and damping ratios.
+    Modes,
+}
+
+impl Metric {
+    /// Whether it is measured of rides.
+    pub fn of_rides(self) -> bool {
+        matches!(self, Self::Peak | Self::AfterShake | Self::Dose)
+    }
+}
+
+/// What a number is.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// Such as `peak_body_z`.
+    pub name: String,
+    /// SI.
+    pub unit: String,
+}
+
+/// A channel whose transmissibility is measured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ratio {
+    /// Name.
+    pub name: String,
+    /// Of the ratio.
+    pub unit: String,
+    /// What acts.
+    pub excitation: usize,
+    /// Above the line.
+    pub numerator: Signal,
+    /// Below the line.
+    pub denominator: Signal,
+}
+
+/// Why a model has no such numbers.
+#[derive(Clone, Debug, Error, PartialEq)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum MetricsError {
+    #[error(transparent)]
+    Role(#[from] RoleError),
+    #[error(
+        "model `{model}` has no acceleration of a mass among its outputs; add one such as `output body.acceleration;`"
+    )]
+    NoAcceleration { model: String },
+}
+
+/// Lowest and highest frequency at which transmissibilities are looked at, Hz, and the number of lines between them.
+const BAND: (f64, f64, usize) = (0.5, 30.0, 300);
+
+/// Everything that is measured, in the order of its columns.
+pub struct Metrics<'a, M: ?Sized> {
+    model: &'a M,
+    chosen: Vec<Metric>,
+    ratios: Vec<Ratio>,
+    frequency: Vec<f64>,
+    accelerations: Vec<Acceleration>,
+    /// The one that feels a cleat first.
+    first: usize,
+}
+
+struct Acceleration {
+    /// Its place among the outputs.
+    output: usize,
+    /// Such as `body_z`.
+    name: String,
+    weighting: Weighting,
+}
+
+impl<'a, M: Model + ?Sized> Metrics<'a, M> {
+    /// What is `chosen` of a model.
+    ///
+    /// # Errors
+    /// Metrics of rides of a model that has no tyre or no acceleration.
+    pub fn new(model: &'a M, chosen: &[Metric], ratios: Vec<Ratio>) -> Result<Self, MetricsError> {
+        let about = model.about();
+        let rides = chosen.iter().any(|metric| metric.of_rides());
+        let roles = rides.then(|| Roles::of(about, &RoleNames::default())).transpose()?;
+        let accelerations = roles.iter().flat_map(|roles| accelerations(about, &roles.axis));
+        let accelerations: Vec<_> = accelerations.collect();
+        if rides && accelerations.is_empty() {
+            let model = about.name.to_string();
+            return Err(MetricsError::NoAcceleration { model });
+        }
+        let feels = |roles: &Roles| {
+            let mut feeling = roles.feeling().map(|mass| format!("{mass}_{}", roles.axis));
+            feeling.find_map(|name| accelerations.iter().position(|own| own.name == name))
+        };
+        Ok(Self {
+            model,
+            chosen: chosen.to_vec(),
+            ratios,
+            frequency: lines(),
+            first: roles.as_ref().and_then(feels).unwrap_or(0),
+            accelerations,
+        })
+    }
+
+    /// What is measured of a parameter set alone.
+    pub fn columns_of_sets(&self) -> Vec<Column> {
+        let of = |metric: &Metric| match metric {
+            Metric::Transmissibility => self.ratios.iter().flat_map(Ratio::columns).collect(),
+            Metric::Modes => (1..=most_modes(self.model.about())).flat_map(of_mode).collect(),
+            Metric::Peak | Metric::AfterShake | Metric::Dose => Vec::new(),
+        };
+        self.chosen.iter().flat_map(of).collect()
+    }
+
+    /// What is measured of each ride.
+    pub fn columns_of_rides(&self) -> Vec<Column> {
+        let of = |metric: &Metric| {
+            let (what, unit) = match metric {
+                Metric::Peak => ("peak", "m/s^2"),
+                Metric::AfterShake => ("after_shake", "m/s^2"),
+                Metric::Dose => ("vdv", "m/s^1.75"),
+                Metric::Transmissibility | Metric::Modes => return Vec::new(),
+            };
+            let column = |own: &Acceleration| column(format!("{what}_{}", own.name), unit);
+            self.accelerations.iter().map(column).collect()
+        };
+        self.chosen.iter().flat_map(of).collect()
+    }
+
+    /// The numbers of [`Metrics::columns_of_sets`]; NaN of a mode that does not vibrate.
+    pub fn of_set(&self, values: &Values) -> Vec<f64> {
+        let of = |metric: &Metric| match metric {
+            Metric::Transmissibility => self.summits(values),
+            Metric::Modes => self.modes(values),
+            Metric::Peak | Metric::AfterShake | Metric::Dose => Vec::new(),
+        };
+        self.chosen.iter().flat_map(of).collect()
+    }
+
+    /// The numbers of [`Metrics::columns_of_rides`], of a ride with samples at `rate` (Hz).
+    ///
+    /// # Errors
+    /// A wheel that does not feel the cleat, or a ride that ends too early.
+    pub fn of_ride(&self, ride: &Ride, rate: f64) -> Result<Vec<f64>, CompareError> {
+        let record = |own: &Acceleration| &ride.outputs[own.output];
+        let Some(first) = self.accelerations.get(self.first) else {
+            return Ok(Vec::new());
+        };
+        let onset = Alignment::at_peak(record(first), record(first))?.onset;
+        let sizes = |own: &Acceleration| sizes(record(own), onset, rate, &Windows::default());
+        let sizes = self.accelerations.iter().map(sizes).collect::<Result<Vec<_>, _>>()?;
+        let of = |metric: &Metric| -> Vec<f64> {
+            match metric {
+                Metric::Peak => sizes.iter().map(|[peak, _]| *peak).collect(),
+                Metric::AfterShake => sizes.iter().map(|[_, after_shake]| *after_shake).collect(),
+                Metric::Dose => self.doses(ride, rate),
+                Metric::Transmissibility | Metric::Modes => Vec::new(),
+            }
+        };
+        Ok(self.chosen.iter().flat_map(of).collect())
+    }
+
+    /// The dose of each acceleration; those with one weighting are weighted in step.
+    fn doses(&self, ride: &Ride, rate: f64) -> Vec<f64> {
+        let mut doses = vec![0.0; self.accelerations.len()];
+        for weighting in [Weighting::Wk, Weighting::Wd] {
+            let all = self.accelerations.iter().enumerate();
+            let own: Vec<_> = all.filter(|(_, own)| own.weighting == weighting).collect();
+            let records: Vec<&[f64]> = own.iter().map(|(_, own)| ride.outputs[own.output].as_slice()).collect();
+            let found = weighting.doses(&records, rate);
+            own.iter()
+                .zip(found)
+                .for_each(|((place, _), dose)| doses[*place] = dose);
+        }
+        doses
+    }
+
+    /// The summit of each ratio, one response serving all that it drives.
+    fn summits(&self, values: &Values) -> Vec<f64> {
+        let mut responses: Vec<(usize, Response<'_, M>)> = Vec::new();
+        let mut found = Vec::new();
+        for ratio in &self.ratios {
+            if responses.iter().all(|(excitation, _)| *excitation != ratio.excitation) {
+                let mut response = Response::new(self.model, ratio.excitation, &self.frequency);
+                response.evaluate_values(values.as_slice());
+                responses.push((ratio.excitation, response));
+            }
+            let response = responses.iter().find(|(excitation, _)| *excitation == ratio.excitation);
+            let (_, response) = response.expect("it has just been put there");
+            let value = between(response, values, &ratio.numerator, &ratio.denominator);
+            let magnitudes = value.map(|value| value.value.iter().map(|value| value.norm()).collect());
+            found.extend(magnitudes.map_or([f64::NAN; 2], |magnitudes| self.summit(magnitudes)));
+        }
+        found
+    }
+
+    /// The highest of some magnitudes and its frequency: between lines the top of the parabola through its logarithm and those
+    /// beside it.
+    fn summit(&self, magnitudes: Vec<f64>) -> [f64; 2] {
+        let highest = magnitudes.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let Some((line, &highest)) = highest else {
+            return [f64::NAN; 2];
+        };
+        if line == 0 || line + 1 == magnitudes.len() {
+            return [highest, self.frequency[line]];
+        }
+        let [left, top, right] = [line - 1, line, line + 1].map(|line| magnitudes[line].ln());
+        let (slope, bend) = (0.5 * (right - left), left - 2.0 * top + right);
+        let aside = if bend < 0.0 { -slope / bend } else { 0.0 };
+        let step = (self.frequency[line + 1] / self.frequency[line]).ln();
+        let height = (top + 0.5 * slope * aside).exp();
+        [height, self.frequency[line] * (aside * step).exp()]
+    }
+
+    fn modes(&self, values: &Values) -> Vec<f64> {
+        let found = modes::frequencies(self.model, values).into_iter();
+        let mut numbers: Vec<f64> = found.flat_map(|(frequency, damping)| [frequency, damping]).collect();
+        numbers.resize(2 * most_modes(self.model.about()), f64::NAN);
+        numbers
+    }
+}
+
+impl Ratio {
+    fn columns(&self) -> [Column; 2] {
+        [
+            column(format!("transmissibility_{}", self.name), &self.unit),
+            column(format!("frequency_{}", self.name), "Hz"),
+        ]
+    }
+}
+
+fn column(name: String, unit: &str) -> Column {
+    let unit = unit.into();
+    Column { name, unit }
+}
+
+fn of_mode(number: usize) -> [Column; 2] {
+    [
+        column(format!("mode_{number}_frequency"), "Hz"),
+        column(format!("mode_{number}_damping"), "1"),
+    ]
+}
+
+/// No more vibrations than masses move, and half as many again as there are inner states.
+fn most_modes(about: &About) -> usize {
+    let velocities = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
+    let inner = about.states.iter().filter(|state| state.kind == StateKind::Inner);
+    velocities.count() + inner.count() / 2
+}
+
+/// The frequencies of the band, Hz, at equal ratios.
+fn lines() -> Vec<f64> {
+    let (from, to, lines) = BAND;
+    let at = |line: usize| from * f64::powf(to / from, line as f64 / (lines - 1) as f64);
+    (0..lines).map(at).collect()
+}
+
+/// The accelerations of masses, weighted as a seat passes them on along the axis of the tyre or across it.
+fn accelerations(about: &About, vertical: &str) -> impl Iterator<Item = Acceleration> {
+    let masses = |signal: &Signal| {
+        let here = |mass: &&crate::model::Mass| mass.location == signal.location && mass.axis == signal.axis;
+        about.masses.iter().find(here).is_some_and(|mass| !mass.angle)
+    };
+    let outputs = about.outputs.iter().enumerate();
+    let wanted = outputs.filter(move |(_, output)| {
+        output.signal.kind == SignalKind::Motion(Quantity::Acceleration) && masses(&output.signal)
+    });
+    wanted.map(move |(output, own)| Acceleration {
+        output,
+        name: format!("{}_{}", own.signal.location, own.signal.axis),
+        weighting: match own.signal.axis == *vertical {
+            true => Weighting::Wk,
+            false => Weighting::Wd,
+        },
+    })
+}

@@ -1,0 +1,349 @@
+//! `qcar explore`: thousands of parameter sets, each over the same rides, measured.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use clap::{Args, ValueEnum};
+use qcar_runtime::ensemble::{self, Axis, DIMENSIONS, Design, Ensemble, Metrics, POINTS, Posterior, Scheme, Track};
+use qcar_runtime::error::InputError;
+use qcar_runtime::model::{About, Model};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::{Variant, tyre_of};
+
+use crate::catalogue::{self, Loaded};
+use crate::failure::{Failure, flag};
+use crate::parameters::{self, Beside};
+use crate::verbs::{ModelArguments, frf};
+
+// What varies.
+mod vary;
+// Over which cleats.
+mod over;
+// On which of several machines.
+mod part;
+// Rows that were written before a run was stopped,
+mod kept;
+// as text
+mod csv;
+// or in groups,
+mod grouped;
+// and where all of them go.
+mod sink;
+// What they are of.
+mod ledger;
+// All rows, one block after another.
+mod filled;
+
+use ledger::Choice;
+use over::Over;
+use part::Part;
+use vary::Vary;
+
+/// Compute metrics of many parameter sets, each driven over the same cleats, as a table
+///
+/// A row is a parameter set and a ride: its number, what varies, and the metrics. Rows come in the order of the design and are the
+/// same whatever the number of threads. A command that was stopped goes on where it is repeated: rows stand in FILE.part until
+/// all of them are there, and FILE.design.json says what they are of.
+/// Rides need r_tire, static_tire_def and static_tire_load, facts of the vehicle, in the file or campaign of --params.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  qcar explore quarter_car --vary k_tire=180..220N/mm --vary m_wheel=-10%..10% --count 1000 --out sets.csv\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --vary c_wheel_z=-30%..30% --count 16 --rides 20mm@30km/h,standard --out rides.parquet\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --design grid --count 5 --metrics modes --part 2/4 --out part-2.csv"
+)]
+pub struct Arguments {
+    #[command(flatten)]
+    model: ModelArguments,
+    /// A parameter that varies between two values, with their unit or as percents of its value; may be repeated
+    #[arg(
+        long,
+        value_name = "NAME=LO..HI",
+        required_unless_present = "posterior",
+        conflicts_with = "posterior"
+    )]
+    vary: Vec<Vary>,
+    /// Vary what a fit has estimated, as probable as it says: its fit.json
+    #[arg(long, value_name = "FILE")]
+    posterior: Option<PathBuf>,
+    /// How sets are chosen [default: sobol, or posterior with --posterior]
+    #[arg(long, value_enum)]
+    design: Option<Chosen>,
+    /// Number of sets; of a grid the number of values of each parameter
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    count: u64,
+    /// Another seed gives another design of the same kind; 0 is Sobol's sequence as it is published
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    seed: u64,
+    /// Cleats to drive over: `standard` (three speeds, four heights), or HEIGHT@SPEED such as 20mm@30km/h
+    #[arg(long, value_delimiter = ',', value_name = "RIDES")]
+    rides: Vec<Over>,
+    /// What is measured [default: peak, after-shake and vdv of rides; without rides transmissibility and modes]
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES")]
+    metrics: Vec<Metric>,
+    /// Transmissibilities of these channels alone
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    channels: Vec<String>,
+    /// Compute the K-th of N equal parts of the design, for as many machines
+    #[arg(long, value_name = "K/N", default_value = "1/1", hide_default_value = true)]
+    part: Part,
+    /// Write the rows into this file: .csv or .parquet
+    #[arg(long, value_name = "FILE", value_parser = sink::table_for_results)]
+    out: PathBuf,
+}
+
+/// The designs by name.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Chosen {
+    /// Every combination of equally spaced values
+    Grid,
+    /// A Latin hypercube: each parameter has one value in each of as many intervals as there are sets
+    Lhs,
+    /// Sobol's sequence, whose points fill the space evenly however many of them are taken
+    Sobol,
+    /// Draws from what a fit has found
+    Posterior,
+}
+
+/// The metrics by name.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+enum Metric {
+    /// Largest acceleration of each mass and axis in the impact
+    Peak,
+    /// Root mean square of each acceleration in the after-shake
+    AfterShake,
+    /// Vibration dose of each acceleration, weighted by ISO 2631-1
+    Vdv,
+    /// Highest magnitude of each channel from 0.5 to 30 Hz, and its frequency
+    Transmissibility,
+    /// Natural frequencies and damping ratios, lowest frequency first
+    Modes,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let model = catalogue::load(&arguments.model.model)?;
+    let drawn = arguments.posterior.as_deref().map(parameters::posterior).transpose()?;
+    check_same_model(
+        arguments,
+        model.about(),
+        drawn.as_ref().map(|(_, model)| model.as_str()),
+    )?;
+    let files = arguments.model.params.iter().chain(&arguments.posterior);
+    let values = parameters::resolve(model.about(), files.map(PathBuf::as_path), &arguments.model.set)?;
+    model.check_inertias(values.as_slice())?;
+    let design = design(arguments, model.about(), &values, drawn.map(|(posterior, _)| posterior))?;
+    let possible = |p: &[f64]| model.check_inertias(p).err().map(|error| error.to_string());
+    let ensemble = Ensemble {
+        model: &*model,
+        track: track(arguments)?,
+        metrics: metrics(arguments, &model)?,
+        values,
+        design,
+        possible: &possible,
+    };
+    let program = qcar_dsl::rust::module(&catalogue::compiled(&arguments.model.model)?);
+    let choice = Choice {
+        scheme: scheme(arguments).name(),
+        seed: arguments.seed,
+        part: arguments.part,
+        program: &program,
+    };
+    filled::fill(&ensemble, &choice, &arguments.out)
+}
+
+/// # Errors
+/// A posterior of another model.
+fn check_same_model(arguments: &Arguments, about: &About, fitted: Option<&str>) -> Result<(), InputError> {
+    match (fitted, &arguments.posterior) {
+        (Some(fitted), Some(file)) if *fitted != *about.name => {
+            let found = format!("{}, a fit of model `{fitted}`", file.display());
+            let expected = format!("a fit of model `{}`", about.name);
+            Err(flag(
+                "--posterior",
+                found,
+                &expected,
+                "name the model that was fitted, or another fit",
+            )
+            .into())
+        }
+        _ => Ok(()),
+    }
+}
+
+fn scheme(arguments: &Arguments) -> Chosen {
+    let usual = match arguments.posterior {
+        Some(_) => Chosen::Posterior,
+        None => Chosen::Sobol,
+    };
+    arguments.design.unwrap_or(usual)
+}
+
+impl Chosen {
+    fn name(self) -> &'static str {
+        match self {
+            Chosen::Grid => "grid",
+            Chosen::Lhs => "lhs",
+            Chosen::Sobol => "sobol",
+            Chosen::Posterior => "posterior",
+        }
+    }
+}
+
+/// # Errors
+/// Ends that are no range, a design that its parameters do not go with, and more sets than it has.
+fn design(
+    arguments: &Arguments,
+    about: &About,
+    values: &Values,
+    posterior: Option<Posterior>,
+) -> Result<Design, InputError> {
+    let count = arguments.count;
+    let axes = match &posterior {
+        Some(posterior) => axes_of(about, posterior),
+        None => vary::axes(about, values, &arguments.vary)?,
+    };
+    let scheme = match (scheme(arguments), posterior) {
+        (Chosen::Posterior, Some(posterior)) => Scheme::Posterior(count, posterior),
+        (Chosen::Posterior, None) => {
+            let remedy = "add --posterior with the fit.json of `qcar fit --out`";
+            return Err(flag("--design", "`posterior` without a fit", "a fit to draw from", remedy).into());
+        }
+        (other, Some(_)) => {
+            let found = format!("`{}` with --posterior", other.name());
+            return Err(flag(
+                "--design",
+                found,
+                "`posterior`",
+                "leave --design out, or vary with --vary",
+            )
+            .into());
+        }
+        (Chosen::Grid, None) => Scheme::Grid(count),
+        (Chosen::Lhs, None) => Scheme::LatinHypercube(count),
+        (Chosen::Sobol, None) => Scheme::Sobol(count),
+    };
+    check_size(&scheme, axes.len())?;
+    Ok(Design::new(axes, scheme, arguments.seed))
+}
+
+/// # Errors
+/// More sets than are told apart, and more parameters than Sobol's sequence has dimensions.
+fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
+    // Whole numbers up to here are exact in a column of numbers.
+    const MOST: u64 = 1 << 53;
+    let count = match scheme {
+        Scheme::Grid(values) => values.checked_pow(axes as u32).unwrap_or(u64::MAX),
+        Scheme::LatinHypercube(count) | Scheme::Sobol(count) | Scheme::Posterior(count, _) => *count,
+    };
+    let sobol = matches!(scheme, Scheme::Sobol(_));
+    let most = if sobol { POINTS } else { MOST };
+    if count > most {
+        let expected = format!("at most {most} sets");
+        return Err(flag("--count", format!("{count} sets"), &expected, "take a smaller number").into());
+    }
+    if sobol && axes > DIMENSIONS {
+        let expected = format!("at most {DIMENSIONS} parameters for Sobol's sequence");
+        let remedy = "vary fewer, or take --design lhs";
+        return Err(flag("--vary", format!("{axes} parameters"), &expected, remedy).into());
+    }
+    Ok(())
+}
+
+/// The parameters that a fit has estimated.
+fn axes_of(about: &About, posterior: &Posterior) -> Vec<Axis> {
+    let place = |name: &str| about.parameters.iter().position(|parameter| parameter.name == *name);
+    let axis = |own: &ensemble::Estimate| Axis {
+        parameter: place(&own.name).expect("the file was resolved for the model"),
+        range: own.range,
+    };
+    posterior.estimates().iter().map(axis).collect()
+}
+
+/// What is driven over; `None` without rides.
+///
+/// # Errors
+/// A vehicle without a tyre, and a parameter that varies though the tyre stands on it.
+fn track(arguments: &Arguments) -> Result<Option<Track>, Failure> {
+    if arguments.rides.is_empty() {
+        return Ok(None);
+    }
+    let rides = over::rides(&arguments.rides)?;
+    vary::refuse_facts(&arguments.vary)?;
+    let Some(file) = &arguments.model.params else {
+        let remedy = "add --params with a campaign, or a file that has [vehicle]";
+        return Err(flag(
+            "--rides",
+            "no --params",
+            "r_tire, static_tire_def and static_tire_load",
+            remedy,
+        )
+        .into());
+    };
+    let vehicle: BTreeMap<String, f64> = Beside::read(file)?.vehicle;
+    let shown = if file.is_dir() {
+        file.join("campaign.toml")
+    } else {
+        file.clone()
+    };
+    let (tyre, load) = tyre_of(&|name| vehicle.get(name).copied(), Path::new(&shown))?;
+    Ok(Some(Track {
+        rides,
+        tyre,
+        load,
+        variant: Variant::Complete,
+    }))
+}
+
+/// # Errors
+/// Metrics that need rides where there are none, channels that are not known, and a model that has no such numbers.
+fn metrics<'a>(arguments: &Arguments, model: &'a Loaded) -> Result<Metrics<'a, dyn Model + 'a>, Failure> {
+    let chosen: Vec<ensemble::Metric> = match (&arguments.metrics[..], arguments.rides.is_empty()) {
+        ([], true) => vec![ensemble::Metric::Transmissibility, ensemble::Metric::Modes],
+        ([], false) => vec![
+            ensemble::Metric::Peak,
+            ensemble::Metric::AfterShake,
+            ensemble::Metric::Dose,
+        ],
+        (named, _) => named.iter().map(|own| (*own).into()).collect(),
+    };
+    if arguments.rides.is_empty() && chosen.iter().any(|own| own.of_rides()) {
+        let remedy = "add --rides such as standard or 20mm@30km/h";
+        return Err(flag(
+            "--metrics",
+            "metrics of rides, and no --rides",
+            "rides to measure",
+            remedy,
+        )
+        .into());
+    }
+    let about = model.about();
+    let wanted = chosen.contains(&ensemble::Metric::Transmissibility);
+    let channels = if wanted {
+        frf::chosen(about, &arguments.channels)?
+    } else {
+        Vec::new()
+    };
+    let ratio = |channel: &qcar_runtime::model::Channel| {
+        Ok::<_, Failure>(ensemble::Ratio {
+            name: channel.name.to_string(),
+            unit: frf::unit(about, channel),
+            excitation: frf::excitation(about, channel)?,
+            numerator: channel.numerator.clone(),
+            denominator: channel.denominator.clone(),
+        })
+    };
+    let ratios = channels.into_iter().map(ratio).collect::<Result<_, _>>()?;
+    let remedy = "choose other metrics, or another model";
+    Ok(Metrics::new(&**model, &chosen, ratios)
+        .map_err(|error| flag("--metrics", error, "metrics of the model", remedy))?)
+}
+
+impl From<Metric> for ensemble::Metric {
+    fn from(own: Metric) -> Self {
+        match own {
+            Metric::Peak => Self::Peak,
+            Metric::AfterShake => Self::AfterShake,
+            Metric::Vdv => Self::Dose,
+            Metric::Transmissibility => Self::Transmissibility,
+            Metric::Modes => Self::Modes,
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! Rows as text.
+
+use std::fmt::Write as _;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
+
+use super::kept::Kept;
+
+/// A table that grows line by line.
+pub(super) struct Csv {
+    file: File,
+    width: usize,
+}
+
+impl Csv {
+    /// Goes on behind the whole rows of a file with these columns, whose first column counts as `first` says; what is not
+    /// whole is taken away.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn open(mut file: File, columns: &[String], first: impl Fn(u64) -> f64) -> io::Result<(Self, Kept)> {
+        let header = columns.join(",") + "\n";
+        let (mut kept, mut end) = (Kept::default(), 0);
+        let mut reader = BufReader::new(&file);
+        let mut line = Vec::new();
+        if reader.read_until(b'\n', &mut line)? > 0 && line == header.as_bytes() {
+            end = line.len() as u64;
+            while let Some(row) = whole_row(&mut reader, &mut line, columns.len())? {
+                if row[0] != first(kept.rows) {
+                    break;
+                }
+                end += line.len() as u64;
+                kept.rows += 1;
+                kept.last = Some(row);
+            }
+        }
+        file.set_len(end)?;
+        file.seek(SeekFrom::Start(end))?;
+        if end == 0 {
+            file.write_all(header.as_bytes())?;
+        }
+        let width = columns.len();
+        Ok((Csv { file, width }, kept))
+    }
+
+    /// Writes rows behind the others, whole or not at all as far as the system can.
+    ///
+    /// # Errors
+    /// What the system says.
+    pub fn append(&mut self, rows: &[f64]) -> io::Result<()> {
+        let mut text = String::new();
+        for row in rows.chunks_exact(self.width) {
+            for (place, number) in row.iter().enumerate() {
+                text.push_str(if place == 0 { "" } else { "," });
+                if number.is_finite() {
+                    let _ = write!(text, "{number}");
+                }
+            }
+            text.push('\n');
+        }
+        self.file.write_all(text.as_bytes())
+    }
+}
+
+/// The numbers of the next row; `None` where there is no further one that is whole.
+fn whole_row(reader: &mut impl BufRead, line: &mut Vec<u8>, width: usize) -> io::Result<Option<Vec<f64>>> {
+    line.clear();
+    reader.read_until(b'\n', line)?;
+    let text = line.strip_suffix(b"\n").and_then(|line| std::str::from_utf8(line).ok());
+    let number = |cell: &str| match cell {
+        "" => Some(f64::NAN),
+        cell => cell.parse().ok(),
+    };
+    let row = text.and_then(|text| text.split(',').map(number).collect::<Option<Vec<f64>>>());
+    Ok(row.filter(|row| row.len() == width))
+}

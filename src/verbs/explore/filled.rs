@@ -1,0 +1,161 @@
+//! A file filled with the rows of an ensemble, block by block.
+
+use std::path::Path;
+
+use qcar_runtime::ensemble::{Column, Ensemble, Rows};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::model::Model;
+
+use super::kept::Kept;
+use super::ledger::{Choice, Ledger, Standing};
+use super::sink::{Sink, unfinished};
+use crate::failure::Failure;
+use crate::interruption;
+use crate::progress::Showing;
+use crate::units;
+
+/// Rows of a block for each thread: enough to keep all of them busy to its end, and little memory.
+const ROWS_OF_THREAD: usize = 64;
+
+/// Rows without metrics, and why the first has none.
+#[derive(Default)]
+struct Failed {
+    rows: usize,
+    first: Option<(u64, String)>,
+}
+
+/// Writes all rows of a part that are not there yet, and says what is there then.
+///
+/// # Errors
+/// Results of something else under that name, and a place that cannot be written to; a finding where no row has metrics.
+pub(super) fn fill<M: Model + ?Sized>(
+    ensemble: &Ensemble<'_, M>,
+    choice: &Choice,
+    path: &Path,
+) -> Result<String, Failure> {
+    let columns = ensemble.columns();
+    let headings: Vec<String> = columns.iter().map(|own| units::heading(&own.name, &own.unit)).collect();
+    let sets = choice.part.sets(ensemble.design.count().unwrap_or(u64::MAX));
+    let each = ensemble.rows_of_set() as u64;
+    let rows = (sets.end - sets.start) * each;
+    let ledger = Ledger::new(ensemble, choice, &headings, rows);
+    let said = format!(
+        "{}: {} sets of {}, {rows} rows in {}\n",
+        ensemble.model.about().name,
+        sets.end - sets.start,
+        choice.scheme,
+        path.display()
+    );
+    if ledger.stand_beside(path)? == Standing::Done {
+        return Ok(said + "note: they were there already\n");
+    }
+    let resumed = "what is done stays in";
+    interruption::note(&format!(
+        "{resumed} {}; the same command goes on from there",
+        unfinished(path).display()
+    ));
+    let (mut sink, kept) = Sink::open(path, &headings, &ledger.text(), |row| (sets.start + row / each) as f64)?;
+    if kept.rows > rows {
+        return Err(not_ours(path, "more rows than there are").into());
+    }
+    // The set of the last row is computed again: a row that this program would not have written is seen there.
+    let from = sets.start + kept.rows.saturating_sub(1) / each;
+    let failed = write(
+        ensemble,
+        &columns,
+        (&mut sink, &kept),
+        (from..sets.end, sets.start),
+        path,
+    )?;
+    sink.finish()?;
+    let said = said + &notes(&failed, &kept);
+    match failed.rows as u64 == rows && rows > 0 {
+        true => Err(Failure::Finding(said)),
+        false => Ok(said),
+    }
+}
+
+fn write<M: Model + ?Sized>(
+    ensemble: &Ensemble<'_, M>,
+    columns: &[Column],
+    (sink, kept): (&mut Sink, &Kept),
+    (sets, first): (std::ops::Range<u64>, u64),
+    path: &Path,
+) -> Result<Failed, InputError> {
+    let each = ensemble.rows_of_set() as u64;
+    let block = (ROWS_OF_THREAD * rayon::current_num_threads()).div_ceil(each as usize) as u64;
+    let showing = Showing::new();
+    showing.tell(format!("{}: row", ensemble.model.about().name));
+    let mut failed = Failed::default();
+    let mut at = sets.start;
+    while at < sets.end {
+        let until = sets.end.min(at + block);
+        let found = ensemble.rows(at..until);
+        let numbers = shown(columns, &found);
+        // What is kept of this block is not written again.
+        let known = kept.rows.saturating_sub((at - first) * each) as usize * columns.len();
+        let (known, new) = numbers.split_at(known.min(numbers.len()));
+        check_last(kept, known, columns.len(), path)?;
+        sink.append(new)?;
+        failed.count(at, &found, columns.len());
+        at = until;
+        showing.far(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
+    }
+    Ok(failed)
+}
+
+/// All numbers of a block, in the units that the user has chosen.
+fn shown(columns: &[Column], block: &[Rows]) -> Vec<f64> {
+    let numbers = block.iter().flat_map(|rows| &rows.numbers);
+    let column = columns.iter().cycle();
+    numbers
+        .zip(column)
+        .map(|(number, own)| units::value(*number, &own.unit))
+        .collect()
+}
+
+/// # Errors
+/// Where the last row that was kept is not what stands at its place.
+fn check_last(kept: &Kept, known: &[f64], width: usize, path: &Path) -> Result<(), InputError> {
+    let (Some(last), Some(start)) = (&kept.last, known.len().checked_sub(width)) else {
+        return Ok(());
+    };
+    let same = |(a, b): (&f64, &f64)| a == b || (a.is_nan() && b.is_nan());
+    match last.iter().zip(&known[start..]).all(same) {
+        true => Ok(()),
+        false => Err(not_ours(path, "rows that this program would not have written")),
+    }
+}
+
+fn not_ours(path: &Path, found: &str) -> InputError {
+    let remedy = "remove it and its .design.json, or choose another file";
+    let expected = "rows that this command has begun, on a machine of this kind";
+    Problem::new(unfinished(path), Place::File, found, expected, remedy).into()
+}
+
+impl Failed {
+    fn count(&mut self, first: u64, block: &[Rows], width: usize) {
+        for (set, rows) in (first..).zip(block) {
+            let failed = rows.numbers.chunks_exact(width).filter(|row| row[width - 1] != 0.0);
+            self.rows += failed.count();
+            if let (None, Some(reason)) = (&self.first, &rows.failure) {
+                self.first = Some((set, reason.clone()));
+            }
+        }
+    }
+}
+
+fn notes(failed: &Failed, kept: &Kept) -> String {
+    let begun = match kept.rows {
+        0 => String::new(),
+        rows => format!("note: {rows} of them were there already\n"),
+    };
+    match &failed.first {
+        None => begun,
+        Some((set, reason)) => format!(
+            "{begun}note: {} rows that were computed now have no metrics; the first is of set {set}: {}\n",
+            failed.rows,
+            reason.trim_end()
+        ),
+    }
+}

@@ -1,0 +1,10 @@
+//! What an earlier run has left.
+
+/// Rows that are there already.
+#[derive(Default)]
+pub(super) struct Kept {
+    /// How many are whole.
+    pub rows: u64,
+    /// The last of them.
+    pub last: Option<Vec<f64>>,
+}

@@ -1,0 +1,176 @@
+//! What a file of results is of, written beside it: who repeats the command goes on, and who asks for something else is told.
+
+use std::path::{Path, PathBuf};
+
+use qcar_runtime::ensemble::{Design, Ensemble};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::model::Model;
+use serde::Serialize;
+use serde_json::Value;
+
+use super::part::Part;
+use super::sink::unfinished;
+use crate::files::put;
+use crate::json::Ordered;
+
+/// Everything on which a row depends.
+#[derive(Serialize)]
+pub(super) struct Ledger {
+    qcar: &'static str,
+    model: String,
+    /// Of the model's generated code.
+    program: String,
+    /// Of all parameters, where nothing varies.
+    parameters: Ordered<f64>,
+    design: &'static str,
+    sets: u64,
+    seed: u64,
+    /// Ends of what varies; of a posterior its ranges.
+    varied: Ordered<(f64, f64)>,
+    posterior: Option<Drawn>,
+    rides: Vec<(f64, f64)>,
+    /// Radius and static deflection of the tyre, and the load on it.
+    tyre: Option<[f64; 3]>,
+    part: String,
+    pub rows: u64,
+    columns: Vec<String>,
+}
+
+/// What a posterior is.
+#[derive(Serialize)]
+struct Drawn {
+    /// Values and standard errors.
+    estimates: Vec<(f64, f64)>,
+    /// The first draw, which tells its correlations.
+    first: Vec<f64>,
+}
+
+/// Whether there is something to be done.
+#[derive(Debug, PartialEq)]
+pub(super) enum Standing {
+    /// The file is whole.
+    Done,
+    /// It is begun, or not even that.
+    Open,
+}
+
+/// What the numbers of a design follow from, beside its axes.
+pub(super) struct Choice<'a> {
+    /// Its name on the command line.
+    pub scheme: &'static str,
+    /// Seed.
+    pub seed: u64,
+    /// Which part.
+    pub part: Part,
+    /// Text of the program that computes them.
+    pub program: &'a str,
+}
+
+impl Ledger {
+    /// Of an ensemble.
+    pub fn new<M: Model + ?Sized>(of: &Ensemble<'_, M>, choice: &Choice, columns: &[String], rows: u64) -> Self {
+        let about = of.model.about();
+        let name = |place: usize| about.parameters[place].name.to_string();
+        let values = of.values.as_slice().iter().enumerate();
+        let track = of.track.as_ref();
+        let rides = track.map_or(&[][..], |track| &track.rides);
+        let axes = of.design.axes().iter();
+        Ledger {
+            qcar: env!("CARGO_PKG_VERSION"),
+            model: about.name.to_string(),
+            program: format!("{:016x}", fingerprint(choice.program)),
+            parameters: values.map(|(place, value)| (name(place), *value)).collect(),
+            design: choice.scheme,
+            sets: of.design.count().unwrap_or(u64::MAX),
+            seed: choice.seed,
+            varied: axes.map(|axis| (name(axis.parameter), axis.range)).collect(),
+            posterior: posterior(&of.design),
+            rides: rides.iter().map(|ride| (ride.height, ride.speed)).collect(),
+            tyre: track.map(|track| [track.tyre.radius(), track.tyre.static_deflection(), track.load]),
+            part: format!("{}/{}", choice.part.number, choice.part.of),
+            rows,
+            columns: columns.to_vec(),
+        }
+    }
+
+    /// Looks at what stands at a path, and writes this beside it where there is something to be done.
+    ///
+    /// # Errors
+    /// Results of something else, and a place that cannot be written to.
+    pub fn stand_beside(&self, path: &Path) -> Result<Standing, InputError> {
+        let beside = beside(path);
+        let own = serde_json::to_value(self).expect("keys are strings");
+        let there = std::fs::read_to_string(&beside).ok();
+        let there: Option<Value> = there.and_then(|text| serde_json::from_str(&text).ok());
+        let results = [path.to_path_buf(), unfinished(path)];
+        if let Some(file) = results.iter().find(|file| file.exists()) {
+            refuse_others(file, &own, there.as_ref())?;
+        }
+        if path.exists() {
+            return Ok(Standing::Done);
+        }
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let name = beside.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        put(folder, name, &self.text())?;
+        Ok(Standing::Open)
+    }
+
+    /// As it is written.
+    pub fn text(&self) -> String {
+        let mut text = serde_json::to_string_pretty(self).expect("keys are strings");
+        text.push('\n');
+        text
+    }
+}
+
+/// Where it is written.
+fn beside(path: &Path) -> PathBuf {
+    let mut name = path.as_os_str().to_owned();
+    name.push(".design.json");
+    name.into()
+}
+
+fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), InputError> {
+    let differs = |there: &Value| {
+        let keys = own.as_object()?.iter();
+        let mut differing = keys.filter(|(key, value)| there.get(key) != Some(value));
+        let (key, value) = differing.next()?;
+        let shown = |value: &Value| {
+            let text = value.to_string();
+            if text.len() > 60 { "something else".into() } else { text }
+        };
+        Some((
+            key.clone(),
+            there.get(key).map_or("nothing".into(), shown),
+            shown(value),
+        ))
+    };
+    let (found, expected) = match there.map(differs) {
+        Some(None) => return Ok(()),
+        Some(Some((key, there, own))) => (
+            format!("results of another command, whose `{key}` is {there}"),
+            format!("a new file, or results whose `{key}` is {own}"),
+        ),
+        None => (
+            "a file of which nothing tells what it is".into(),
+            "a new file, or one that this command has begun".into(),
+        ),
+    };
+    let remedy = "choose another file, or remove it";
+    Err(Problem::new(file, Place::File, found, expected, remedy).into())
+}
+
+fn posterior(design: &Design) -> Option<Drawn> {
+    let estimates = design.posterior()?.estimates().iter();
+    Some(Drawn {
+        estimates: estimates.map(|own| (own.value, own.stderr)).collect(),
+        first: design.set(0),
+    })
+}
+
+/// FNV-1a of 64 bits (Fowler, Noll and Vo).
+fn fingerprint(text: &str) -> u64 {
+    let start = 0xcbf2_9ce4_8422_2325;
+    let next = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    text.bytes().fold(start, next)
+}

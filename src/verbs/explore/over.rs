@@ -1,0 +1,70 @@
+//! `--rides`: over which cleats, how fast.
+
+use std::str::FromStr;
+
+use qcar_runtime::campaign::Declared;
+use qcar_runtime::error::InputError;
+use qcar_runtime::simulate::Standard;
+
+use crate::failure::flag;
+
+/// `standard`, or a height and a speed such as `20mm@30km/h`.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Over {
+    /// The twelve runs of the thesis.
+    Standard,
+    /// A cleat: its height in m, and the speed in m/s.
+    Cleat(f64, f64),
+}
+
+impl FromStr for Over {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        if text.trim() == "standard" {
+            return Ok(Over::Standard);
+        }
+        let wrong = || format!("expected `standard`, or HEIGHT@SPEED such as 20mm@30km/h, found `{text}`");
+        let (height, speed) = text.split_once('@').ok_or_else(wrong)?;
+        let positive = |text: &str, unit: &str| {
+            let number = text.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+            let quantity = || Declared::quantity(text).filter(|(_, own)| own.is_like(unit));
+            let value = number.or_else(|| Some(quantity()?.0));
+            value.filter(|value| *value > 0.0).ok_or_else(wrong)
+        };
+        Ok(Over::Cleat(positive(height, "m")?, positive(speed, "m/s")?))
+    }
+}
+
+/// The rides themselves.
+///
+/// # Errors
+/// A height that makes no cleat.
+pub(super) fn rides(wanted: &[Over]) -> Result<Vec<Standard>, InputError> {
+    let mut rides = Vec::new();
+    for own in wanted {
+        match own {
+            Over::Standard => rides.extend(Standard::all().expect("the standard cleats are roads")),
+            Over::Cleat(height, speed) => rides.push(Standard::over(*height, *speed).map_err(|error| {
+                let remedy = "choose another height, such as 20mm";
+                flag("--rides", error, "a cleat to drive over", remedy)
+            })?),
+        }
+    }
+    Ok(rides)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Over;
+
+    #[test]
+    fn heights_and_speeds_have_units() {
+        assert_eq!("20mm@36km/h".parse(), Ok(Over::Cleat(0.02, 10.0)));
+        assert_eq!("0.02@10".parse(), Ok(Over::Cleat(0.02, 10.0)));
+        assert_eq!("standard".parse(), Ok(Over::Standard));
+        for text in ["", "20mm", "20mm@", "20kg@10", "0@10", "20mm@-3", "fast"] {
+            assert!(text.parse::<Over>().is_err(), "{text}");
+        }
+    }
+}
