@@ -21,7 +21,9 @@ pub mod histories;
 pub mod report;
 // Results as workbooks.
 pub mod spreadsheet;
-// Signs of life meanwhile.
+// Work that is given up
+pub mod stopping;
+// at one of its signs of life.
 pub mod progress;
 // What becomes of both when the user stops the work.
 pub mod interruption;

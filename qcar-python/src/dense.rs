@@ -1,0 +1,91 @@
+//! Matrices and their parameter Jacobians for many parameter sets: nonzeros computed in parallel, then put into dense arrays.
+
+use ndarray::{Array3, Array4, ArrayView2};
+use qcar_runtime::model::{About, Entry, Matrix, Model};
+use rayon::prelude::*;
+
+/// A, B, C and D, in that order.
+pub const ALL: [Matrix; 4] = [Matrix::A, Matrix::B, Matrix::C, Matrix::D];
+
+/// Sets from which on threads pay.
+const FEW: usize = 64;
+
+/// Where matrices are taken: a row of parameters, states and inputs for each set.
+pub struct At<'a> {
+    /// Parameters.
+    pub p: ArrayView2<'a, f64>,
+    /// States.
+    pub x: ArrayView2<'a, f64>,
+    /// Inputs.
+    pub u: ArrayView2<'a, f64>,
+}
+
+impl At<'_> {
+    /// The nonzeros of each set in a row of `width`.
+    fn rows(&self, width: usize, one: impl Fn(&[f64], &[f64], &[f64], &mut [f64]) + Sync) -> Vec<f64> {
+        let mut rows = vec![0.0; self.p.nrows() * width];
+        let work = |(set, into): (usize, &mut [f64])| {
+            let row = |of: &ArrayView2<'_, f64>| of.row(set).to_vec();
+            one(&row(&self.p), &row(&self.x), &row(&self.u), into);
+        };
+        match width {
+            0 => {}
+            _ if self.p.nrows() < FEW => rows.chunks_exact_mut(width).enumerate().for_each(work),
+            _ => rows.par_chunks_exact_mut(width).enumerate().for_each(work),
+        }
+        rows
+    }
+}
+
+/// Rows and columns of a matrix.
+fn shape(about: &About, matrix: Matrix) -> (usize, usize) {
+    let [states, inputs, outputs] = [about.states.len(), about.inputs.len(), about.outputs.len()];
+    match matrix {
+        Matrix::A => (states, states),
+        Matrix::B => (states, inputs),
+        Matrix::C => (outputs, states),
+        Matrix::D => (outputs, inputs),
+    }
+}
+
+fn place(entry: &Entry) -> (usize, usize) {
+    (entry.row.into(), entry.column.into())
+}
+
+/// A, B, C and D, each (sets, rows, columns).
+pub fn matrices(model: &dyn Model, at: &At<'_>) -> [Array3<f64>; 4] {
+    let about = model.about();
+    let entries = &about.matrices;
+    let rows = at.rows(entries.len(), |p, x, u, into| model.matrices(p, x, u, into));
+    ALL.map(|matrix| {
+        let (height, width) = shape(about, matrix);
+        let mut dense = Array3::zeros((at.p.nrows(), height, width));
+        for (nth, entry) in entries.iter().enumerate().filter(|(_, entry)| entry.matrix == matrix) {
+            let (row, column) = place(entry);
+            for (set, values) in rows.chunks_exact(entries.len()).enumerate() {
+                dense[[set, row, column]] = values[nth];
+            }
+        }
+        dense
+    })
+}
+
+/// Their derivatives by every parameter, each (parameters, sets, rows, columns). What a parameter moves through those that take
+/// their value from it counts as its own.
+pub fn jacobians(model: &dyn Model, at: &At<'_>, leader: &[usize]) -> [Array4<f64>; 4] {
+    let about = model.about();
+    let entries = &about.sensitivities;
+    let rows = at.rows(entries.len(), |p, x, u, into| model.sensitivities(p, x, u, into));
+    ALL.map(|matrix| {
+        let (height, width) = shape(about, matrix);
+        let mut dense = Array4::zeros((about.parameters.len(), at.p.nrows(), height, width));
+        let own = entries.iter().enumerate().filter(|(_, (entry, _))| entry.matrix == matrix);
+        for (nth, (entry, parameter)) in own {
+            let (row, column) = place(entry);
+            for (set, values) in rows.chunks_exact(entries.len()).enumerate() {
+                dense[[leader[usize::from(*parameter)], set, row, column]] += values[nth];
+            }
+        }
+        dense
+    })
+}

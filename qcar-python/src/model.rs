@@ -1,0 +1,185 @@
+//! A model behind Python's `qcar.Model`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::Arc;
+
+use ndarray::{Array2, Array3, Array4};
+use numpy::{Complex64, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArray5, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use qcar::catalogue::{self, Loaded};
+use qcar_runtime::modes;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::road::Road;
+use qcar_runtime::simulate::tyre_of;
+
+use crate::dense::{self, At};
+use crate::described::described;
+use crate::long::long;
+use crate::rides::{self, Common, Each};
+use crate::verbs::variant_named;
+use crate::{errors, responses, sets};
+
+/// A model that can run: shipped, or read.
+#[pyclass(frozen, module = "qcar._native")]
+pub struct Model {
+    pub(crate) loaded: Arc<Loaded>,
+}
+
+type Matrices<'py> = [Bound<'py, PyArray3<f64>>; 4];
+type Jacobians<'py> = [Bound<'py, PyArray4<f64>>; 4];
+type Response<'py> = (Bound<'py, PyArray4<Complex64>>, Option<Bound<'py, PyArray5<Complex64>>>);
+
+#[pymethods]
+impl Model {
+    /// A shipped model by its name, or a model file by its path.
+    #[staticmethod]
+    fn load(py: Python<'_>, model: &str) -> PyResult<Self> {
+        let loaded = py.detach(|| catalogue::load(model)).map_err(errors::of_model)?;
+        Ok(Model { loaded: Arc::new(loaded) })
+    }
+
+    /// A model from its text.
+    #[staticmethod]
+    fn text(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
+        let loaded = py.detach(|| catalogue::load_text(name, text)).map_err(errors::of_model)?;
+        Ok(Model { loaded: Arc::new(loaded) })
+    }
+
+    /// Names, units and sizes as JSON.
+    fn about(&self) -> String {
+        described(self.loaded.about())
+    }
+
+    /// From the columns `given` (sets, names) of some parameters: all parameters (sets, parameters), and whom each follows.
+    fn resolve<'py>(
+        &self,
+        py: Python<'py>,
+        names: Vec<String>,
+        given: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<usize>)> {
+        let sets = sets::resolve(&self.loaded, &names, given.as_array())?;
+        Ok((sets.p.into_pyarray(py), sets.leader))
+    }
+
+    /// A, B, C and D of sets `p` (sets, parameters) at `x` (sets, states) and `u` (sets, inputs).
+    fn matrices<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        x: PyReadonlyArray2<'py, f64>,
+        u: PyReadonlyArray2<'py, f64>,
+    ) -> Matrices<'py> {
+        let at = At { p: p.as_array(), x: x.as_array(), u: u.as_array() };
+        let all: [Array3<f64>; 4] = py.detach(|| dense::matrices(&**self.loaded, &at));
+        all.map(|matrix| matrix.into_pyarray(py))
+    }
+
+    /// Their derivatives, parameters along the first axis.
+    fn jacobians<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        x: PyReadonlyArray2<'py, f64>,
+        u: PyReadonlyArray2<'py, f64>,
+        leader: Vec<usize>,
+    ) -> Jacobians<'py> {
+        let at = At { p: p.as_array(), x: x.as_array(), u: u.as_array() };
+        let all: [Array4<f64>; 4] = py.detach(|| dense::jacobians(&**self.loaded, &at, &leader));
+        all.map(|matrix| matrix.into_pyarray(py))
+    }
+
+    /// Responses of outputs to excitations (sets, lines, outputs, excitations), and their derivatives where wanted.
+    fn responses<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        leader: Vec<usize>,
+        frequency: PyReadonlyArray1<'py, f64>,
+        jacobian: bool,
+    ) -> Response<'py> {
+        let (sets, frequency): (Array2<f64>, Vec<f64>) = (p.as_array().to_owned(), frequency.as_array().to_vec());
+        let found = py.detach(|| responses::responses(&**self.loaded, sets.view(), &leader, &frequency, jacobian));
+        (found.value.into_pyarray(py), found.jacobian.map(|own| own.into_pyarray(py)))
+    }
+
+    /// Frequencies (Hz), damping ratios and, for each mode, the amplitudes of what moves by location and axis.
+    fn modes(&self, p: PyReadonlyArray1<'_, f64>) -> PyResult<Vec<Mode>> {
+        let about = self.loaded.about();
+        let names = about.parameters.iter().map(|own| own.name.to_string());
+        let given: BTreeMap<String, f64> = names.zip(p.as_array().iter().copied()).collect();
+        let values = Values::resolve(about, &given, &BTreeMap::new());
+        let values = values.map_err(|errors| errors::of_parameters(errors[0].clone()))?;
+        let mode = |own: modes::Mode| {
+            let shape = own.shape.into_iter();
+            let shape = shape.map(|part| (part.location, part.axis, part.amplitude));
+            (own.frequency, own.damping, shape.collect())
+        };
+        Ok(modes::modes(&**self.loaded, &values).into_iter().map(mode).collect())
+    }
+
+    /// Rides: outputs, tyre, peaks, after-shakes, static deflections and lift-offs; see `rides.rs`.
+    fn rides<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        height: PyReadonlyArray1<'py, f64>,
+        speed: PyReadonlyArray1<'py, f64>,
+        setup: Setup,
+    ) -> PyResult<Rides<'py>> {
+        let each = Each { p: p.as_array(), height: height.as_array(), speed: speed.as_array() };
+        let common = setup.common()?;
+        let recorded = long(py, || rides::rides(&self.loaded, &common, &each))?.map_err(errors::of_ride)?;
+        Ok((
+            recorded.outputs.into_pyarray(py),
+            recorded.tyre.into_pyarray(py),
+            recorded.peak.into_pyarray(py),
+            recorded.after_shake.into_pyarray(py),
+            recorded.static_deflection.into_pyarray(py),
+            recorded.lift_offs,
+        ))
+    }
+}
+
+/// Frequency, damping, and amplitudes by location and axis.
+type Mode = (f64, f64, Vec<(String, String, Complex64)>);
+
+type Rides<'py> = (
+    Bound<'py, PyArray3<f64>>,
+    Bound<'py, PyArray3<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Bound<'py, PyArray1<f64>>,
+    Vec<Vec<f64>>,
+);
+
+/// What all rides have in common, as Python gives it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Setup {
+    vehicle: BTreeMap<String, f64>,
+    variant: String,
+    road: Option<Vec<[f64; 2]>>,
+    cleat: [f64; 3],
+    sample_rate: f64,
+    samples: usize,
+    tolerance: f64,
+}
+
+impl Setup {
+    fn common(&self) -> PyResult<Common> {
+        let (tyre, load) = tyre_of(&|name| self.vehicle.get(name).copied(), Path::new("vehicle"))
+            .map_err(errors::of_parameters)?;
+        let road = self.road.as_deref().map(Road::from_points).transpose().map_err(errors::of_ride)?;
+        Ok(Common {
+            tyre,
+            load,
+            variant: variant_named(&self.variant)?.into(),
+            road,
+            cleat: self.cleat,
+            sample_rate: self.sample_rate,
+            samples: self.samples,
+            tolerance: self.tolerance,
+        })
+    }
+}
