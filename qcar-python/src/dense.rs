@@ -79,7 +79,10 @@ pub fn jacobians(model: &dyn Model, at: &At<'_>, leader: &[usize]) -> [Array4<f6
     ALL.map(|matrix| {
         let (height, width) = shape(about, matrix);
         let mut dense = Array4::zeros((about.parameters.len(), at.p.nrows(), height, width));
-        let own = entries.iter().enumerate().filter(|(_, (entry, _))| entry.matrix == matrix);
+        let own = entries
+            .iter()
+            .enumerate()
+            .filter(|(_, (entry, _))| entry.matrix == matrix);
         for (nth, (entry, parameter)) in own {
             let (row, column) = place(entry);
             for (set, values) in rows.chunks_exact(entries.len()).enumerate() {

@@ -4,10 +4,30 @@ use pyo3::PyErr;
 use pyo3::create_exception;
 use pyo3::exceptions::PyValueError;
 
-create_exception!(qcar, Error, PyValueError, "What was given to qcar cannot be used. The message says where and why, and what to do about it.");
-create_exception!(qcar, ModelError, Error, "A model that the compiler refuses, or a name or path that is no model.");
-create_exception!(qcar, ParameterError, Error, "A name that the model does not have, or a value that it cannot take.");
-create_exception!(qcar, CampaignError, Error, "A campaign that cannot be read, or that says nothing of its model.");
+create_exception!(
+    qcar,
+    Error,
+    PyValueError,
+    "What was given to qcar cannot be used. The message says where and why, and what to do about it."
+);
+create_exception!(
+    qcar,
+    ModelError,
+    Error,
+    "A model that the compiler refuses, or a name or path that is no model."
+);
+create_exception!(
+    qcar,
+    ParameterError,
+    Error,
+    "A name that the model does not have, or a value that it cannot take."
+);
+create_exception!(
+    qcar,
+    CampaignError,
+    Error,
+    "A campaign that cannot be read, or that says nothing of its model."
+);
 create_exception!(qcar, SimulationError, Error, "A ride that cannot be simulated.");
 
 /// A failure in its own words, less the line break that ends them on a terminal.

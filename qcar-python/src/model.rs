@@ -5,7 +5,9 @@ use std::path::Path;
 use std::sync::Arc;
 
 use ndarray::{Array2, Array3, Array4};
-use numpy::{Complex64, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArray5, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{
+    Complex64, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArray5, PyReadonlyArray1, PyReadonlyArray2,
+};
 use pyo3::prelude::*;
 use qcar::catalogue::{self, Loaded};
 use qcar_runtime::modes;
@@ -36,14 +38,20 @@ impl Model {
     #[staticmethod]
     fn load(py: Python<'_>, model: &str) -> PyResult<Self> {
         let loaded = py.detach(|| catalogue::load(model)).map_err(errors::of_model)?;
-        Ok(Model { loaded: Arc::new(loaded) })
+        Ok(Model {
+            loaded: Arc::new(loaded),
+        })
     }
 
     /// A model from its text.
     #[staticmethod]
     fn text(py: Python<'_>, text: &str, name: &str) -> PyResult<Self> {
-        let loaded = py.detach(|| catalogue::load_text(name, text)).map_err(errors::of_model)?;
-        Ok(Model { loaded: Arc::new(loaded) })
+        let loaded = py
+            .detach(|| catalogue::load_text(name, text))
+            .map_err(errors::of_model)?;
+        Ok(Model {
+            loaded: Arc::new(loaded),
+        })
     }
 
     /// Names, units and sizes as JSON.
@@ -70,7 +78,11 @@ impl Model {
         x: PyReadonlyArray2<'py, f64>,
         u: PyReadonlyArray2<'py, f64>,
     ) -> Matrices<'py> {
-        let at = At { p: p.as_array(), x: x.as_array(), u: u.as_array() };
+        let at = At {
+            p: p.as_array(),
+            x: x.as_array(),
+            u: u.as_array(),
+        };
         let all: [Array3<f64>; 4] = py.detach(|| dense::matrices(&**self.loaded, &at));
         all.map(|matrix| matrix.into_pyarray(py))
     }
@@ -84,7 +96,11 @@ impl Model {
         u: PyReadonlyArray2<'py, f64>,
         leader: Vec<usize>,
     ) -> Jacobians<'py> {
-        let at = At { p: p.as_array(), x: x.as_array(), u: u.as_array() };
+        let at = At {
+            p: p.as_array(),
+            x: x.as_array(),
+            u: u.as_array(),
+        };
         let all: [Array4<f64>; 4] = py.detach(|| dense::jacobians(&**self.loaded, &at, &leader));
         all.map(|matrix| matrix.into_pyarray(py))
     }
@@ -100,7 +116,10 @@ impl Model {
     ) -> Response<'py> {
         let (sets, frequency): (Array2<f64>, Vec<f64>) = (p.as_array().to_owned(), frequency.as_array().to_vec());
         let found = py.detach(|| responses::responses(&**self.loaded, sets.view(), &leader, &frequency, jacobian));
-        (found.value.into_pyarray(py), found.jacobian.map(|own| own.into_pyarray(py)))
+        (
+            found.value.into_pyarray(py),
+            found.jacobian.map(|own| own.into_pyarray(py)),
+        )
     }
 
     /// Frequencies (Hz), damping ratios and, for each mode, the amplitudes of what moves by location and axis.
@@ -127,7 +146,11 @@ impl Model {
         speed: PyReadonlyArray1<'py, f64>,
         setup: Setup,
     ) -> PyResult<Rides<'py>> {
-        let each = Each { p: p.as_array(), height: height.as_array(), speed: speed.as_array() };
+        let each = Each {
+            p: p.as_array(),
+            height: height.as_array(),
+            speed: speed.as_array(),
+        };
         let common = setup.common()?;
         let recorded = long(py, || rides::rides(&self.loaded, &common, &each))?.map_err(errors::of_ride)?;
         Ok((
@@ -168,9 +191,14 @@ struct Setup {
 
 impl Setup {
     fn common(&self) -> PyResult<Common> {
-        let (tyre, load) = tyre_of(&|name| self.vehicle.get(name).copied(), Path::new("vehicle"))
-            .map_err(errors::of_parameters)?;
-        let road = self.road.as_deref().map(Road::from_points).transpose().map_err(errors::of_ride)?;
+        let (tyre, load) =
+            tyre_of(&|name| self.vehicle.get(name).copied(), Path::new("vehicle")).map_err(errors::of_parameters)?;
+        let road = self
+            .road
+            .as_deref()
+            .map(Road::from_points)
+            .transpose()
+            .map_err(errors::of_ride)?;
         Ok(Common {
             tyre,
             load,

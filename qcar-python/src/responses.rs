@@ -30,11 +30,21 @@ pub fn responses(
     // Sets first, so that each thread writes what is its own.
     let mut by_set = Array5::zeros((sets.nrows(), parameters, lines, outputs, excitations));
     let work = |((mut value, mut slopes), p): ((_, ArrayViewMut4<'_, _>), ndarray::ArrayView1<'_, f64>)| {
-        one(model, &p.to_vec(), leader, frequency, &mut value, jacobian.then_some(&mut slopes));
+        one(
+            model,
+            &p.to_vec(),
+            leader,
+            frequency,
+            &mut value,
+            jacobian.then_some(&mut slopes),
+        );
     };
     let values = value.axis_chunks_iter_mut(Axis(0), 1).into_par_iter();
     let slopes = by_set.axis_iter_mut(Axis(0)).into_par_iter();
-    values.zip(slopes).zip(sets.axis_iter(Axis(0)).into_par_iter()).for_each(work);
+    values
+        .zip(slopes)
+        .zip(sets.axis_iter(Axis(0)).into_par_iter())
+        .for_each(work);
     let by_parameter = || by_set.permuted_axes([1, 0, 2, 3, 4]).as_standard_layout().into_owned();
     Responses {
         value,

@@ -79,7 +79,13 @@ pub fn rides(model: &Loaded, common: &Common, each: &Each<'_>) -> Result<Recorde
     let told = |_, _| stopping::here(stop.as_ref());
     let done = progress::map(&all, &told, |&nth| one(model, common, each, nth));
     for (nth, own) in done.into_iter().enumerate() {
-        let own = own.map_err(|error| if count == 1 { error } else { format!("ride {nth} of {count}: {error}") })?;
+        let own = own.map_err(|error| {
+            if count == 1 {
+                error
+            } else {
+                format!("ride {nth} of {count}: {error}")
+            }
+        })?;
         recorded.take(nth, own, wheel, common.sample_rate);
     }
     Ok(recorded)
@@ -120,14 +126,19 @@ impl Recorded {
     fn take(&mut self, nth: usize, ride: Ride, wheel: Option<usize>, sample_rate: f64) {
         let felt = wheel.and_then(|wheel| Alignment::at_peak(&ride.outputs[wheel], &ride.outputs[wheel]).ok());
         for (output, signal) in ride.outputs.iter().enumerate() {
-            self.outputs.slice_mut(ndarray::s![nth, output, ..]).assign(&ArrayView1::from(signal));
-            let errors = felt.and_then(|felt| Errors::between(signal, signal, &felt, sample_rate, &Windows::default()).ok());
+            self.outputs
+                .slice_mut(ndarray::s![nth, output, ..])
+                .assign(&ArrayView1::from(signal));
+            let errors =
+                felt.and_then(|felt| Errors::between(signal, signal, &felt, sample_rate, &Windows::default()).ok());
             if let Some(errors) = errors {
                 (self.peak[[nth, output]], self.after_shake[[nth, output]]) = (errors.peaks[1], errors.after_shakes[1]);
             }
         }
         for (row, signal) in [&ride.force[0], &ride.force[1], &ride.area].into_iter().enumerate() {
-            self.tyre.slice_mut(ndarray::s![nth, row, ..]).assign(&ArrayView1::from(signal));
+            self.tyre
+                .slice_mut(ndarray::s![nth, row, ..])
+                .assign(&ArrayView1::from(signal));
         }
         self.static_deflection[nth] = ride.static_deflection;
         self.lift_offs.push(ride.lift_offs);
@@ -140,7 +151,9 @@ fn wheel(about: &About) -> Option<usize> {
     let of = |mass: &str| {
         about.outputs.iter().position(|output| {
             let signal = &output.signal;
-            signal.kind == SignalKind::Motion(Quantity::Acceleration) && signal.location == mass && signal.axis == roles.axis
+            signal.kind == SignalKind::Motion(Quantity::Acceleration)
+                && signal.location == mass
+                && signal.axis == roles.axis
         })
     };
     roles.feeling().find_map(of)

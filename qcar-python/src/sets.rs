@@ -24,9 +24,8 @@ pub struct Sets {
 /// zero.
 pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> PyResult<Sets> {
     let about = model.about();
-    let row = |set: usize| -> BTreeMap<String, f64> {
-        names.iter().cloned().zip(given.row(set).iter().copied()).collect()
-    };
+    let row =
+        |set: usize| -> BTreeMap<String, f64> { names.iter().cloned().zip(given.row(set).iter().copied()).collect() };
     let resolved = |set: usize| {
         let values = Values::resolve(about, &row(set), &BTreeMap::new());
         values.map_err(|problems| {
@@ -48,7 +47,11 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         for (&place, &value) in places.iter().zip(own) {
             values.set(place, value);
         }
-        into.assign(&ArrayView2::from_shape((1, values.as_slice().len()), values.as_slice()).expect("one row").row(0));
+        into.assign(
+            &ArrayView2::from_shape((1, values.as_slice().len()), values.as_slice())
+                .expect("one row")
+                .row(0),
+        );
         let inertias = model.check_inertias(values.as_slice());
         inertias.map_err(|error| errors::of_parameters(format!("{}{error}", which(set, given.nrows()))))?;
     }

@@ -35,9 +35,6 @@ def axle_d() -> qcar.Model:
 
 @pytest.fixture(scope="session")
 def axle_d_values(axle_d: qcar.Model) -> dict[str, float]:
-    """Some value for every parameter of it: its default, else the geometric mean of its range."""
-
-    def some(own: qcar.Parameter) -> float:
-        return own.default if own.default is not None else (own.range[0] * own.range[1]) ** 0.5
-
-    return {own.name: some(own) for own in axle_d.parameters if own.same_as is None}
+    """Some value for every parameter of it: the geometric mean of its range."""
+    values = {own.name: (own.range[0] * own.range[1]) ** 0.5 for own in axle_d.parameters if own.range}
+    return {**values, "static_tire_load": 4400.0, "static_tire_def": 0.02}

@@ -19,7 +19,8 @@ pub fn map<T: Sync, U: Send>(items: &[T], told: Told<'_>, work: impl Fn(&T) -> U
         told(done.fetch_add(1, Ordering::Relaxed) + 1, items.len());
         result
     };
-    items.par_iter().map(one).collect()
+    // Nobody waits for the others once one has panicked, which is how work is given up.
+    items.par_iter().map(one).panic_fuse().collect()
 }
 
 #[cfg(test)]

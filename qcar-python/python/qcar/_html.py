@@ -39,8 +39,12 @@ def model(of: Model) -> str:
         (own.name, _default(own.default, own.same_as), own.unit, _range(own.range), own.doc) for own in of.parameters
     )
     parameters = table(["parameter", "default", "unit", "range", "what it is"], rows)
-    kinds = {"states": of.states, "inputs": of.inputs, "outputs": of.outputs}
-    lists = table(["", "names"], ((kind, ", ".join(own.name for own in some)) for kind, some in kinds.items()))
+    kinds = {
+        "states": [own.name for own in of.states],
+        "inputs": [own.name for own in of.inputs],
+        "outputs": [own.name for own in of.outputs],
+    }
+    lists = table(["", "names"], ((kind, ", ".join(names)) for kind, names in kinds.items()))
     return titled(of.name, of.doc, parameters, lists)
 
 

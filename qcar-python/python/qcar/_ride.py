@@ -126,8 +126,8 @@ def ride(
         "tolerance": float(tolerance),
     }
     every = np.broadcast_to(p.reshape(*batch, p.shape[-1]), (*shape, p.shape[-1])).reshape(-1, p.shape[-1])
-    flat = [np.ascontiguousarray(np.broadcast_to(own, shape)).reshape(-1) for own in (heights, speeds)]
-    return _ride(model, shape, setup, model._native.rides(np.ascontiguousarray(every), *flat, setup))
+    height_of_each, speed_of_each = (np.array(np.broadcast_to(own, shape)).reshape(-1) for own in (heights, speeds))
+    return _ride(model, shape, setup, model._native.rides(np.array(every), height_of_each, speed_of_each, setup))
 
 
 def _ride(model: Model, shape: tuple[int, ...], setup: dict[str, Any], found: tuple[Any, ...]) -> Ride:
@@ -176,7 +176,7 @@ def _corners(road: tuple[npt.ArrayLike, npt.ArrayLike]) -> list[list[float]]:
         raise _native.ParameterError("`road` is a pair of x and z, in m") from None
     if x.ndim != 1 or x.shape != z.shape:
         raise _native.ParameterError(f"`road` is a pair of rows of one length, found {x.shape} and {z.shape}")
-    return np.column_stack([x, z]).tolist()
+    return [[float(own), float(height)] for own, height in zip(x, z)]
 
 
 def read_vehicle(path: str | os.PathLike[str]) -> dict[str, float]:
@@ -257,9 +257,8 @@ def simulate(
     ------
     qcar.CampaignError
     """
-    file, values = (None, []) if params is None else (params, [])
-    if isinstance(params, Mapping):
-        file, values = None, [(name, float(value)) for name, value in params.items()]
+    file = None if params is None or isinstance(params, Mapping) else params
+    values = [(name, float(value)) for name, value in params.items()] if isinstance(params, Mapping) else []
     text, histories = _native.simulate_campaign(campaign, model, file, values, variant)
     found = json.loads(text)
     runs = {
