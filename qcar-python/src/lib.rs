@@ -9,8 +9,10 @@ mod described;
 mod sets;
 // Matrices and their derivatives,
 mod dense;
-// and responses.
+// responses,
 mod responses;
+// and ratios of them.
+mod ratios;
 // Work that a signal stops:
 mod long;
 // rides,

@@ -20,7 +20,7 @@ use crate::described::described;
 use crate::long::long;
 use crate::rides::{self, Common, Each};
 use crate::verbs::variant_named;
-use crate::{errors, responses, sets};
+use crate::{errors, ratios, responses, sets};
 
 /// A model that can run: shipped, or read.
 #[pyclass(frozen, module = "qcar._native")]
@@ -30,6 +30,7 @@ pub struct Model {
 
 type Matrices<'py> = [Bound<'py, PyArray3<f64>>; 4];
 type Jacobians<'py> = [Bound<'py, PyArray4<f64>>; 4];
+type RatiosOfSets<'py> = (Bound<'py, PyArray3<Complex64>>, Option<Bound<'py, PyArray4<Complex64>>>);
 type Response<'py> = (Bound<'py, PyArray4<Complex64>>, Option<Bound<'py, PyArray5<Complex64>>>);
 
 #[pymethods]
@@ -120,6 +121,22 @@ impl Model {
             found.value.into_pyarray(py),
             found.jacobian.map(|own| own.into_pyarray(py)),
         )
+    }
+
+    /// Ratios of the channels (sets, lines, channels), and their derivatives where wanted.
+    fn ratios<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        leader: Vec<usize>,
+        frequency: PyReadonlyArray1<'py, f64>,
+        jacobian: bool,
+    ) -> PyResult<RatiosOfSets<'py>> {
+        let (sets, frequency) = (p.as_array(), frequency.as_array().to_vec());
+        let found = py.detach(|| ratios::ratios(&self.loaded, sets, &leader, &frequency, jacobian));
+        let found = found.map_err(errors::of_model)?;
+        let slopes = found.jacobian.map(|own| own.into_pyarray(py));
+        Ok((found.value.into_pyarray(py), slopes))
     }
 
     /// Frequencies (Hz), damping ratios and, for each mode, the amplitudes of what moves by location and axis.

@@ -6,7 +6,7 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use rayon::prelude::*;
 
-/// The response (sets, lines, outputs, excitations) and, where asked for, its derivatives (parameters, sets, lines, outputs,
+/// The response (sets, lines, outputs, excitations) and, where asked for, its derivatives (sets, parameters, lines, outputs,
 /// excitations).
 pub struct Responses {
     /// Per m of a motion, per N of a force.
@@ -27,8 +27,7 @@ pub fn responses(
     let (lines, outputs, excitations) = (frequency.len(), about.outputs.len(), about.excitations.len());
     let parameters = if jacobian { about.parameters.len() } else { 0 };
     let mut value = Array4::zeros((sets.nrows(), lines, outputs, excitations));
-    // Sets first, so that each thread writes what is its own.
-    let mut by_set = Array5::zeros((sets.nrows(), parameters, lines, outputs, excitations));
+    let mut slopes_of_all = Array5::zeros((sets.nrows(), parameters, lines, outputs, excitations));
     let work = |((mut value, mut slopes), p): ((_, ArrayViewMut4<'_, _>), ndarray::ArrayView1<'_, f64>)| {
         one(
             model,
@@ -40,15 +39,14 @@ pub fn responses(
         );
     };
     let values = value.axis_chunks_iter_mut(Axis(0), 1).into_par_iter();
-    let slopes = by_set.axis_iter_mut(Axis(0)).into_par_iter();
+    let slopes = slopes_of_all.axis_iter_mut(Axis(0)).into_par_iter();
     values
         .zip(slopes)
         .zip(sets.axis_iter(Axis(0)).into_par_iter())
         .for_each(work);
-    let by_parameter = || by_set.permuted_axes([1, 0, 2, 3, 4]).as_standard_layout().into_owned();
     Responses {
         value,
-        jacobian: jacobian.then(by_parameter),
+        jacobian: jacobian.then_some(slopes_of_all),
     }
 }
 

@@ -97,6 +97,23 @@ def test_the_response_to_a_force_is_that_of_scipy(quarter_car):
         np.testing.assert_allclose(response[:, output, column], gain, rtol=1e-7)
 
 
+def test_ratios_are_those_of_responses(axle_d, axle_d_values):
+    frequencies = np.array([0.8, 4.0, 17.0])
+    ratios, slopes = axle_d.ratios(frequencies, axle_d_values, jacobian=True)
+    assert ratios.shape == (3, len(axle_d.channels)) == slopes["k_tire"].shape
+    response = axle_d.frf(frequencies, axle_d_values)[:, :, place(axle_d.excitations, "pad")]
+    acceleration = {own.location: response[:, row] for row, own in enumerate(axle_d.outputs) if own.axis == "z"}
+    acceleration["pad"] = -((2 * np.pi * frequencies) ** 2)
+    for column, name in enumerate(axle_d.channels):
+        below, above = name.split("_to_")
+        np.testing.assert_allclose(ratios[:, column], acceleration[above] / acceleration[below], rtol=1e-12)
+    step = 1.0
+    moved = [axle_d.ratios(frequencies, {**axle_d_values, "k_tire": axle_d_values["k_tire"] + h}) for h in (step, -step)]
+    np.testing.assert_allclose(slopes["k_tire"], (moved[0] - moved[1]) / (2 * step), rtol=1e-5, atol=1e-12)
+    two = axle_d.ratios(frequencies, {**axle_d_values, "k_tire": [2e5, axle_d_values["k_tire"]]})
+    np.testing.assert_array_equal(two[1], ratios)
+
+
 def test_derivatives_of_responses_are_their_difference_quotients(axle_d, axle_d_values):
     frequencies = [0.7, 3.0, 11.0, 35.0]
     response, slopes = axle_d.frf(frequencies, axle_d_values, jacobian=True)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Literal, Union, overload
 
 import numpy as np
@@ -27,6 +27,9 @@ from ._named import (
 #: Values by name, numbers or arrays that broadcast against each other; an array whose last axis is ``Model.parameters``; or none,
 #: where every parameter has a default.
 Parameters = Union[Mapping[str, npt.ArrayLike], npt.ArrayLike, None]
+
+#: What evaluates parameter sets at lines: values, and derivatives with parameters along the second axis.
+_OverLines = Callable[[Array, Sequence[int], Array, bool], tuple[ComplexArray, Union[ComplexArray, None]]]
 
 
 class Model:
@@ -159,13 +162,40 @@ class Model:
         derivatives
             With `jacobian`: for each parameter by name an array of the shape of the response.
         """
+        return self._over_lines(self._native.responses, frequencies, params, jacobian)
+
+    @overload
+    def ratios(
+        self, frequencies: npt.ArrayLike, params: Parameters = None, jacobian: Literal[False] = False
+    ) -> ComplexArray: ...
+
+    @overload
+    def ratios(
+        self, frequencies: npt.ArrayLike, params: Parameters = None, *, jacobian: Literal[True]
+    ) -> tuple[ComplexArray, dict[str, ComplexArray]]: ...
+
+    def ratios(
+        self, frequencies: npt.ArrayLike, params: Parameters = None, jacobian: bool = False
+    ) -> ComplexArray | tuple[ComplexArray, dict[str, ComplexArray]]:
+        """The named ratios of the model, such as the transmissibility ``pad_to_body``: (..., lines, channels).
+
+        Channels are in the order of `channels`; arguments as those of `frf`, and what drives a ratio is its denominator where that
+        can be prescribed, else the road. A ratio of two accelerations is that of the displacements, too.
+        """
+        return self._over_lines(self._native.ratios, frequencies, params, jacobian)
+
+    def _over_lines(
+        self, evaluate: _OverLines, frequencies: npt.ArrayLike, params: Parameters, jacobian: bool
+    ) -> ComplexArray | tuple[ComplexArray, dict[str, ComplexArray]]:
         p, leader, batch = self._resolve(params)
         lines = np.atleast_1d(np.asarray(frequencies, dtype=float))
         if lines.ndim != 1 or not np.all(np.isfinite(lines)) or not np.all(lines > 0):
             raise _native.ParameterError(f"frequencies are one row of numbers above 0 Hz, found {frequencies!r}")
-        value, slopes = self._native.responses(p, leader, np.ascontiguousarray(lines), bool(jacobian))
+        value, slopes = evaluate(p, leader, np.ascontiguousarray(lines), bool(jacobian))
         value = value.reshape(*batch, *value.shape[1:])
-        return value if slopes is None else (value, self._by_name(slopes, leader, batch))
+        if slopes is None:
+            return value
+        return value, self._by_name(np.moveaxis(slopes, 1, 0), leader, batch)
 
     def modes(self, params: Parameters = None) -> list[Mode]:
         """The natural vibrations of the model linearised at rest, lowest frequency first; for one parameter set."""

@@ -28,6 +28,9 @@ class Model:
     def responses(
         self, p: Array, leader: Sequence[int], frequency: Array, jacobian: bool
     ) -> tuple[ComplexArray, ComplexArray | None]: ...
+    def ratios(
+        self, p: Array, leader: Sequence[int], frequency: Array, jacobian: bool
+    ) -> tuple[ComplexArray, ComplexArray | None]: ...
     def modes(self, p: Array) -> list[tuple[float, float, list[tuple[str, str, complex]]]]: ...
     def rides(
         self, p: Array, height: Array, speed: Array, setup: dict[str, Any]
