@@ -104,7 +104,9 @@ def test_ratios_are_those_of_responses(axle_d, axle_d_values):
     response = axle_d.frf(frequencies, axle_d_values)[:, :, place(axle_d.excitations, "pad")]
     acceleration = {own.location: response[:, row] for row, own in enumerate(axle_d.outputs) if own.axis == "z"}
     acceleration["pad"] = -((2 * np.pi * frequencies) ** 2)
-    for column, name in enumerate(axle_d.channels):
+    vertical = [(column, name) for column, name in enumerate(axle_d.channels) if not name.endswith("_x")]
+    assert len(vertical) > 3
+    for column, name in vertical:
         below, above = name.split("_to_")
         np.testing.assert_allclose(ratios[:, column], acceleration[above] / acceleration[below], rtol=1e-12)
     step = 1.0

@@ -6,6 +6,7 @@
 """
 
 from ._discover import Verdict, discover
+from ._ensemble import ride_metrics
 from ._fit import Fit, Ratio, fit
 from ._model import Model
 from ._named import (
@@ -48,5 +49,6 @@ __all__ = [
     "read_parameters",
     "read_vehicle",
     "ride",
+    "ride_metrics",
     "simulate",
 ]
