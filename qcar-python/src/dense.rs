@@ -1,14 +1,15 @@
 //! Matrices and their parameter Jacobians for many parameter sets: nonzeros computed in parallel, then put into dense arrays.
 
 use ndarray::{Array3, Array4, ArrayView2};
+use qcar::stopping;
 use qcar_runtime::model::{About, Entry, Matrix, Model};
 use rayon::prelude::*;
 
 /// A, B, C and D, in that order.
 pub const ALL: [Matrix; 4] = [Matrix::A, Matrix::B, Matrix::C, Matrix::D];
 
-/// Sets from which on threads pay.
-const FEW: usize = 64;
+/// Below so many sets neither threads nor a look for signals pay.
+pub const FEW: usize = 64;
 
 /// Where matrices are taken: a row of parameters, states and inputs for each set.
 pub struct At<'a> {
@@ -24,14 +25,16 @@ impl At<'_> {
     /// The nonzeros of each set in a row of `width`.
     fn rows(&self, width: usize, one: impl Fn(&[f64], &[f64], &[f64], &mut [f64]) + Sync) -> Vec<f64> {
         let mut rows = vec![0.0; self.p.nrows() * width];
+        let stop = stopping::of_this_work();
         let work = |(set, into): (usize, &mut [f64])| {
+            stopping::here(stop.as_ref());
             let row = |of: &ArrayView2<'_, f64>| of.row(set).to_vec();
             one(&row(&self.p), &row(&self.x), &row(&self.u), into);
         };
         match width {
             0 => {}
             _ if self.p.nrows() < FEW => rows.chunks_exact_mut(width).enumerate().for_each(work),
-            _ => rows.par_chunks_exact_mut(width).enumerate().for_each(work),
+            _ => rows.par_chunks_exact_mut(width).panic_fuse().enumerate().for_each(work),
         }
         rows
     }

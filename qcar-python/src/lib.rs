@@ -28,6 +28,7 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     let py = module.py();
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add("Error", py.get_type::<errors::Error>())?;
     module.add("ModelError", py.get_type::<errors::ModelError>())?;
     module.add("ParameterError", py.get_type::<errors::ParameterError>())?;

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use ndarray::{Array2, Array3, Array4};
+use ndarray::{Array3, Array4};
 use numpy::{
     Complex64, IntoPyArray, PyArray1, PyArray2, PyArray3, PyArray4, PyArray5, PyReadonlyArray1, PyReadonlyArray2,
 };
@@ -15,7 +15,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::road::Road;
 use qcar_runtime::simulate::tyre_of;
 
-use crate::dense::{self, At};
+use crate::dense::{self, At, FEW};
 use crate::described::described;
 use crate::long::long;
 use crate::rides::{self, Common, Each};
@@ -78,14 +78,14 @@ impl Model {
         p: PyReadonlyArray2<'py, f64>,
         x: PyReadonlyArray2<'py, f64>,
         u: PyReadonlyArray2<'py, f64>,
-    ) -> Matrices<'py> {
+    ) -> PyResult<Matrices<'py>> {
         let at = At {
             p: p.as_array(),
             x: x.as_array(),
             u: u.as_array(),
         };
-        let all: [Array3<f64>; 4] = py.detach(|| dense::matrices(&**self.loaded, &at));
-        all.map(|matrix| matrix.into_pyarray(py))
+        let all: [Array3<f64>; 4] = batch(py, at.p.nrows(), || dense::matrices(&**self.loaded, &at))?;
+        Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
     /// Their derivatives, parameters along the first axis.
@@ -96,14 +96,14 @@ impl Model {
         x: PyReadonlyArray2<'py, f64>,
         u: PyReadonlyArray2<'py, f64>,
         leader: Vec<usize>,
-    ) -> Jacobians<'py> {
+    ) -> PyResult<Jacobians<'py>> {
         let at = At {
             p: p.as_array(),
             x: x.as_array(),
             u: u.as_array(),
         };
-        let all: [Array4<f64>; 4] = py.detach(|| dense::jacobians(&**self.loaded, &at, &leader));
-        all.map(|matrix| matrix.into_pyarray(py))
+        let all: [Array4<f64>; 4] = batch(py, at.p.nrows(), || dense::jacobians(&**self.loaded, &at, &leader))?;
+        Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
     /// Responses of outputs to excitations (sets, lines, outputs, excitations), and their derivatives where wanted.
@@ -114,13 +114,12 @@ impl Model {
         leader: Vec<usize>,
         frequency: PyReadonlyArray1<'py, f64>,
         jacobian: bool,
-    ) -> Response<'py> {
-        let (sets, frequency): (Array2<f64>, Vec<f64>) = (p.as_array().to_owned(), frequency.as_array().to_vec());
-        let found = py.detach(|| responses::responses(&**self.loaded, sets.view(), &leader, &frequency, jacobian));
-        (
-            found.value.into_pyarray(py),
-            found.jacobian.map(|own| own.into_pyarray(py)),
-        )
+    ) -> PyResult<Response<'py>> {
+        let (sets, frequency) = (p.as_array(), frequency.as_array().to_vec());
+        let evaluate = || responses::responses(&**self.loaded, sets, &leader, &frequency, jacobian);
+        let found = batch(py, sets.nrows(), evaluate)?;
+        let slopes = found.jacobian.map(|own| own.into_pyarray(py));
+        Ok((found.value.into_pyarray(py), slopes))
     }
 
     /// Ratios of the channels (sets, lines, channels), and their derivatives where wanted.
@@ -133,8 +132,8 @@ impl Model {
         jacobian: bool,
     ) -> PyResult<RatiosOfSets<'py>> {
         let (sets, frequency) = (p.as_array(), frequency.as_array().to_vec());
-        let found = py.detach(|| ratios::ratios(&self.loaded, sets, &leader, &frequency, jacobian));
-        let found = found.map_err(errors::of_model)?;
+        let evaluate = || ratios::ratios(&self.loaded, sets, &leader, &frequency, jacobian);
+        let found = batch(py, sets.nrows(), evaluate)?.map_err(errors::of_model)?;
         let slopes = found.jacobian.map(|own| own.into_pyarray(py));
         Ok((found.value.into_pyarray(py), slopes))
     }
@@ -178,6 +177,14 @@ impl Model {
             recorded.static_deflection.into_pyarray(py),
             recorded.lift_offs,
         ))
+    }
+}
+
+/// Work on so many parameter sets without the lock of the interpreter; a signal stops it where it may take long.
+fn batch<T: Send>(py: Python<'_>, sets: usize, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    match sets {
+        0..FEW => Ok(py.detach(work)),
+        _ => long(py, work),
     }
 }
 

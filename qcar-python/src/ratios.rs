@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use ndarray::{Array3, Array4, ArrayView1, ArrayView2, s};
 use qcar::catalogue::Loaded;
+use qcar::stopping;
 use qcar::verbs::frf::excitation;
 use qcar_runtime::model::{About, Channel};
 use qcar_runtime::response::Response;
@@ -35,9 +36,12 @@ pub fn ratios(
     let (lines, channels) = (frequency.len(), about.channels.len());
     let parameters = if jacobian { about.parameters.len() } else { 0 };
     let rows: Vec<Vec<f64>> = sets.rows().into_iter().map(|row| row.to_vec()).collect();
-    let found = rows
-        .par_iter()
-        .map(|p| one(model, &values(about, p, leader), frequency, jacobian));
+    let stop = stopping::of_this_work();
+    let of_set = |p: &Vec<f64>| {
+        stopping::here(stop.as_ref());
+        one(model, &values(about, p, leader), frequency, jacobian)
+    };
+    let found = rows.par_iter().map(of_set).panic_fuse();
     let found: Vec<Vec<Ratio>> = found.collect::<Result<_, _>>()?;
     let mut value = Array3::zeros((rows.len(), lines, channels));
     let mut slopes = Array4::zeros((rows.len(), parameters, lines, channels));

@@ -2,6 +2,7 @@
 
 use nalgebra::Complex;
 use ndarray::{Array4, Array5, ArrayView2, ArrayViewMut4, Axis};
+use qcar::stopping;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::Response;
 use rayon::prelude::*;
@@ -28,7 +29,9 @@ pub fn responses(
     let parameters = if jacobian { about.parameters.len() } else { 0 };
     let mut value = Array4::zeros((sets.nrows(), lines, outputs, excitations));
     let mut slopes_of_all = Array5::zeros((sets.nrows(), parameters, lines, outputs, excitations));
+    let stop = stopping::of_this_work();
     let work = |((mut value, mut slopes), p): ((_, ArrayViewMut4<'_, _>), ndarray::ArrayView1<'_, f64>)| {
+        stopping::here(stop.as_ref());
         one(
             model,
             &p.to_vec(),
@@ -43,6 +46,7 @@ pub fn responses(
     values
         .zip(slopes)
         .zip(sets.axis_iter(Axis(0)).into_par_iter())
+        .panic_fuse()
         .for_each(work);
     Responses {
         value,

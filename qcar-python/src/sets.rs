@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use ndarray::{Array2, ArrayView2};
+use ndarray::{Array2, ArrayView1, ArrayView2};
 use pyo3::PyResult;
 use qcar::catalogue::Loaded;
 use qcar_runtime::response::parameters::Values;
@@ -47,11 +47,7 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         for (&place, &value) in places.iter().zip(own) {
             values.set(place, value);
         }
-        into.assign(
-            &ArrayView2::from_shape((1, values.as_slice().len()), values.as_slice())
-                .expect("one row")
-                .row(0),
-        );
+        into.assign(&ArrayView1::from(values.as_slice()));
         let inertias = model.check_inertias(values.as_slice());
         inertias.map_err(|error| errors::of_parameters(format!("{}{error}", which(set, given.nrows()))))?;
     }

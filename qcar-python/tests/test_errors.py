@@ -1,5 +1,6 @@
 """What is wrong raises, in the words of the compiler and the workbench."""
 
+import pickle
 import shutil
 
 import numpy as np
@@ -76,3 +77,10 @@ def test_rides_that_cannot_be(quarter_car):
 def test_all_of_them_are_value_errors():
     for error in (qcar.ModelError, qcar.ParameterError, qcar.CampaignError, qcar.SimulationError):
         assert issubclass(error, qcar.Error) and issubclass(error, ValueError)
+
+
+def test_errors_come_back_from_other_processes(quarter_car):
+    with pytest.raises(qcar.ParameterError) as raised:
+        quarter_car.matrices({"k_tyre": 2e5})
+    again = pickle.loads(pickle.dumps(raised.value))
+    assert type(again) is qcar.ParameterError and str(again) == str(raised.value)

@@ -6,22 +6,34 @@ import threading
 import time
 
 
+import pytest
+
 import qcar
 
+#: What takes minutes where nothing stops it.
+LONG = {
+    "fit": 'qcar.fit("models/campaigns/axle_a_rig", starts=10000)',
+    "frf": 'model.frf([1.0] * 1000, {"k_tire": [2e5] * 20000})',
+    "rides": 'qcar.ride_metrics(model, {"k_tire": [2e5] * 10**7}, vehicle="models/campaigns/axle_c_study", speed=8.0, height=0.02)',
+}
 
-def test_a_long_fit_ends_with_keyboard_interrupt(campaigns):
-    # A process of its own, since what it is sent goes to its main thread.
+
+@pytest.mark.parametrize("long", LONG.values(), ids=LONG)
+def test_long_work_ends_with_keyboard_interrupt(long, repository):
+    # A process of its own, since what it is sent goes to its main thread. It goes on afterwards.
     program = f"""
-import _thread, threading, time
+import _thread, threading
 import qcar
+model = qcar.Model("quarter_car")
 threading.Timer(1.0, _thread.interrupt_main).start()
 try:
-    qcar.fit({str(campaigns / "axle_a_rig")!r}, starts=10000)
+    {long}
 except KeyboardInterrupt:
     print("interrupted")
-    print(qcar.fit({str(campaigns / "axle_a_rig")!r}).converged)
+    print(qcar.fit("models/campaigns/axle_a_rig").converged)
 """
-    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300)
+    command = [sys.executable, "-c", program]
+    ran = subprocess.run(command, capture_output=True, text=True, timeout=500, cwd=repository)
     assert ran.stdout.split() == ["interrupted", "True"], ran.stderr
 
 

@@ -19,7 +19,7 @@ from ._named import (
     State,
     StateSpace,
 )
-from ._native import CampaignError, Error, ModelError, ParameterError, SimulationError, models
+from ._native import CampaignError, Error, ModelError, ParameterError, SimulationError, __version__, models
 from ._ride import History, Ride, Simulation, read_parameters, read_vehicle, ride, simulate
 
 __all__ = [
@@ -43,6 +43,7 @@ __all__ = [
     "State",
     "StateSpace",
     "Verdict",
+    "__version__",
     "discover",
     "fit",
     "models",

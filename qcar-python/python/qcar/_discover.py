@@ -10,7 +10,7 @@ from typing import Any
 from . import _html, _native
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Verdict:
     """What a search has found, as docs/json.md describes it."""
 

@@ -14,7 +14,7 @@ from . import _html, _native
 from ._named import Array, ComplexArray
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ratio:
     """A measured ratio of two signals, such as a transmissibility, beside that of the fitted model."""
 
@@ -35,7 +35,7 @@ class Ratio:
     relative_variance: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Fit:
     """What a fit has found. `details` has all of it as docs/json.md describes it."""
 

@@ -19,7 +19,7 @@ from ._named import Array
 FACTS = ("r_tire", "static_tire_def", "static_tire_load")
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ride:
     """One ride or a batch of them, whose axes come first."""
 
@@ -190,7 +190,7 @@ def read_parameters(path: str | os.PathLike[str], model: Model) -> dict[str, flo
     return {own.name: values[own.name] for own in model.parameters if own.name in values}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class History:
     """A run over time."""
 
@@ -201,7 +201,7 @@ class History:
     units: dict[str, str]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Simulation:
     """The runs of a campaign, simulated and compared with what was measured."""
 
