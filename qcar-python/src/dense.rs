@@ -1,6 +1,7 @@
-//! Matrices and their parameter Jacobians for many parameter sets: nonzeros computed in parallel, then put into dense arrays.
+//! Rates, outputs, matrices and their parameter Jacobians for many parameter sets: computed in parallel, set by set. Nonzeros are put
+//! into dense arrays.
 
-use ndarray::{Array3, Array4, ArrayView2};
+use ndarray::{Array2, Array3, Array4, ArrayView2};
 use qcar::stopping;
 use qcar_runtime::model::{About, Entry, Matrix, Model};
 use rayon::prelude::*;
@@ -38,6 +39,30 @@ impl At<'_> {
         }
         rows
     }
+}
+
+/// The rates of the states of each set: (sets, states).
+pub fn derivatives(model: &dyn Model, at: &At<'_>) -> Array2<f64> {
+    let about = model.about();
+    let states = about.states.len();
+    let rows = at.rows(states, |p, x, u, into| {
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
+        model.derivative(&constants, x, u, into);
+    });
+    Array2::from_shape_vec((at.p.nrows(), states), rows).expect("a row for each set")
+}
+
+/// The outputs of each set: (sets, outputs).
+pub fn outputs(model: &dyn Model, at: &At<'_>) -> Array2<f64> {
+    let about = model.about();
+    let outputs = about.outputs.len();
+    let rows = at.rows(outputs, |p, x, u, into| {
+        let mut constants = vec![0.0; about.constants];
+        model.prepare(p, &mut constants);
+        model.outputs(&constants, x, u, into);
+    });
+    Array2::from_shape_vec((at.p.nrows(), outputs), rows).expect("a row for each set")
 }
 
 /// Rows and columns of a matrix.

@@ -71,6 +71,32 @@ impl Model {
         Ok((sets.p.into_pyarray(py), sets.leader))
     }
 
+    /// Rates of the states: (sets, states), at points as of `matrices`.
+    fn derivatives<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        x: PyReadonlyArray2<'py, f64>,
+        u: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let at = At::of(&p, &x, &u);
+        let found = batch(py, at.p.nrows(), || dense::derivatives(&**self.loaded, &at))?;
+        Ok(found.into_pyarray(py))
+    }
+
+    /// Outputs: (sets, outputs).
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        p: PyReadonlyArray2<'py, f64>,
+        x: PyReadonlyArray2<'py, f64>,
+        u: PyReadonlyArray2<'py, f64>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let at = At::of(&p, &x, &u);
+        let found = batch(py, at.p.nrows(), || dense::outputs(&**self.loaded, &at))?;
+        Ok(found.into_pyarray(py))
+    }
+
     /// A, B, C and D of sets `p` (sets, parameters) at `x` (sets, states) and `u` (sets, inputs).
     fn matrices<'py>(
         &self,
@@ -79,11 +105,7 @@ impl Model {
         x: PyReadonlyArray2<'py, f64>,
         u: PyReadonlyArray2<'py, f64>,
     ) -> PyResult<Matrices<'py>> {
-        let at = At {
-            p: p.as_array(),
-            x: x.as_array(),
-            u: u.as_array(),
-        };
+        let at = At::of(&p, &x, &u);
         let all: [Array3<f64>; 4] = batch(py, at.p.nrows(), || dense::matrices(&**self.loaded, &at))?;
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
@@ -97,11 +119,7 @@ impl Model {
         u: PyReadonlyArray2<'py, f64>,
         leader: Vec<usize>,
     ) -> PyResult<Jacobians<'py>> {
-        let at = At {
-            p: p.as_array(),
-            x: x.as_array(),
-            u: u.as_array(),
-        };
+        let at = At::of(&p, &x, &u);
         let all: [Array4<f64>; 4] = batch(py, at.p.nrows(), || dense::jacobians(&**self.loaded, &at, &leader))?;
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
@@ -177,6 +195,21 @@ impl Model {
             recorded.static_deflection.into_pyarray(py),
             recorded.lift_offs,
         ))
+    }
+}
+
+impl<'a> At<'a> {
+    /// Rows as Python gives them.
+    fn of(
+        p: &'a PyReadonlyArray2<'_, f64>,
+        x: &'a PyReadonlyArray2<'_, f64>,
+        u: &'a PyReadonlyArray2<'_, f64>,
+    ) -> Self {
+        At {
+            p: p.as_array(),
+            x: x.as_array(),
+            u: u.as_array(),
+        }
     }
 }
 

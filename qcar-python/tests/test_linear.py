@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.integrate
 import scipy.signal
 
 import qcar
@@ -137,8 +138,20 @@ def test_modes_are_the_eigenvalues_of_a(axle_d, axle_d_values):
         assert max(abs(part) for part in mode.shape.values()) == pytest.approx(1.0)
 
 
-def test_a_nonlinear_model_is_linearised_where_it_is_told():
-    model = qcar.Model.from_text(
+def test_rates_and_outputs_of_a_linear_model_are_those_of_its_matrices(axle_d, axle_d_values):
+    random = np.random.default_rng(5)
+    x, u = random.normal(size=(7, len(axle_d.states))), random.normal(size=len(axle_d.inputs))
+    A, B, C, D = axle_d.matrices(axle_d_values)
+    rates, outputs = axle_d.derivative(x, u, axle_d_values), axle_d.output(x, u, axle_d_values)
+    # Sums of some large terms in another order.
+    for found, expected in ((rates, x @ A.T + B @ u), (outputs, x @ C.T + D @ u)):
+        np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-12 * np.max(np.abs(expected)))
+    np.testing.assert_array_equal(rates[3], axle_d.derivative(x[3], u, axle_d_values))
+
+
+def hardening() -> qcar.Model:
+    """One mass on a spring that hardens."""
+    return qcar.Model.from_text(
         """
         axle hard { "A spring that hardens"
             direction z {
@@ -150,6 +163,20 @@ def test_a_nonlinear_model_is_linearised_where_it_is_told():
         }
         """
     )
+
+
+def test_scipy_integrates_a_nonlinear_model():
+    model, start = hardening(), [0.02, 0.0]
+    solved = scipy.integrate.solve_ivp(lambda _, x: model.derivative(x), (0, 3), start, rtol=1e-9, atol=1e-12)
+    z, v = solved.y[place(model.states, "z_body")], solved.y[place(model.states, "vz_body")]
+    energy = 0.5 * 2.0 * v**2 + 0.5 * 50.0 * z**2 + 0.25 * 4e4 * z**4
+    # Nothing damps it.
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-6)
+    assert np.ptp(z) > 0.03
+
+
+def test_a_nonlinear_model_is_linearised_where_it_is_told():
+    model = hardening()
     assert not model.linear
     at_rest, bent = model.matrices(), model.matrices(x=[0.01, 0.0])
     row, column = place(model.states, "vz_body"), place(model.states, "z_body")

@@ -109,7 +109,28 @@ class Model:
         p, _, batch = self._resolve(params)
         return p.reshape(*batch, len(self.parameters))
 
-    def matrices(self, params: Parameters = None, x: npt.ArrayLike = 0.0, u: npt.ArrayLike = 0.0) -> StateSpace:
+    def derivative(self, x: npt.ArrayLike, u: npt.ArrayLike | None = None, params: Parameters = None) -> Array:
+        """The rates of the states, ``dx/dt = f(x, u)``, for ``scipy.integrate.solve_ivp`` and others: (..., states).
+
+        Parameters
+        ----------
+        x, u
+            States (..., states) and inputs (..., inputs), displacements from the design position; inputs are zero where they are left
+            out.
+        params
+            Parameter values; they, `x` and `u` broadcast against each other.
+        """
+        at, _, batch = self._at(params, x, u)
+        return self._native.derivatives(*at).reshape(*batch, len(self.states))
+
+    def output(self, x: npt.ArrayLike, u: npt.ArrayLike | None = None, params: Parameters = None) -> Array:
+        """The outputs ``y = h(x, u)``: (..., outputs). Arguments as those of `derivative`."""
+        at, _, batch = self._at(params, x, u)
+        return self._native.outputs(*at).reshape(*batch, len(self.outputs))
+
+    def matrices(
+        self, params: Parameters = None, x: npt.ArrayLike | None = None, u: npt.ArrayLike | None = None
+    ) -> StateSpace:
         """A, B, C and D as dense arrays, for each parameter set.
 
         Parameters
@@ -117,18 +138,18 @@ class Model:
         params
             Parameter values.
         x, u
-            States and inputs about which a nonlinear model is linearised, (states,) and (inputs,) or, for each set, (..., states)
-            and (..., inputs); at rest where they are left out. A linear model has the same matrices everywhere.
+            States (..., states) and inputs (..., inputs) about which a nonlinear model is linearised; at rest where they are left out.
+            A linear model has the same matrices everywhere.
         """
-        p, _, batch = self._resolve(params)
-        found = self._native.matrices(p, *self._at(batch, x, u))
-        return StateSpace(*(own.reshape(*batch, *own.shape[1:]) for own in found))
+        at, _, batch = self._at(params, x, u)
+        return StateSpace(*(own.reshape(*batch, *own.shape[1:]) for own in self._native.matrices(*at)))
 
-    def jacobians(self, params: Parameters = None, x: npt.ArrayLike = 0.0, u: npt.ArrayLike = 0.0) -> Jacobians:
+    def jacobians(
+        self, params: Parameters = None, x: npt.ArrayLike | None = None, u: npt.ArrayLike | None = None
+    ) -> Jacobians:
         """The exact derivatives of A, B, C and D by every parameter; arguments as those of `matrices`."""
-        p, leader, batch = self._resolve(params)
-        found = self._native.jacobians(p, *self._at(batch, x, u), leader)
-        return Jacobians(*(self._by_name(own, leader, batch) for own in found))
+        at, leader, batch = self._at(params, x, u)
+        return Jacobians(*(self._by_name(own, leader, batch) for own in self._native.jacobians(*at, leader)))
 
     @overload
     def frf(
@@ -242,14 +263,25 @@ class Model:
         names = [parameter.name for parameter in self.parameters]
         return names, [array[..., place] for place in range(len(names))], array.shape[:-1]
 
-    def _at(self, batch: tuple[int, ...], x: npt.ArrayLike, u: npt.ArrayLike) -> tuple[Array, Array]:
-        return self._point("x", x, batch, len(self.states)), self._point("u", u, batch, len(self.inputs))
+    def _at(
+        self, params: Parameters, x: npt.ArrayLike | None, u: npt.ArrayLike | None
+    ) -> tuple[tuple[Array, Array, Array], list[int], tuple[int, ...]]:
+        """Parameters, states and inputs (sets, ...), whom each parameter follows, and the shape of the batch."""
+        p, leader, batch = self._resolve(params)
+        points = [p.reshape(*batch, p.shape[-1]), _rows("x", x, len(self.states)), _rows("u", u, len(self.inputs))]
+        try:
+            batch = np.broadcast_shapes(*(own.shape[:-1] for own in points))
+        except ValueError as error:
+            raise _native.ParameterError(f"parameters, x and u do not broadcast against each other: {error}") from None
+        every = (np.array(np.broadcast_to(own, (*batch, own.shape[-1]))).reshape(-1, own.shape[-1]) for own in points)
+        return (next(every), next(every), next(every)), leader, batch
 
-    def _point(self, what: str, given: npt.ArrayLike, batch: tuple[int, ...], count: int) -> Array:
-        value, shape = np.asarray(given, dtype=float), (*batch, count)
-        if value.shape and value.shape[-1] != count:
-            raise _native.ParameterError(f"{what} of `{self.name}` has the shape (..., {count}), found {value.shape}")
-        return np.ascontiguousarray(np.broadcast_to(value, shape)).reshape(-1, count)
+
+def _rows(what: str, given: npt.ArrayLike | None, count: int) -> Array:
+    value = np.zeros(count) if given is None else np.asarray(given, dtype=float)
+    if value.ndim == 0 or value.shape[-1] != count:
+        raise _native.ParameterError(f"{what} has the shape (..., {count}), found {value.shape}")
+    return value
 
 
 def _again(how: str, *source: str) -> Model:
