@@ -71,55 +71,30 @@ impl Model {
         Ok((sets.p.into_pyarray(py), sets.leader))
     }
 
-    /// Rates of the states: (sets, states), at points as of `matrices`.
-    fn derivatives<'py>(
-        &self,
-        py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
-        x: PyReadonlyArray2<'py, f64>,
-        u: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let at = At::of(&p, &x, &u);
+    /// Rates of the states: (sets, states).
+    fn derivatives<'py>(&self, py: Python<'py>, points: Points<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let at = points.at();
         let found = batch(py, at.p.nrows(), || dense::derivatives(&**self.loaded, &at))?;
         Ok(found.into_pyarray(py))
     }
 
     /// Outputs: (sets, outputs).
-    fn outputs<'py>(
-        &self,
-        py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
-        x: PyReadonlyArray2<'py, f64>,
-        u: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let at = At::of(&p, &x, &u);
+    fn outputs<'py>(&self, py: Python<'py>, points: Points<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let at = points.at();
         let found = batch(py, at.p.nrows(), || dense::outputs(&**self.loaded, &at))?;
         Ok(found.into_pyarray(py))
     }
 
-    /// A, B, C and D of sets `p` (sets, parameters) at `x` (sets, states) and `u` (sets, inputs).
-    fn matrices<'py>(
-        &self,
-        py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
-        x: PyReadonlyArray2<'py, f64>,
-        u: PyReadonlyArray2<'py, f64>,
-    ) -> PyResult<Matrices<'py>> {
-        let at = At::of(&p, &x, &u);
+    /// A, B, C and D, each (sets, rows, columns).
+    fn matrices<'py>(&self, py: Python<'py>, points: Points<'py>) -> PyResult<Matrices<'py>> {
+        let at = points.at();
         let all: [Array3<f64>; 4] = batch(py, at.p.nrows(), || dense::matrices(&**self.loaded, &at))?;
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
-    /// Their derivatives, parameters along the first axis.
-    fn jacobians<'py>(
-        &self,
-        py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
-        x: PyReadonlyArray2<'py, f64>,
-        u: PyReadonlyArray2<'py, f64>,
-        leader: Vec<usize>,
-    ) -> PyResult<Jacobians<'py>> {
-        let at = At::of(&p, &x, &u);
+    /// Their derivatives, each (parameters, sets, rows, columns).
+    fn jacobians<'py>(&self, py: Python<'py>, points: Points<'py>, leader: Vec<usize>) -> PyResult<Jacobians<'py>> {
+        let at = points.at();
         let all: [Array4<f64>; 4] = batch(py, at.p.nrows(), || dense::jacobians(&**self.loaded, &at, &leader))?;
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
@@ -128,12 +103,12 @@ impl Model {
     fn responses<'py>(
         &self,
         py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
+        sets: PyReadonlyArray2<'py, f64>,
         leader: Vec<usize>,
         frequency: PyReadonlyArray1<'py, f64>,
         jacobian: bool,
     ) -> PyResult<Response<'py>> {
-        let (sets, frequency) = (p.as_array(), frequency.as_array().to_vec());
+        let (sets, frequency) = (sets.as_array(), frequency.as_array().to_vec());
         let evaluate = || responses::responses(&**self.loaded, sets, &leader, &frequency, jacobian);
         let found = batch(py, sets.nrows(), evaluate)?;
         let slopes = found.jacobian.map(|own| own.into_pyarray(py));
@@ -144,12 +119,12 @@ impl Model {
     fn ratios<'py>(
         &self,
         py: Python<'py>,
-        p: PyReadonlyArray2<'py, f64>,
+        sets: PyReadonlyArray2<'py, f64>,
         leader: Vec<usize>,
         frequency: PyReadonlyArray1<'py, f64>,
         jacobian: bool,
     ) -> PyResult<RatiosOfSets<'py>> {
-        let (sets, frequency) = (p.as_array(), frequency.as_array().to_vec());
+        let (sets, frequency) = (sets.as_array(), frequency.as_array().to_vec());
         let evaluate = || ratios::ratios(&self.loaded, sets, &leader, &frequency, jacobian);
         let found = batch(py, sets.nrows(), evaluate)?.map_err(errors::of_model)?;
         let slopes = found.jacobian.map(|own| own.into_pyarray(py));
@@ -198,17 +173,20 @@ impl Model {
     }
 }
 
-impl<'a> At<'a> {
-    /// Rows as Python gives them.
-    fn of(
-        p: &'a PyReadonlyArray2<'_, f64>,
-        x: &'a PyReadonlyArray2<'_, f64>,
-        u: &'a PyReadonlyArray2<'_, f64>,
-    ) -> Self {
+/// Parameters (sets, parameters), states (sets, states) and inputs (sets, inputs).
+#[derive(FromPyObject)]
+struct Points<'py>(
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, f64>,
+    PyReadonlyArray2<'py, f64>,
+);
+
+impl Points<'_> {
+    fn at(&self) -> At<'_> {
         At {
-            p: p.as_array(),
-            x: x.as_array(),
-            u: u.as_array(),
+            p: self.0.as_array(),
+            x: self.1.as_array(),
+            u: self.2.as_array(),
         }
     }
 }

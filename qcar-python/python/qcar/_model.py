@@ -121,12 +121,12 @@ class Model:
             Parameter values; they, `x` and `u` broadcast against each other.
         """
         at, _, batch = self._at(params, x, u)
-        return self._native.derivatives(*at).reshape(*batch, len(self.states))
+        return self._native.derivatives(at).reshape(*batch, len(self.states))
 
     def output(self, x: npt.ArrayLike, u: npt.ArrayLike | None = None, params: Parameters = None) -> Array:
         """The outputs ``y = h(x, u)``: (..., outputs). Arguments as those of `derivative`."""
         at, _, batch = self._at(params, x, u)
-        return self._native.outputs(*at).reshape(*batch, len(self.outputs))
+        return self._native.outputs(at).reshape(*batch, len(self.outputs))
 
     def matrices(
         self, params: Parameters = None, x: npt.ArrayLike | None = None, u: npt.ArrayLike | None = None
@@ -142,14 +142,14 @@ class Model:
             A linear model has the same matrices everywhere.
         """
         at, _, batch = self._at(params, x, u)
-        return StateSpace(*(own.reshape(*batch, *own.shape[1:]) for own in self._native.matrices(*at)))
+        return StateSpace(*(own.reshape(*batch, *own.shape[1:]) for own in self._native.matrices(at)))
 
     def jacobians(
         self, params: Parameters = None, x: npt.ArrayLike | None = None, u: npt.ArrayLike | None = None
     ) -> Jacobians:
         """The exact derivatives of A, B, C and D by every parameter; arguments as those of `matrices`."""
         at, leader, batch = self._at(params, x, u)
-        return Jacobians(*(self._by_name(own, leader, batch) for own in self._native.jacobians(*at, leader)))
+        return Jacobians(*(self._by_name(own, leader, batch) for own in self._native.jacobians(at, leader)))
 
     @overload
     def frf(
