@@ -54,3 +54,11 @@ pub fn of_campaign(failure: impl ToString) -> PyErr {
 pub fn of_ride(failure: impl ToString) -> PyErr {
     SimulationError::new_err(words(failure))
 }
+
+/// Which of several an error is about, to stand before its sentence; nothing where there is one.
+pub fn which(what: &str, nth: usize, of: usize) -> String {
+    match of {
+        1 => String::new(),
+        _ => format!("{what} {nth} of {of}, counted from 0: "),
+    }
+}

@@ -12,6 +12,8 @@ use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Car, Drive, Method, Ride, Settings, Variant, ride};
 use qcar_runtime::tyre::Tyre;
 
+use crate::errors;
+
 /// What all rides have in common.
 pub struct Common {
     /// The tyre.
@@ -79,13 +81,7 @@ pub fn rides(model: &Loaded, common: &Common, each: &Each<'_>) -> Result<Recorde
     let told = |_, _| stopping::here(stop.as_ref());
     let done = progress::map(&all, &told, |&nth| one(model, common, each, nth));
     for (nth, own) in done.into_iter().enumerate() {
-        let own = own.map_err(|error| {
-            if count == 1 {
-                error
-            } else {
-                format!("ride {nth} of {count}: {error}")
-            }
-        })?;
+        let own = own.map_err(|error| errors::which("ride", nth, count) + &error)?;
         recorded.take(nth, own, wheel, common.sample_rate);
     }
     Ok(recorded)

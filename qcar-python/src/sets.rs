@@ -30,7 +30,11 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         let values = Values::resolve(about, &row(set), &BTreeMap::new());
         values.map_err(|problems| {
             let sentences: Vec<String> = problems.iter().map(ToString::to_string).collect();
-            errors::of_parameters(format!("{}{}", which(set, given.nrows()), sentences.join("\n")))
+            errors::of_parameters(format!(
+                "{}{}",
+                errors::which("parameter set", set, given.nrows()),
+                sentences.join("\n")
+            ))
         })
     };
     let mut values = match given.nrows() {
@@ -49,7 +53,9 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         }
         into.assign(&ArrayView1::from(values.as_slice()));
         let inertias = model.check_inertias(values.as_slice());
-        inertias.map_err(|error| errors::of_parameters(format!("{}{error}", which(set, given.nrows()))))?;
+        inertias.map_err(|error| {
+            errors::of_parameters(format!("{}{error}", errors::which("parameter set", set, given.nrows())))
+        })?;
     }
     let leader = (0..about.parameters.len()).map(|k| values.leader(k)).collect();
     Ok(Sets { p, leader })
@@ -59,13 +65,5 @@ fn none(parameters: usize) -> Sets {
     Sets {
         p: Array2::zeros((0, parameters)),
         leader: (0..parameters).collect(),
-    }
-}
-
-/// Which of several sets an error is about.
-fn which(set: usize, of: usize) -> String {
-    match of {
-        1 => String::new(),
-        _ => format!("parameter set {set} of {of}: "),
     }
 }

@@ -30,7 +30,7 @@ def test_a_file_that_is_not_there_is_named(tmp_path):
 def test_names_and_values_of_parameters(quarter_car):
     with pytest.raises(qcar.ParameterError, match="did you mean `k_tire`"):
         quarter_car.matrices({"k_tyre": 2e5})
-    with pytest.raises(qcar.ParameterError, match="set 1 of 2.*k_tire.*finite"):
+    with pytest.raises(qcar.ParameterError, match="set 1 of 2, counted from 0.*k_tire.*finite"):
         quarter_car.matrices({"k_tire": [2e5, np.nan]})
     with pytest.raises(qcar.ParameterError, match="above zero"):
         quarter_car.matrices({"m_wheel": 500.0})
@@ -62,7 +62,7 @@ def test_a_campaign_names_its_file_and_line(tmp_path, campaigns):
 
 def test_rides_that_cannot_be(quarter_car):
     vehicle = {"r_tire": 0.32, "static_tire_def": 0.02, "static_tire_load": 4400.0}
-    with pytest.raises(qcar.SimulationError, match="ride 1 of 2.*speed"):
+    with pytest.raises(qcar.SimulationError, match="ride 1 of 2, counted from 0.*speed"):
         qcar.ride(quarter_car, vehicle=vehicle, height=0.02, speed=[8.0, -8.0])
     with pytest.raises(qcar.ParameterError, match="static_tire_load"):
         qcar.ride(quarter_car, vehicle={"r_tire": 0.32, "static_tire_def": 0.02}, height=0.02, speed=8.0)

@@ -80,6 +80,18 @@ def test_facts_of_the_vehicle_come_from_a_campaign(campaigns):
     assert qcar.read_vehicle(folder)["m_corner"] == 400.4
 
 
+def test_what_the_vehicle_says_of_parameters_holds_where_nobody_else_gives_them(axle_d, axle_d_values):
+    own = {name: value for name, value in axle_d_values.items() if name not in VEHICLE}
+    assert len(own) < len(axle_d_values)
+    by_vehicle = qcar.ride(axle_d, own, vehicle=VEHICLE, height=0.02, speed=8.0)
+    by_hand = qcar.ride(axle_d, axle_d_values, vehicle=VEHICLE, height=0.02, speed=8.0)
+    other = qcar.ride(axle_d, {**own, "static_tire_load": 0.0}, vehicle=VEHICLE, height=0.02, speed=8.0)
+    np.testing.assert_array_equal(by_vehicle.tire_force_x, by_hand.tire_force_x)
+    assert not np.array_equal(by_vehicle.tire_force_x, other.tire_force_x)
+    with pytest.raises(qcar.ParameterError, match="r_tyre"):
+        qcar.ride(axle_d, own, vehicle={**VEHICLE, "r_tyre": 0.3}, height=0.02, speed=8.0)
+
+
 def test_a_ride_without_a_bump_has_no_peak(quarter_car):
     flat = qcar.ride(quarter_car, vehicle=VEHICLE, road=([0.0, 20.0], [0.0, 0.0]), speed=8.0)
     assert all(np.max(np.abs(signal)) < 1e-6 for signal in flat.outputs.values())

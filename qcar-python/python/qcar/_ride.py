@@ -79,7 +79,7 @@ def ride(
         A model whose tyre rolls, and its parameter values.
     vehicle
         Of the tyre its radius ``r_tire`` (m), and the deflection ``static_tire_def`` (m) and load ``static_tire_load`` (N) at rest; or a
-        campaign or parameter file that has them.
+        campaign or parameter file that has them. What else it says of parameters of the model holds where `params` does not give them.
     speed
         m/s.
     height
@@ -107,7 +107,8 @@ def ride(
     """
     if (height is None) == (road is None):
         raise _native.ParameterError("a ride is over a cleat of a `height` or over a `road`: give one of them")
-    p, _, batch = model._resolve(params)
+    facts = _facts(vehicle, model)
+    p, _, batch = model._resolve(_with_facts(params, facts, model))
     heights = np.asarray(0.0 if height is None else height, dtype=float)
     speeds = np.asarray(speed, dtype=float)
     try:
@@ -117,7 +118,7 @@ def ride(
             f"params {batch}, height {heights.shape} and speed {speeds.shape} do not broadcast against each other"
         ) from None
     setup = {
-        "vehicle": _facts(vehicle),
+        "vehicle": {name: value for name, value in facts.items() if name in FACTS},
         "variant": variant,
         "road": None if road is None else _corners(road),
         "cleat": [float(descent), float(blend), float(run_in)],
@@ -159,14 +160,24 @@ def _samples(duration: float, sample_rate: float) -> int:
     return round(samples)
 
 
-def _facts(vehicle: Mapping[str, float] | str | os.PathLike[str]) -> dict[str, float]:
-    if isinstance(vehicle, Mapping):
-        unknown = sorted(set(vehicle) - set(FACTS))
-        if unknown:
-            raise _native.ParameterError(f"`vehicle` has {', '.join(FACTS)}, found {', '.join(unknown)}")
-        return {name: float(value) for name, value in vehicle.items()}
-    facts = read_vehicle(vehicle)
-    return {name: facts[name] for name in FACTS if name in facts}
+def _facts(vehicle: Mapping[str, float] | str | os.PathLike[str], model: Model) -> dict[str, float]:
+    """What a vehicle says of its tyre and of parameters of the model."""
+    known = {*FACTS, *(own.name for own in model.parameters)}
+    facts = vehicle if isinstance(vehicle, Mapping) else read_vehicle(vehicle)
+    unknown = sorted(set(facts) - known)
+    if unknown and isinstance(vehicle, Mapping):
+        raise _native.ParameterError(
+            f"`vehicle` has {', '.join(FACTS)} and parameters of `{model.name}`, found {', '.join(unknown)}"
+        )
+    return {name: float(value) for name, value in facts.items() if name in known}
+
+
+def _with_facts(params: Parameters, facts: dict[str, float], model: Model) -> Parameters:
+    """Parameters by name, with what the vehicle says of others; an array has all of them already."""
+    if params is not None and not isinstance(params, Mapping):
+        return params
+    names = {own.name for own in model.parameters}
+    return {**{name: value for name, value in facts.items() if name in names}, **(params or {})}
 
 
 def _corners(road: tuple[npt.ArrayLike, npt.ArrayLike]) -> list[list[float]]:

@@ -75,7 +75,7 @@ def submit(
     """The tasks of `ride_metrics`, begun: a future for each part, in the order of the design."""
     table = columns(design)
     count = len(next(iter(table.values())))
-    facts = _facts(vehicle)
+    facts = _facts(vehicle, model)
     folder = None if out is None else os.path.abspath(out)
     return [
         client.submit(
