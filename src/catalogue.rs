@@ -5,7 +5,6 @@ use std::path::Path;
 
 use models::Shipped;
 use qcar_dsl::check::Unseen;
-use qcar_dsl::compile;
 use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::{Files, compile_file_wanted};
@@ -111,20 +110,12 @@ pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
     })
 }
 
-/// A model whose text is at hand; a family that it begins from is looked for beside the file that `name` would be.
+/// A model whose text is at hand.
 ///
 /// # Errors
-/// A model that the compiler refuses.
+/// As [`compiled_text`].
 pub fn load_text(name: &str, text: &str) -> Result<Loaded, Failure> {
-    let files = Files::new(Path::new(""));
-    let source = Source {
-        name: name.into(),
-        text: text.into(),
-    };
-    let compiled = compile::compile(source, &|asking, written| files.load(asking, written));
-    compiled
-        .map(|compiled| Loaded::file(&compiled))
-        .map_err(|report| Failure::Input(report.to_string()))
+    compiled_text(name, text).map(|compiled| Loaded::file(&compiled))
 }
 
 /// The model that the user wants, else the campaign's: a shipped one, or a file relative to the campaign's folder.
@@ -177,6 +168,20 @@ pub fn compiled(model: &str) -> Result<Compiled, Failure> {
 /// As [`compiled`].
 pub fn compiled_wanted(model: &str, wanted: Wanted) -> Result<Compiled, Failure> {
     compile(model, wanted)?.map_err(|report| Failure::Input(report.to_string()))
+}
+
+/// The same of a model whose text is at hand; a family that it begins from is looked for beside the file that `name` would be.
+///
+/// # Errors
+/// A model that the compiler refuses.
+pub fn compiled_text(name: &str, text: &str) -> Result<Compiled, Failure> {
+    let files = Files::new(Path::new(""));
+    let source = Source {
+        name: name.into(),
+        text: text.into(),
+    };
+    let load = |asking: &str, written: &str| files.load(asking, written);
+    compile_wanted(source, &load, Wanted::Jacobian).map_err(|report| Failure::Input(report.to_string()))
 }
 
 /// Compiles a shipped model or a file, with what is wanted of the responses, or gives the compiler's report.

@@ -10,6 +10,7 @@ use numpy::{
 };
 use pyo3::prelude::*;
 use qcar::catalogue::{self, Loaded};
+use qcar_dsl::show::{Stage, show};
 use qcar_runtime::modes;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::road::Road;
@@ -53,6 +54,17 @@ impl Model {
         Ok(Model {
             loaded: Arc::new(loaded),
         })
+    }
+
+    /// A stage of a model by name, path or text.
+    #[staticmethod]
+    fn shown(py: Python<'_>, stage: &str, name: &str, text: Option<&str>) -> PyResult<String> {
+        let stage = stage_named(stage)?;
+        let compiled = py.detach(|| match text {
+            Some(text) => catalogue::compiled_text(name, text),
+            None => catalogue::compiled(name),
+        });
+        Ok(show(&compiled.map_err(errors::of_model)?, stage))
     }
 
     /// Names, units and sizes as JSON.
@@ -187,6 +199,22 @@ impl Points<'_> {
             p: self.0.as_array(),
             x: self.1.as_array(),
             u: self.2.as_array(),
+        }
+    }
+}
+
+/// What of a model is shown.
+fn stage_named(name: &str) -> PyResult<Stage> {
+    match name {
+        "model" => Ok(Stage::Model),
+        "equations" => Ok(Stage::Equations),
+        "matrices" => Ok(Stage::Matrices),
+        "rust" => Ok(Stage::Rust),
+        "latex" => Ok(Stage::Latex),
+        "dot" => Ok(Stage::Dot),
+        other => {
+            let stages = "\"model\", \"equations\", \"matrices\", \"rust\", \"latex\" or \"dot\"";
+            Err(errors::of_parameters(format!("`stage` is {other:?}; write {stages}")))
         }
     }
 }

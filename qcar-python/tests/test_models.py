@@ -3,6 +3,7 @@
 import pickle
 
 import numpy as np
+import pytest
 
 import qcar
 
@@ -50,3 +51,12 @@ def test_text_in_html_is_text():
     assert "A &lt; B &amp; C" in qcar.Model.from_text(text)._repr_html_()
 
 
+
+
+def test_stages_of_a_model(repository, quarter_car):
+    text = (repository / "models" / "axles" / "quarter_car.axle").read_text()
+    for model in (quarter_car, qcar.Model.from_text(text)):
+        assert "k_tire" in model.show() and "\\documentclass" in model.show("latex")
+        assert qcar.Model.from_text(model.show("model")).parameters == quarter_car.parameters
+    with pytest.raises(qcar.ParameterError, match="equations"):
+        quarter_car.show("equation")

@@ -97,6 +97,19 @@ class Model:
     def _repr_html_(self) -> str:
         return _html.model(self)
 
+    def show(self, stage: str = "equations") -> str:
+        """A stage of the model as text.
+
+        Parameters
+        ----------
+        stage
+            ``"model"``: its file, options taken; ``"equations"`` of motion; ``"matrices"``: their nonzeros as formulas; ``"latex"``: both as a
+            document; ``"rust"``: the generated module; ``"dot"``: masses and links as a graph for Graphviz.
+        """
+        how, *source = self._source
+        name, text = (source[0], None) if how == "load" else (source[1], source[0])
+        return _native.Model.shown(stage, name, text)
+
     def values(self, params: Parameters = None) -> Array:
         """The value of every parameter, in the order of `parameters`: (..., parameters), SI.
 
