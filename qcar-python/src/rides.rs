@@ -101,7 +101,7 @@ fn one(model: &Loaded, common: &Common, each: &Each<'_>, nth: usize) -> Result<R
     let car = Car {
         model: &**model,
         parameters: &parameters,
-        tyre: common.tyre.clone(),
+        tyre: common.tyre,
         load: common.load,
         variant: common.variant,
     };

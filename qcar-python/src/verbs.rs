@@ -122,12 +122,11 @@ pub fn variant_named(name: &str) -> PyResult<simulate::VariantName> {
 }
 
 /// JSON, the text of the model with what was found, the values of its parameters, and the answer in words.
+type Found = (String, Option<String>, Vec<(String, f64)>, String);
+
+/// What the model of a campaign lacks.
 #[pyfunction]
-pub fn discover_in_campaign(
-    py: Python<'_>,
-    campaign: PathBuf,
-    model: Option<String>,
-) -> PyResult<(String, Option<String>, Vec<(String, f64)>, String)> {
+pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<String>) -> PyResult<Found> {
     let search = || discover::discover(&campaign, model.as_deref(), None, Numbers::default());
     let answer = long(py, search)?.map_err(errors::of_campaign)?;
     let model = answer.model_text().map(String::from);
