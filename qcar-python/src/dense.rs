@@ -76,45 +76,43 @@ fn shape(about: &About, matrix: Matrix) -> (usize, usize) {
     }
 }
 
-fn place(entry: &Entry) -> (usize, usize) {
-    (entry.row.into(), entry.column.into())
+/// Where the entries of one matrix stand: among the nonzeros, and in the matrix.
+fn places<'a>(entries: impl Iterator<Item = &'a Entry>, matrix: Matrix) -> Vec<(usize, [usize; 2])> {
+    let own = entries.enumerate().filter(|(_, entry)| entry.matrix == matrix);
+    own.map(|(nth, entry)| (nth, [entry.row.into(), entry.column.into()]))
+        .collect()
 }
 
 /// A, B, C and D, each (sets, rows, columns).
 pub fn matrices(model: &dyn Model, at: &At<'_>) -> [Array3<f64>; 4] {
     let about = model.about();
-    let entries = &about.matrices;
-    let rows = at.rows(entries.len(), |p, x, u, into| model.matrices(p, x, u, into));
+    let width = about.matrices.len();
+    let rows = at.rows(width, |p, x, u, into| model.matrices(p, x, u, into));
     ALL.map(|matrix| {
-        let (height, width) = shape(about, matrix);
-        let mut dense = Array3::zeros((at.p.nrows(), height, width));
-        for (nth, entry) in entries.iter().enumerate().filter(|(_, entry)| entry.matrix == matrix) {
-            let (row, column) = place(entry);
-            for (set, values) in rows.chunks_exact(entries.len()).enumerate() {
-                dense[[set, row, column]] = values[nth];
-            }
+        let (height, breadth) = shape(about, matrix);
+        let mut dense = Array3::zeros((at.p.nrows(), height, breadth));
+        let own = places(about.matrices.iter(), matrix);
+        for (mut set, values) in dense.outer_iter_mut().zip(rows.chunks_exact(width.max(1))) {
+            own.iter().for_each(|&(nth, place)| set[place] = values[nth]);
         }
         dense
     })
 }
 
-/// Their derivatives by every parameter, each (parameters, sets, rows, columns). What a parameter moves through those that take
+/// Their derivatives by every parameter, each (sets, parameters, rows, columns). What a parameter moves through those that take
 /// their value from it counts as its own.
 pub fn jacobians(model: &dyn Model, at: &At<'_>, leader: &[usize]) -> [Array4<f64>; 4] {
     let about = model.about();
-    let entries = &about.sensitivities;
-    let rows = at.rows(entries.len(), |p, x, u, into| model.sensitivities(p, x, u, into));
+    let width = about.sensitivities.len();
+    let rows = at.rows(width, |p, x, u, into| model.sensitivities(p, x, u, into));
     ALL.map(|matrix| {
-        let (height, width) = shape(about, matrix);
-        let mut dense = Array4::zeros((about.parameters.len(), at.p.nrows(), height, width));
-        let own = entries
-            .iter()
-            .enumerate()
-            .filter(|(_, (entry, _))| entry.matrix == matrix);
-        for (nth, (entry, parameter)) in own {
-            let (row, column) = place(entry);
-            for (set, values) in rows.chunks_exact(entries.len()).enumerate() {
-                dense[[leader[usize::from(*parameter)], set, row, column]] += values[nth];
+        let (height, breadth) = shape(about, matrix);
+        let mut dense = Array4::zeros((at.p.nrows(), about.parameters.len(), height, breadth));
+        let own = places(about.sensitivities.iter().map(|(entry, _)| entry), matrix);
+        for (mut set, values) in dense.outer_iter_mut().zip(rows.chunks_exact(width.max(1))) {
+            for &(nth, [row, column]) in &own {
+                let parameter = leader[usize::from(about.sensitivities[nth].1)];
+                set[[parameter, row, column]] += values[nth];
             }
         }
         dense

@@ -104,7 +104,7 @@ impl Model {
         Ok(all.map(|matrix| matrix.into_pyarray(py)))
     }
 
-    /// Their derivatives, each (parameters, sets, rows, columns).
+    /// Their derivatives, each (sets, parameters, rows, columns).
     fn jacobians<'py>(&self, py: Python<'py>, points: Points<'py>, leader: Vec<usize>) -> PyResult<Jacobians<'py>> {
         let at = points.at();
         let all: [Array4<f64>; 4] = batch(py, at.p.nrows(), || dense::jacobians(&**self.loaded, &at, &leader))?;

@@ -229,7 +229,7 @@ class Model:
         value = value.reshape(*batch, *value.shape[1:])
         if slopes is None:
             return value
-        return value, self._by_name(np.moveaxis(slopes, 1, 0), leader, batch)
+        return value, self._by_name(slopes, leader, batch)
 
     def modes(self, params: Parameters = None) -> list[Mode]:
         """The natural vibrations of the model linearised at rest, lowest frequency first; for one parameter set."""
@@ -244,8 +244,10 @@ class Model:
         ]
 
     def _by_name(self, slopes: Any, leader: Sequence[int], batch: tuple[int, ...]) -> dict[str, Any]:
+        """Views into derivatives (sets, parameters, ...), for each parameter that follows no other."""
+        of_batch = np.moveaxis(slopes.reshape(*batch, *slopes.shape[1:]), len(batch), 0)
         own = ((place, parameter.name) for place, parameter in enumerate(self.parameters) if leader[place] == place)
-        return {name: slopes[place].reshape(*batch, *slopes.shape[2:]) for place, name in own}
+        return {name: of_batch[place] for place, name in own}
 
     def _resolve(self, params: Parameters) -> tuple[Array, list[int], tuple[int, ...]]:
         """All parameters (sets, parameters), whom each of them follows, and the shape of the batch."""
