@@ -254,7 +254,7 @@ class Model:
         names, columns, batch = self._columns(params)
         given = np.empty((int(np.prod(batch, dtype=int)), len(names)))
         for place, column in enumerate(columns):
-            given[:, place] = column.reshape(-1)
+            given[:, place] = column if column.ndim == 0 else np.broadcast_to(column, batch).reshape(-1)
         p, leader = self._native.resolve(names, given)
         return p, leader, batch
 
@@ -264,11 +264,11 @@ class Model:
         if isinstance(params, Mapping):
             names = list(params)
             try:
-                columns = np.broadcast_arrays(*(np.asarray(params[name], dtype=float) for name in names))
+                columns = [np.asarray(params[name], dtype=float) for name in names]
+                return names, columns, np.broadcast_shapes(*(column.shape for column in columns))
             except (TypeError, ValueError) as error:
                 shapes = ", ".join(f"{name} {np.shape(params[name])}" for name in names)
                 raise _native.ParameterError(f"values are numbers or arrays of one shape, found {shapes}: {error}") from None
-            return names, list(columns), columns[0].shape if names else ()
         array = np.asarray(params, dtype=float)
         if array.ndim == 0 or array.shape[-1] != len(self.parameters):
             raise _native.ParameterError(
