@@ -1,7 +1,5 @@
 """Fits, simulations and searches of campaigns."""
 
-import tomllib
-
 import numpy as np
 import pytest
 
@@ -14,6 +12,7 @@ def fitted(campaigns):
 
 
 def test_a_fit_finds_what_the_campaign_was_made_with(fitted, campaigns):
+    tomllib = pytest.importorskip("tomllib", reason="Python before 3.11 reads no TOML: the truth is passed over")
     truth = tomllib.loads((campaigns / "axle_a_rig" / "truth.toml").read_text())["parameters"]
     assert fitted.converged and fitted.cost < fitted.start_cost
     for name, error in fitted.stderr.items():
