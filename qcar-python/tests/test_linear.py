@@ -86,6 +86,7 @@ def test_responses_are_those_that_solving_the_matrices_gives(name, axle_d_values
         np.testing.assert_allclose(response[:, :, column] / scale, total / scale, atol=1e-11)
 
 
+@pytest.mark.filterwarnings("ignore::scipy.signal.BadCoefficients")
 def test_the_response_to_a_force_is_that_of_scipy(quarter_car):
     frequencies = np.geomspace(0.5, 60.0, 40)
     response = quarter_car.frf(frequencies, VALUES)
