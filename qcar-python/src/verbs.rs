@@ -35,7 +35,10 @@ type RatioOfRun<'py> = (
 
 type Correlations = Vec<(String, String, f64)>;
 
-/// JSON, ratios (run, role, channel, fitted, frequency, measured, model, relative variance), and correlations.
+/// JSON, ratios (run, role, channel, fitted, frequency, measured, model, relative variance), correlations, and a figure.
+type FitOfCampaign<'py> = (String, Vec<RatioOfRun<'py>>, Correlations, String);
+
+/// A model fitted to the runs of a campaign.
 #[pyfunction]
 pub fn fit_campaign<'py>(
     py: Python<'py>,
@@ -45,7 +48,7 @@ pub fn fit_campaign<'py>(
     channels: Vec<String>,
     free: Vec<String>,
     fix: Vec<String>,
-) -> PyResult<(String, Vec<RatioOfRun<'py>>, Correlations)> {
+) -> PyResult<FitOfCampaign<'py>> {
     let choices = fit::Choices {
         model,
         starts,
@@ -57,7 +60,7 @@ pub fn fit_campaign<'py>(
     let ratios = fitted.ratios().into_iter().map(|own| ratio(py, own)).collect();
     let correlations = fitted.fit.all_correlations.iter();
     let correlations = correlations.map(|own| (own.between.0.clone(), own.between.1.clone(), own.value));
-    Ok((fitted.json(), ratios, correlations.collect()))
+    Ok((fitted.json(), ratios, correlations.collect(), fitted.figure()))
 }
 
 fn ratio<'py>(py: Python<'py>, of: fit::Ratio<'_>) -> RatioOfRun<'py> {
@@ -121,8 +124,8 @@ pub fn variant_named(name: &str) -> PyResult<simulate::VariantName> {
     }
 }
 
-/// JSON, the text of the model with what was found, the values of its parameters, and the answer in words.
-type Found = (String, Option<String>, Vec<(String, f64)>, String);
+/// JSON, the text of the model with what was found, the values of its parameters, the answer in words, and a figure.
+type Found = (String, Option<String>, Vec<(String, f64)>, String, String);
 
 /// What the model of a campaign lacks.
 #[pyfunction]
@@ -130,7 +133,13 @@ pub fn discover_in_campaign(py: Python<'_>, campaign: PathBuf, model: Option<Str
     let search = || discover::discover(&campaign, model.as_deref(), None, Numbers::default());
     let answer = long(py, search)?.map_err(errors::of_campaign)?;
     let model = answer.model_text().map(String::from);
-    Ok((answer.json(), model, answer.values().to_vec(), answer.text()))
+    Ok((
+        answer.json(),
+        model,
+        answer.values().to_vec(),
+        answer.text(),
+        answer.figure(),
+    ))
 }
 
 /// The facts of the vehicle and the parameter values in a file or campaign.

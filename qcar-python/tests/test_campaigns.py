@@ -35,6 +35,7 @@ def test_a_fit_shows_its_ratios_and_errors(fitted):
         np.testing.assert_allclose(ratio.modelled, of(above) / lower, rtol=1e-9)
     np.testing.assert_allclose(np.sqrt(np.diag(fitted.covariance)), [fitted.stderr[name] for name in fitted.free])
     assert np.min(np.linalg.eigvalsh(fitted.covariance / np.outer(*2 * [list(fitted.stderr.values())]))) > -1e-9
+    assert fitted.figure._repr_svg_().startswith("<svg") and "axle_a fitted to axle_a_rig" in fitted.figure.svg
     assert "standard error" in fitted._repr_html_() and "pad_to_" in fitted._repr_html_()
 
 
@@ -73,4 +74,4 @@ def test_a_search_finds_what_is_missing_and_gives_the_model(verdict, campaigns):
     model = qcar.Model.from_text(verdict.model_text)
     assert "m_pwt" in {own.name for own in model.parameters}
     assert np.all(np.isfinite(model.matrices(verdict.values).A))
-    assert "suspended_mass" in verdict._repr_html_()
+    assert "suspended_mass" in verdict._repr_html_() and verdict.figure.svg.startswith("<svg")

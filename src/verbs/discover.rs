@@ -102,6 +102,12 @@ impl Answer {
         render::text(self)
     }
 
+    /// What is left of each sensor over frequency, before and after, as SVG.
+    pub fn figure(&self) -> String {
+        let title = format!("{}: what the model leaves, 0 dB being the noise", self.campaign);
+        figure::gap(title, [&self.discovery.before.gap, &self.discovery.after.gap]).svg()
+    }
+
     /// The text of the model with the effects in it; `None` where nothing of the model is missing.
     pub fn model_text(&self) -> Option<&str> {
         self.model.as_ref().map(|model| &*model.text)
@@ -329,9 +335,7 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         "parameters.toml",
         &render::parameters(&heading, &discovery.after),
     )?;
-    let title = format!("{campaign}: what the model leaves, 0 dB being the noise");
-    let gap = figure::gap(title, [&discovery.before.gap, &discovery.after.gap]);
-    put(folder, "gap.svg", &gap.svg())?;
+    put(folder, "gap.svg", &answer.figure())?;
     put(folder, "discovery.json", &render::json(answer))?;
     unfinished::take_away(folder);
     Ok(())

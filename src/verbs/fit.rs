@@ -148,6 +148,11 @@ impl Fitted {
         render::json(self)
     }
 
+    /// The first run's ratios, measured and modelled, as SVG.
+    pub fn figure(&self) -> String {
+        files::figure(self, &files::compare(self)).svg()
+    }
+
     /// Every measured ratio, fitted or not.
     pub fn ratios(&self) -> Vec<Ratio<'_>> {
         let compared = files::compare(self).into_iter();

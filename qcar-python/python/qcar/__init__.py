@@ -8,6 +8,7 @@
 from ._discover import Verdict, discover
 from ._ensemble import ride_metrics
 from ._fit import Fit, Ratio, fit
+from ._html import Figure
 from ._model import Model
 from ._named import (
     Excitation,
@@ -26,6 +27,7 @@ __all__ = [
     "CampaignError",
     "Error",
     "Excitation",
+    "Figure",
     "Fit",
     "History",
     "Input",

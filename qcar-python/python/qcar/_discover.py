@@ -32,6 +32,8 @@ class Verdict:
     values: dict[str, float] = field(repr=False)
     #: The answer in words.
     text: str = field(repr=False)
+    #: What is left of each sensor over frequency, before and after.
+    figure: _html.Figure = field(repr=False)
     #: All of it.
     details: dict[str, Any] = field(repr=False)
 
@@ -68,7 +70,7 @@ def discover(campaign: str | os.PathLike[str], *, model: str | None = None) -> V
     ------
     qcar.CampaignError
     """
-    text, model_text, values, words = _native.discover_in_campaign(campaign, model)
+    text, model_text, values, words, figure = _native.discover_in_campaign(campaign, model)
     found = json.loads(text)
     return Verdict(
         verdict=found["verdict"],
@@ -81,5 +83,6 @@ def discover(campaign: str | os.PathLike[str], *, model: str | None = None) -> V
         model_text=model_text,
         values=dict(values),
         text=words,
+        figure=_html.Figure(figure),
         details=found,
     )

@@ -63,6 +63,8 @@ class Fit:
     notices: list[str]
     #: Measured and modelled, line by line.
     ratios: list[Ratio] = field(repr=False)
+    #: Magnitudes of the first run: measured, at the start and fitted.
+    figure: _html.Figure = field(repr=False)
     details: dict[str, Any] = field(repr=False)
 
     def _repr_html_(self) -> str:
@@ -110,7 +112,7 @@ def fit(
     """
     if starts is not None and not 1 <= starts <= 10_000:
         raise _native.ParameterError(f"`starts` is {starts}; expected 1 to 10000 searches")
-    text, ratios, correlations = _native.fit_campaign(
+    text, ratios, correlations, figure = _native.fit_campaign(
         campaign, model, starts, _names(channels), _names(free), _names(fix)
     )
     found = json.loads(text)
@@ -132,6 +134,7 @@ def fit(
         channels=found["channels"],
         notices=found["notices"],
         ratios=[Ratio(*own) for own in ratios],
+        figure=_html.Figure(figure),
         details=found,
     )
 

@@ -3,11 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
 from html import escape
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from ._model import Model
+
+
+@dataclass(frozen=True)
+class Figure:
+    """A figure that a notebook shows where it is the value of a cell."""
+
+    svg: str = field(repr=False)
+
+    def _repr_svg_(self) -> str:
+        return self.svg
 
 
 def number(value: float | None, digits: int = 5) -> str:
