@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use ndarray::{Array2, ArrayView1, ArrayView2};
 use pyo3::PyResult;
 use qcar::catalogue::Loaded;
+use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
 use crate::errors;
@@ -24,19 +25,11 @@ pub struct Sets {
 /// zero.
 pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> PyResult<Sets> {
     let about = model.about();
-    let row =
-        |set: usize| -> BTreeMap<String, f64> { names.iter().cloned().zip(given.row(set).iter().copied()).collect() };
-    let resolved = |set: usize| {
-        let values = Values::resolve(about, &row(set), &BTreeMap::new());
-        values.map_err(|problems| {
-            let sentences: Vec<String> = problems.iter().map(ToString::to_string).collect();
-            errors::of_parameters(format!(
-                "{}{}",
-                errors::which("parameter set", set, given.nrows()),
-                sentences.join("\n")
-            ))
-        })
+    let refused = |set: usize, why: String| {
+        let which = errors::which("parameter set", set, given.nrows());
+        errors::of_parameters(which + &why)
     };
+    let resolved = |set: usize| by_name(about, names, given.row(set)).map_err(|why| refused(set, why));
     let mut values = match given.nrows() {
         0 => return Ok(none(about.parameters.len())),
         _ => resolved(0)?,
@@ -48,17 +41,26 @@ pub fn resolve(model: &Loaded, names: &[String], given: ArrayView2<'_, f64>) -> 
         if own.iter().any(|value| !value.is_finite()) {
             resolved(set)?;
         }
-        for (&place, &value) in places.iter().zip(own) {
-            values.set(place, value);
-        }
-        into.assign(&ArrayView1::from(values.as_slice()));
+        // What follows a parameter moves with it, as it did when the first set was resolved by name.
+        places
+            .iter()
+            .zip(own)
+            .for_each(|(&place, &value)| values.set(place, value));
         let inertias = model.check_inertias(values.as_slice());
-        inertias.map_err(|error| {
-            errors::of_parameters(format!("{}{error}", errors::which("parameter set", set, given.nrows())))
-        })?;
+        inertias.map_err(|error| refused(set, error.to_string()))?;
+        into.assign(&ArrayView1::from(values.as_slice()));
     }
     let leader = (0..about.parameters.len()).map(|k| values.leader(k)).collect();
     Ok(Sets { p, leader })
+}
+
+/// One set, or every sentence on what is wrong with it.
+fn by_name(about: &About, names: &[String], given: ArrayView1<'_, f64>) -> Result<Values, String> {
+    let given: BTreeMap<String, f64> = names.iter().cloned().zip(given.iter().copied()).collect();
+    Values::resolve(about, &given, &BTreeMap::new()).map_err(|problems| {
+        let sentences: Vec<String> = problems.iter().map(ToString::to_string).collect();
+        sentences.join("\n")
+    })
 }
 
 fn none(parameters: usize) -> Sets {

@@ -68,6 +68,8 @@ def test_rides_that_cannot_be(quarter_car):
         qcar.ride(quarter_car, vehicle={"r_tire": 0.32, "static_tire_def": 0.02}, height=0.02, speed=8.0)
     with pytest.raises(qcar.ParameterError, match="one of them"):
         qcar.ride(quarter_car, vehicle=vehicle, speed=8.0)
+    with pytest.raises(qcar.ParameterError, match="tolerance"):
+        qcar.ride(quarter_car, vehicle=vehicle, height=0.02, speed=8.0, tolerance=np.nan)
     with pytest.raises(qcar.ParameterError, match="variant"):
         qcar.ride(quarter_car, vehicle=vehicle, height=0.02, speed=8.0, variant="whole")
     with pytest.raises(qcar.ParameterError, match="broadcast"):

@@ -107,6 +107,8 @@ def ride(
     """
     if (height is None) == (road is None):
         raise _native.ParameterError("a ride is over a cleat of a `height` or over a `road`: give one of them")
+    if not 0 < tolerance < 1:
+        raise _native.ParameterError(f"`tolerance` is {tolerance}; expected a number between 0 and 1, such as 1e-6")
     facts = _facts(vehicle, model)
     p, _, batch = model._resolve(_with_facts(params, facts, model))
     heights = np.asarray(0.0 if height is None else height, dtype=float)
