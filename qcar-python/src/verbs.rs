@@ -10,7 +10,7 @@ use qcar::catalogue;
 use qcar::failure::Failure;
 use qcar::parameters::{self, Beside, Setting};
 use qcar::verbs::{discover, fit, simulate};
-use qcar_runtime::campaign::Role;
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::numbers::Numbers;
 
 use crate::errors;
@@ -56,11 +56,24 @@ pub fn fit_campaign<'py>(
         free,
         fix,
     };
-    let fitted = long(py, || fit::fit(&campaign, &choices))?.map_err(errors::of_campaign)?;
+    let fit = || refuse_nonlinear(&campaign, choices.model.as_deref()).and_then(|()| fit::fit(&campaign, &choices));
+    let fitted = long(py, fit)?.map_err(errors::of_campaign)?;
     let ratios = fitted.ratios().into_iter().map(|own| ratio(py, own)).collect();
     let correlations = fitted.fit.all_correlations.iter();
     let correlations = correlations.map(|own| (own.between.0.clone(), own.between.1.clone(), own.value));
     Ok((fitted.json(), ratios, correlations.collect(), fitted.figure()))
+}
+
+/// # Errors
+/// A nonlinear model, whose transmissibilities hold for one level alone.
+fn refuse_nonlinear(campaign: &Path, model: Option<&str>) -> Result<(), Failure> {
+    let model = catalogue::of_campaign(&Campaign::open(campaign)?, model)?;
+    let about = model.about();
+    let refused = || {
+        let sentence = "is nonlinear, and this fit is to transmissibilities of a linear one; fit it with `qcar fit`, or ask `discover`";
+        Err(Failure::Input(format!("model `{}` {sentence}", about.name)))
+    };
+    if about.linear { Ok(()) } else { refused() }
 }
 
 fn ratio<'py>(py: Python<'py>, of: fit::Ratio<'_>) -> RatioOfRun<'py> {

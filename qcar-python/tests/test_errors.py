@@ -60,6 +60,15 @@ def test_a_campaign_names_its_file_and_line(tmp_path, campaigns):
         qcar.fit(campaigns / "axle_a_rig", free=["nothing"])
 
 
+def test_a_nonlinear_model_is_not_fitted_as_if_it_were_linear(tmp_path, campaigns):
+    linear = qcar.Model("quarter_car").show("model")
+    bent = linear.replace("spring k_tire;", "force = k_tire*s + 1e9*s*s*s;")
+    assert bent != linear
+    (tmp_path / "bent.axle").write_text(bent)
+    with pytest.raises(qcar.CampaignError, match="nonlinear"):
+        qcar.fit(campaigns / "axle_a_rig", model=str(tmp_path / "bent.axle"))
+
+
 def test_rides_that_cannot_be(quarter_car):
     vehicle = {"r_tire": 0.32, "static_tire_def": 0.02, "static_tire_load": 4400.0}
     with pytest.raises(qcar.SimulationError, match="ride 1 of 2, counted from 0.*speed"):

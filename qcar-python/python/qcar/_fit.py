@@ -90,7 +90,7 @@ def fit(
     free: Sequence[str] = (),
     fix: Sequence[str] = (),
 ) -> Fit:
-    """Fit a model to the sweeps and time histories of a campaign.
+    """Fit a linear model to the sweeps and time histories of a campaign.
 
     Parameters
     ----------
