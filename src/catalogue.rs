@@ -7,7 +7,7 @@ use models::Shipped;
 use qcar_dsl::check::Unseen;
 use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
-use qcar_dsl::disk::compile_file_wanted;
+use qcar_dsl::disk::{Files, compile_file_wanted};
 use qcar_dsl::front::{Member, check_members};
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
@@ -36,6 +36,18 @@ enum Program {
 }
 
 impl Loaded {
+    fn new(compiled: &Compiled, program: Program) -> Self {
+        Loaded {
+            program,
+            inertias: Inertias::of(compiled),
+            unseen: compiled.model.unseen().to_vec(),
+        }
+    }
+
+    fn file(compiled: &Compiled) -> Self {
+        Loaded::new(compiled, Program::File(Box::new(Evaluated::new(compiled))))
+    }
+
     /// Checks what the masses are at the values `p` of all parameters.
     ///
     /// # Errors
@@ -92,15 +104,18 @@ pub fn load(model: &str) -> Result<Loaded, Failure> {
 /// As [`compiled`].
 pub fn load_wanted(model: &str, wanted: Wanted) -> Result<Loaded, Failure> {
     let compiled = compiled_wanted(model, wanted)?;
-    let program = match models::find(model) {
-        Some(shipped) => Program::Shipped(shipped.model),
-        None => Program::File(Box::new(Evaluated::new(&compiled))),
-    };
-    Ok(Loaded {
-        program,
-        inertias: Inertias::of(&compiled),
-        unseen: compiled.model.unseen().to_vec(),
+    Ok(match models::find(model) {
+        Some(shipped) => Loaded::new(&compiled, Program::Shipped(shipped.model)),
+        None => Loaded::file(&compiled),
     })
+}
+
+/// A model whose text is at hand.
+///
+/// # Errors
+/// As [`compiled_text`].
+pub fn load_text(name: &str, text: &str) -> Result<Loaded, Failure> {
+    compiled_text(name, text).map(|compiled| Loaded::file(&compiled))
 }
 
 /// The model that the user wants, else the campaign's: a shipped one, or a file relative to the campaign's folder.
@@ -153,6 +168,20 @@ pub fn compiled(model: &str) -> Result<Compiled, Failure> {
 /// As [`compiled`].
 pub fn compiled_wanted(model: &str, wanted: Wanted) -> Result<Compiled, Failure> {
     compile(model, wanted)?.map_err(|report| Failure::Input(report.to_string()))
+}
+
+/// The same of a model whose text is at hand; a family that it begins from is looked for beside the file that `name` would be.
+///
+/// # Errors
+/// A model that the compiler refuses.
+pub fn compiled_text(name: &str, text: &str) -> Result<Compiled, Failure> {
+    let files = Files::new(Path::new(""));
+    let source = Source {
+        name: name.into(),
+        text: text.into(),
+    };
+    let load = |asking: &str, written: &str| files.load(asking, written);
+    compile_wanted(source, &load, Wanted::Jacobian).map_err(|report| Failure::Input(report.to_string()))
 }
 
 /// Compiles a shipped model or a file, with what is wanted of the responses, or gives the compiler's report.

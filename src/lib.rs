@@ -23,7 +23,9 @@ pub mod report;
 pub mod spreadsheet;
 // Results as columns of numbers.
 pub mod parquet;
-// Signs of life meanwhile.
+// Work that is given up
+pub mod stopping;
+// at one of its signs of life.
 pub mod progress;
 // What becomes of both when the user stops the work.
 pub mod interruption;

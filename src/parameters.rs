@@ -32,6 +32,17 @@ pub struct Setting {
     unit: Option<String>,
 }
 
+impl Setting {
+    /// A value in SI.
+    pub fn new(name: &str, value: f64) -> Self {
+        Setting {
+            name: name.into(),
+            value,
+            unit: None,
+        }
+    }
+}
+
 impl FromStr for Setting {
     type Err = String;
 

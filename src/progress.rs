@@ -7,11 +7,16 @@ use std::time::Duration;
 use indicatif::{ProgressBar, ProgressStyle};
 use qcar_runtime::progress::Told;
 
+use crate::stopping::{self, Stop};
+
 /// What is shown now, so that an interruption can say what it ended.
 static SHOWN: Mutex<Option<ProgressBar>> = Mutex::new(None);
 
-/// A sign of life whose words change, gone when it is dropped.
-pub struct Showing(ProgressBar);
+/// A sign of life whose words change, gone when it is dropped. Work that is to stop ends where it gives one.
+pub struct Showing {
+    bar: ProgressBar,
+    stop: Option<Stop>,
+}
 
 impl Showing {
     /// Says nothing yet.
@@ -19,21 +24,26 @@ impl Showing {
         let bar = ProgressBar::new_spinner().with_style(style("{spinner} {wide_msg} {elapsed}"));
         bar.enable_steady_tick(Duration::from_millis(100));
         show(Some(bar.clone()));
-        Showing(bar)
+        Showing {
+            bar,
+            stop: stopping::of_this_work(),
+        }
     }
 
     /// Says what is being done.
     pub fn tell(&self, what: String) {
-        self.0.set_message(what);
+        stopping::here(self.stop.as_ref());
+        self.bar.set_message(what);
     }
 
     /// Says how much of it is done, and of how much.
     pub fn far(&self, done: usize, of: usize) {
-        self.0.set_position(done as u64);
-        if self.0.length() != Some(of as u64) {
-            self.0
+        stopping::here(self.stop.as_ref());
+        self.bar.set_position(done as u64);
+        if self.bar.length() != Some(of as u64) {
+            self.bar
                 .set_style(style("{spinner} {wide_msg} {pos} of {len} {bar:12} {elapsed}"));
-            self.0.set_length(of as u64);
+            self.bar.set_length(of as u64);
         }
     }
 }
@@ -46,7 +56,7 @@ impl Default for Showing {
 
 impl Drop for Showing {
     fn drop(&mut self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
         show(None);
     }
 }

@@ -210,7 +210,8 @@ fn at_rest(about: &About) -> (Vec<f64>, Vec<f64>) {
     (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()])
 }
 
-fn state_name(state: &State) -> StateName {
+/// A state in the words of JSON.
+pub fn state_name(state: &State) -> StateName {
     let location = Some(state.location.to_string());
     let (mass, link, kind) = match state.kind {
         StateKind::Position => (location, None, "position"),
@@ -227,7 +228,8 @@ fn state_name(state: &State) -> StateName {
     }
 }
 
-fn input_name(about: &About, input: &Input) -> InputName {
+/// An input in the same words.
+pub fn input_name(about: &About, input: &Input) -> InputName {
     let (name, kind) = match input.kind {
         InputKind::Gravity => (&input.name, "gravity"),
         InputKind::Force(at) => (&about.excitations[usize::from(at)].name, "force"),
@@ -256,7 +258,8 @@ fn motion_kind(road: bool, quantity: Quantity) -> &'static str {
     }
 }
 
-fn output_name(output: &Output) -> OutputName {
+/// An output in the same words.
+pub fn output_name(output: &Output) -> OutputName {
     let Signal { location, axis, kind } = &output.signal;
     let kind = match kind {
         SignalKind::Motion(Quantity::Position) => "position",

@@ -29,7 +29,8 @@ pub fn map_with<T: Sync, R, U: Send>(
         told(done.fetch_add(1, Ordering::Relaxed) + 1, items.len());
         result
     };
-    items.par_iter().map_init(room, one).collect()
+    // Nobody waits for the others once one has panicked, which is how work is given up.
+    items.par_iter().map_init(room, one).panic_fuse().collect()
 }
 
 #[cfg(test)]

@@ -125,6 +125,14 @@ impl Road {
         Self::through(vec![[0.0, z], [1.0, z]])
     }
 
+    /// The same road with flat ground behind its end, at least to `x` (m).
+    pub fn reaching(&self, x: f64) -> Self {
+        let [end, z] = *self.vertices.last().expect("a road has points");
+        let further = (x > end).then_some([x, z]);
+        let points: Vec<_> = self.vertices.iter().copied().chain(further).collect();
+        Self::through(samples::simplify(&points, samples::EXACT))
+    }
+
     /// The same road seen by a wheel that rolls the other way: x becomes -x.
     pub fn mirrored(&self) -> Self {
         Self::through(self.vertices.iter().rev().map(|&[x, z]| [-x, z]).collect())

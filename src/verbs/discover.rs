@@ -70,7 +70,7 @@ pub struct Arguments {
 }
 
 /// A campaign, and what was found in it.
-pub(crate) struct Answer {
+pub struct Answer {
     /// Its name.
     pub campaign: String,
     /// What it says.
@@ -84,11 +84,39 @@ pub(crate) struct Answer {
     /// Of each finding, the units of its parameters.
     pub units: Vec<BTreeMap<String, String>>,
     /// The model with it; `None` where nothing of the model is missing.
-    pub model: Option<Written>,
+    pub(crate) model: Option<Written>,
     /// The laws that were learned where no effect explains the gap, and the model with them.
-    pub learned: Option<law::LearnedModel>,
+    pub(crate) learned: Option<law::LearnedModel>,
     /// Time for all of it.
     pub seconds: f64,
+}
+
+impl Answer {
+    /// The answer as `docs/json.md` describes it.
+    pub fn json(&self) -> String {
+        render::json(self)
+    }
+
+    /// The answer in words.
+    pub fn text(&self) -> String {
+        render::text(self)
+    }
+
+    /// What is left of each sensor over frequency, before and after, as SVG.
+    pub fn figure(&self) -> String {
+        let title = format!("{}: what the model leaves, 0 dB being the noise", self.campaign);
+        figure::gap(title, [&self.discovery.before.gap, &self.discovery.after.gap]).svg()
+    }
+
+    /// The text of the model with the effects in it; `None` where nothing of the model is missing.
+    pub fn model_text(&self) -> Option<&str> {
+        self.model.as_ref().map(|model| &*model.text)
+    }
+
+    /// The values of all parameters with all that was found.
+    pub fn values(&self) -> &[(String, f64)] {
+        &self.discovery.after.named
+    }
 }
 
 /// The model with the effects in it.
@@ -121,10 +149,9 @@ fn multiplied(text: &str) -> Result<Numbers, String> {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let campaign = Campaign::open(&arguments.campaign)?;
     let numbers = arguments.assume.clone().unwrap_or_default();
-    let mut answer = answer(&campaign, arguments.model.as_deref(), arguments.out.as_deref(), numbers)?;
-    answer.evidence.notices.splice(0..0, campaign.notices.iter().cloned());
+    let (model, out) = (arguments.model.as_deref(), arguments.out.as_deref());
+    let mut answer = discover(&arguments.campaign, model, out, numbers)?;
     if let Some(folder) = &arguments.out {
         write(&mut answer, folder)?;
     }
@@ -132,6 +159,17 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         Format::Text => prose(&render::text(&answer)),
         Format::Json => render::json(&answer),
     })
+}
+
+/// Looks for what the model of the campaign in a folder lacks, and notes what is odd about the campaign.
+///
+/// # Errors
+/// A campaign that cannot be read, and as [`answer`].
+pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers: Numbers) -> Result<Answer, Failure> {
+    let campaign = Campaign::open(folder)?;
+    let mut answer = answer(&campaign, model, out, numbers)?;
+    answer.evidence.notices.splice(0..0, campaign.notices);
+    Ok(answer)
 }
 
 /// Looks for what the model of a campaign lacks. Stopped on the way, it leaves what is known by then in `out`.
@@ -302,9 +340,7 @@ pub(crate) fn write(answer: &mut Answer, folder: &Path) -> Result<(), Failure> {
         "parameters.toml",
         &render::parameters(&heading, &discovery.after),
     )?;
-    let title = format!("{campaign}: what the model leaves, 0 dB being the noise");
-    let gap = figure::gap(title, [&discovery.before.gap, &discovery.after.gap]);
-    put(folder, "gap.svg", &gap.svg())?;
+    put(folder, "gap.svg", &answer.figure())?;
     put(folder, "discovery.json", &render::json(answer))?;
     unfinished::take_away(folder);
     Ok(())

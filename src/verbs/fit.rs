@@ -6,10 +6,12 @@ use std::time::Instant;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
+use nalgebra::Complex;
 use qcar_dsl::check::Unseen;
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::measure::levels;
+use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
 use qcar_runtime::model::About;
@@ -71,19 +73,19 @@ pub struct Arguments {
 pub struct Choices {
     /// Fit this model, by name or path, in place of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
-    model: Option<String>,
+    pub model: Option<String>,
     /// Searches: the first from the campaign's start values, the others from all over its ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
-    starts: Option<u16>,
+    pub starts: Option<u16>,
     /// Fit to these channels, such as pad_to_wheel, in place of those over the model's force elements
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
-    channels: Vec<String>,
+    pub channels: Vec<String>,
     /// Fit these parameters too
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
-    free: Vec<String>,
+    pub free: Vec<String>,
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
-    fix: Vec<String>,
+    pub fix: Vec<String>,
 }
 
 impl Choices {
@@ -136,7 +138,41 @@ pub struct Fitted {
     pub seconds: f64,
 }
 
+/// A measured ratio beside that of the fitted model, line by line.
+pub struct Ratio<'a> {
+    /// The file of the run.
+    pub run: &'a str,
+    /// What it is used for.
+    pub role: Role,
+    /// What was measured.
+    pub observation: &'a Observation,
+    /// The fitted model.
+    pub fitted: Vec<Complex<f64>>,
+}
+
 impl Fitted {
+    /// The result as `docs/json.md` describes it.
+    pub fn json(&self) -> String {
+        render::json(self)
+    }
+
+    /// The first run's ratios, measured and modelled, as SVG.
+    pub fn figure(&self) -> String {
+        files::figure(self, &files::compare(self)).svg()
+    }
+
+    /// Every measured ratio, fitted or not.
+    pub fn ratios(&self) -> Vec<Ratio<'_>> {
+        let compared = files::compare(self).into_iter();
+        let ratios = compared.map(|own| Ratio {
+            run: &own.level.name,
+            role: own.level.role,
+            observation: own.observation,
+            fitted: own.after,
+        });
+        ratios.collect()
+    }
+
     /// The parameters before the fit.
     pub fn start(&self) -> Values {
         self.with(|parameter| parameter.start)

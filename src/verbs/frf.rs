@@ -235,7 +235,10 @@ impl<'a> Excited<'a> {
 }
 
 /// What drives a channel: its denominator where that can be prescribed, else the road, else what there is along its axis.
-pub(crate) fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
+///
+/// # Errors
+/// Nothing along that axis.
+pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
     let Signal { location, axis, .. } = &channel.denominator;
     let along = || about.excitations.iter().enumerate().filter(|(_, of)| of.axis == *axis);
     let found = along()

@@ -1,6 +1,6 @@
 //! `qcar simulate`: the cleat runs, sweeps and time histories of a campaign, simulated and compared with the measurement.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
@@ -14,7 +14,7 @@ use crate::catalogue::{self, Loaded};
 use crate::completion;
 use crate::failure::Failure;
 use crate::files::folder_for_results;
-use crate::histories::Kind;
+use crate::histories::{History, Kind};
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
 use crate::terminal::prose;
@@ -30,6 +30,7 @@ mod figure;
 pub(crate) mod render;
 
 use compared::Compared;
+use records::Record;
 
 /// Simulate the runs of a campaign and compare them with the measurement
 ///
@@ -45,18 +46,8 @@ use compared::Compared;
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Simulate this model, by name or path, in place of the campaign's
-    #[arg(long, add = ArgValueCompleter::new(completion::models))]
-    model: Option<String>,
-    /// Parameter values above the start values of the campaign: a TOML file with [parameters]
-    #[arg(long, value_name = "FILE")]
-    params: Option<PathBuf>,
-    /// One value, in place of that of the files; may be repeated
-    #[arg(long, value_name = "NAME=VALUE")]
-    set: Vec<Setting>,
-    /// How much of the model is simulated over cleats
-    #[arg(long, value_enum, default_value_t = VariantName::Complete)]
-    variant: VariantName,
+    #[command(flatten)]
+    choices: Choices,
     /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
@@ -68,9 +59,28 @@ pub struct Arguments {
     format: TableFormat,
 }
 
-#[derive(Clone, Copy, ValueEnum)]
-enum VariantName {
+/// What is simulated.
+#[derive(Args, Default)]
+pub struct Choices {
+    /// Simulate this model, by name or path, in place of the campaign's
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
+    pub model: Option<String>,
+    /// Parameter values above the start values of the campaign: a TOML file with [parameters]
+    #[arg(long, value_name = "FILE")]
+    pub params: Option<PathBuf>,
+    /// One value, in place of that of the files; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    pub set: Vec<Setting>,
+    /// How much of the model is simulated over cleats
+    #[arg(long, value_enum, default_value_t = VariantName::Complete)]
+    pub variant: VariantName,
+}
+
+/// How much of a model is simulated over cleats.
+#[derive(Clone, Copy, Default, ValueEnum)]
+pub enum VariantName {
     /// All of it
+    #[default]
     Complete,
     /// All moves along the road at constant speed
     Locked,
@@ -80,50 +90,97 @@ enum VariantName {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let campaign = Campaign::open(&arguments.campaign)?;
-    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
-    let manifest = campaign.manifest();
-    let files = std::iter::once(manifest.as_path()).chain(arguments.params.as_deref());
-    let values = parameters::resolve(model.about(), files, &arguments.set)?;
-    let driven = over_cleats(&campaign, &model, &values, arguments)?;
-    let records = records::records(&campaign, &*model, &values)?;
-    if driven.is_none() && records.is_empty() {
-        let expected = "at least one run of kind cleat, sweep or time_history";
-        return Err(nothing_to_simulate(&campaign, expected).into());
-    }
+    let simulated = simulate(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
-        render::records(&records, folder, arguments.kind)?;
+        for history in simulated.cleat_histories() {
+            history.put(folder, arguments.kind)?;
+        }
+        render::records(&simulated.records, folder, arguments.kind)?;
     }
-    let result = render::Result {
-        campaign: &campaign.name,
-        model: &model.about().name,
-        at_start: &guessed(&campaign, &model, &values),
-        cleats: driven.as_ref(),
-        records: &records,
-    };
     Ok(match arguments.format {
-        TableFormat::Text => prose(&result.text()),
-        TableFormat::Json => result.json(),
-        TableFormat::Csv => result.csv(),
+        TableFormat::Text => prose(&simulated.result().text()),
+        TableFormat::Json => simulated.json(),
+        TableFormat::Csv => simulated.result().csv(),
     })
 }
 
-/// The runs over cleats, written where the user wants them; `None` without any.
+/// The runs of a campaign, simulated.
+pub struct Simulated {
+    campaign: Campaign,
+    model: Loaded,
+    values: Values,
+    cleats: Option<(Vec<Cleat>, Driven)>,
+    records: Vec<Record>,
+}
+
+/// Simulates the cleat runs, sweeps and time histories of a campaign.
+///
+/// # Errors
+/// A campaign without any of them, and what keeps one from being read or simulated.
+pub fn simulate(campaign: &Path, choices: &Choices) -> Result<Simulated, Failure> {
+    let campaign = Campaign::open(campaign)?;
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
+    let manifest = campaign.manifest();
+    let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
+    let values = parameters::resolve(model.about(), files, &choices.set)?;
+    let cleats = over_cleats(&campaign, &model, &values, choices.variant.into())?;
+    let records = records::records(&campaign, &*model, &values)?;
+    if cleats.is_none() && records.is_empty() {
+        let expected = "at least one run of kind cleat, sweep or time_history";
+        return Err(nothing_to_simulate(&campaign, expected).into());
+    }
+    Ok(Simulated {
+        campaign,
+        model,
+        values,
+        cleats,
+        records,
+    })
+}
+
+impl Simulated {
+    /// The errors as `docs/json.md` describes them.
+    pub fn json(&self) -> String {
+        self.result().json()
+    }
+
+    /// What each run would have recorded: of a cleat run all outputs and the tyre's force, of others measured beside simulated.
+    pub fn histories(&self) -> Vec<History> {
+        let records = self.records.iter().map(render::beside);
+        self.cleat_histories().into_iter().chain(records).collect()
+    }
+
+    fn cleat_histories(&self) -> Vec<History> {
+        let driven = self.cleats.as_ref();
+        driven.map_or_else(Vec::new, |(cleats, driven)| {
+            render::histories(self.model.about(), cleats, &driven.rides)
+        })
+    }
+
+    fn result(&self) -> render::Result<'_> {
+        render::Result {
+            campaign: &self.campaign.name,
+            model: &self.model.about().name,
+            at_start: guessed(&self.campaign, &self.model, &self.values),
+            cleats: self.cleats.as_ref().map(|(_, driven)| &driven.compared),
+            records: &self.records,
+        }
+    }
+}
+
+/// The runs over cleats; `None` without any.
 fn over_cleats(
     campaign: &Campaign,
     model: &Loaded,
     values: &Values,
-    arguments: &Arguments,
-) -> Result<Option<Compared>, InputError> {
+    variant: Variant,
+) -> Result<Option<(Vec<Cleat>, Driven)>, InputError> {
     if !campaign.runs.iter().any(|run| matches!(run.test, Test::Cleat { .. })) {
         return Ok(None);
     }
     let cleats = cleats(campaign)?;
-    let driven = drive(campaign, model, values, &cleats, arguments.variant.into())?;
-    if let Some(folder) = &arguments.out {
-        render::histories(model.about(), &cleats, &driven.rides, folder, arguments.kind)?;
-    }
-    Ok(Some(driven.compared))
+    let driven = drive(campaign, model, values, &cleats, variant)?;
+    Ok(Some((cleats, driven)))
 }
 
 fn nothing_to_simulate(campaign: &Campaign, expected: &str) -> Problem {

@@ -70,10 +70,7 @@ fn duration(speed: f64) -> f64 {
 fn road(height: f64, length: f64) -> Result<Road, RoadError> {
     // The straight part of the descent behind the step, and its return to the flat: those of a common test track.
     let (descent, blend) = (0.4, 0.17);
-    let cleat = Road::from_shape(&Shape::Cleat { height, descent, blend }, RUN_IN)?;
-    let end = cleat.extent()[1].max(length);
-    let points = cleat.vertices().iter().copied().chain([[end, 0.0]]);
-    Road::from_points(&points.collect::<Vec<_>>())
+    Ok(Road::from_shape(&Shape::Cleat { height, descent, blend }, RUN_IN)?.reaching(length))
 }
 
 #[cfg(test)]

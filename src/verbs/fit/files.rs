@@ -139,7 +139,7 @@ fn csv(of: &[Compared]) -> String {
 }
 
 /// Magnitudes of the first run, a panel for each channel.
-fn figure(of: &Fitted, compared: &[Compared]) -> Figure {
+pub(super) fn figure(of: &Fitted, compared: &[Compared]) -> Figure {
     let first = of.levels.first().map_or("", |level| level.name.as_str());
     let shown = compared.iter().filter(|compared| compared.level.name == first);
     Figure {

@@ -30,7 +30,7 @@ pub(super) struct Result<'a> {
     /// Name.
     pub model: &'a str,
     /// Parameters that still have their start values.
-    pub at_start: &'a [String],
+    pub at_start: Vec<String>,
     /// Runs over cleats, where there are any.
     pub cleats: Option<&'a Compared>,
     /// Sweeps and time histories.
@@ -54,7 +54,7 @@ impl Result<'_> {
         json::line(&Json {
             campaign: self.campaign,
             model: self.model,
-            at_start: self.at_start,
+            at_start: &self.at_start,
             runs: self.cleats.map_or(&[], |cleats| &cleats.runs),
             summary: self.cleats.map(|cleats| &cleats.summary),
             records: self.errors().collect(),
@@ -66,7 +66,7 @@ impl Result<'_> {
         let cleats = self.cleats.map(text);
         let records = (!self.records.is_empty()).then(|| self.records_text());
         let parts: Vec<String> = cleats.into_iter().chain(records).collect();
-        format!("{}{}", parts.join("\n"), note(self.at_start))
+        format!("{}{}", parts.join("\n"), note(&self.at_start))
     }
 
     /// A table of the cleats, one of the records, and an empty line between them.
@@ -244,7 +244,8 @@ pub(super) fn records(of: &[Record], folder: &Path, kind: Kind) -> std::result::
     Ok(())
 }
 
-fn beside(record: &Record) -> History {
+/// What was measured and what was simulated.
+pub(super) fn beside(record: &Record) -> History {
     let samples = record.signals.first().map_or(0, |(_, [measured, _])| measured.len());
     let channels = record
         .signals
@@ -276,21 +277,11 @@ fn stem(file: &str) -> &str {
     name.trim_end_matches(".gz").trim_end_matches(".csv")
 }
 
-/// A file for each run: time, the outputs of the model, the tyre's forces and contact area.
-///
-/// # Errors
-/// A folder that cannot be written to.
-pub(crate) fn histories(
-    about: &About,
-    cleats: &[Cleat],
-    rides: &[Ride],
-    folder: &Path,
-    kind: Kind,
-) -> std::result::Result<(), InputError> {
-    for (cleat, ride) in cleats.iter().zip(rides) {
-        history(about, stem(&cleat.run.name), ride).put(folder, kind)?;
-    }
-    Ok(())
+/// Of each run time, the outputs of the model, the tyre's forces and contact area.
+pub(crate) fn histories(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Vec<History> {
+    let runs = cleats.iter().zip(rides);
+    runs.map(|(cleat, ride)| history(about, stem(&cleat.run.name), ride))
+        .collect()
 }
 
 fn history(about: &About, name: &str, ride: &Ride) -> History {

@@ -1,0 +1,114 @@
+"""What a model has, and what it gives, as named tuples."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+import numpy.typing as npt
+
+Array = npt.NDArray[np.float64]
+ComplexArray = npt.NDArray[np.complex128]
+
+
+class Parameter(NamedTuple):
+    """A parameter of a model."""
+
+    name: str
+    #: Unit, as in ``N s/m``.
+    unit: str
+    doc: str
+    #: Its value where nobody gives it one; ``None`` where it must be given, or follows another parameter.
+    default: float | None
+    #: The parameter whose value it takes where nobody gives it one.
+    same_as: str | None
+    #: Bounds of what is plausible.
+    range: tuple[float, float] | None
+    #: True where it is never estimated unless a campaign asks for it.
+    known: bool
+
+
+class State(NamedTuple):
+    """A state: a row and column of A."""
+
+    name: str
+    unit: str
+    #: The mass or node that moves, or the link of an inner state.
+    location: str
+    axis: str
+    #: ``position``, ``velocity`` or ``inner``.
+    kind: str
+
+
+class Input(NamedTuple):
+    """An input: a column of B and D."""
+
+    name: str
+    unit: str
+    #: The road, motion or force that it belongs to.
+    excitation: str
+    axis: str
+    #: ``road``, ``road_rate``, ``road_acceleration``, the same of ``motion``, ``force`` or ``gravity``.
+    kind: str
+
+
+class Output(NamedTuple):
+    """An output: a row of C and D."""
+
+    name: str
+    unit: str
+    #: The mass, node or link that is measured.
+    location: str
+    axis: str
+    #: ``position``, ``velocity``, ``acceleration``, ``force`` or ``stretch``.
+    kind: str
+
+
+class Excitation(NamedTuple):
+    """What drives a frequency response: a motion with all its derivatives, or a force."""
+
+    name: str
+    #: ``m`` or ``N``: the response is per unit of it.
+    unit: str
+    axis: str
+    #: ``road``, ``motion`` or ``force``.
+    kind: str
+
+
+class StateSpace(NamedTuple):
+    """``dx/dt = A x + B u``, ``y = C x + D u``; batches of parameter sets stand along the first axes.
+
+    Takes the place of ``A, B, C, D`` wherever SciPy wants them: ``scipy.signal.StateSpace(*model.matrices())``.
+    """
+
+    #: (..., states, states)
+    A: Array
+    #: (..., states, inputs)
+    B: Array
+    #: (..., outputs, states)
+    C: Array
+    #: (..., outputs, inputs)
+    D: Array
+
+
+class Jacobians(NamedTuple):
+    """Derivatives of A, B, C and D by each parameter: ``dA["k_tire"]`` has the shape of A.
+
+    What a parameter moves through others that take their value from it counts as its own, and these have no entry.
+    """
+
+    dA: dict[str, Array]
+    dB: dict[str, Array]
+    dC: dict[str, Array]
+    dD: dict[str, Array]
+
+
+class Mode(NamedTuple):
+    """A natural vibration."""
+
+    #: Undamped natural frequency, Hz.
+    frequency: float
+    #: Damping ratio, below 1.
+    damping: float
+    #: Amplitude of every position that moves, by the name of its state; the largest is 1.
+    shape: dict[str, complex]

@@ -1,0 +1,78 @@
+//! Work that whoever asked for it may give up. A program that qcar is a part of, such as Python, does not end when its user presses
+//! Ctrl-C; so the work ends, at its next sign of life.
+
+use std::cell::RefCell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Whether work is to stop.
+pub type Stop = Arc<AtomicBool>;
+
+/// What unwinds work that was stopped.
+struct Stopped;
+
+thread_local! {
+    /// That of the work that this thread is doing.
+    static STOP: RefCell<Option<Stop>> = const { RefCell::new(None) };
+}
+
+/// Does `work` unless `stop` is set on the way: `None` then.
+pub fn unless<T>(stop: &Stop, work: impl FnOnce() -> T) -> Option<T> {
+    let outer = STOP.replace(Some(Arc::clone(stop)));
+    let done = catch_unwind(AssertUnwindSafe(work));
+    STOP.set(outer);
+    match done {
+        Ok(result) => Some(result),
+        Err(reason) if reason.is::<Stopped>() => None,
+        Err(reason) => resume_unwind(reason),
+    }
+}
+
+/// Whether the work of this thread is to stop, for threads that help it; `None` where nobody can say so.
+pub fn of_this_work() -> Option<Stop> {
+    STOP.with_borrow(Clone::clone)
+}
+
+/// Ends the work here if it is to stop.
+pub fn here(stop: Option<&Stop>) {
+    if stop.is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+        resume_unwind(Box::new(Stopped));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use std::sync::atomic::Ordering;
+
+    use super::{Stop, here, of_this_work, unless};
+
+    #[test]
+    fn work_ends_at_its_next_sign_of_life() {
+        let stop = Stop::default();
+        let mut done = 0;
+        let ended = unless(&stop, || {
+            let stop = of_this_work();
+            for part in 0..5 {
+                here(stop.as_ref());
+                done += 1;
+                stop.as_ref().unwrap().store(part == 2, Ordering::Relaxed);
+            }
+        });
+        assert_eq!((ended, done), (None, 3));
+        assert!(of_this_work().is_none());
+    }
+
+    #[test]
+    fn work_that_nobody_stops_gives_its_result() {
+        assert_eq!(unless(&Arc::default(), || 7), Some(7));
+        here(None);
+    }
+
+    #[test]
+    #[should_panic(expected = "a mistake in the work")]
+    fn what_is_wrong_with_the_work_is_not_hidden() {
+        unless(&Arc::default(), || panic!("a mistake in the work"));
+    }
+}
