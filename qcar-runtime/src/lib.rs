@@ -13,6 +13,8 @@ pub mod generated;
 pub mod error;
 // What a misspelt name was meant to be.
 pub mod spelling;
+// Random numbers that are no different elsewhere.
+pub mod random;
 // Files that are read no further than a limit.
 pub mod bounded;
 // How far long work is.
@@ -43,6 +45,12 @@ pub mod solver;
 pub mod simulate;
 // Peak and after-shake errors, comfort metrics.
 pub mod compare;
+// Numbers that say how an axle feels, and their derivatives.
+pub mod metric;
+// What they depend on.
+pub mod sensitivity;
+// What an axle must be for them to be as they are wanted.
+pub mod target;
 // Gradients of K&C curves.
 pub mod kc;
 // Where the measurement disagrees with the model, and what would explain it.

@@ -40,20 +40,22 @@ const STILL: f64 = 1e-6;
 
 /// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
 pub fn modes(model: &dyn Model, values: &Values) -> Vec<Mode> {
-    let a = dynamics(model, values);
+    let a = dynamics(model, values.as_slice());
+    let roots = vibrations(&a).into_iter();
+    roots.map(|root| mode(model, &a, root)).collect()
+}
+
+/// The eigenvalue of each vibration with its imaginary part above zero, lowest frequency first.
+pub(crate) fn vibrations(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
     // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
     if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
         return Vec::new();
     }
     let roots = a.clone().complex_eigenvalues();
-    let mut modes: Vec<Mode> = roots
-        .iter()
-        .filter(|root| vibrates(root))
-        .map(|&root| mode(model, &a, root))
-        .collect();
-    modes.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
-    modes
+    let mut roots: Vec<Complex<f64>> = roots.iter().copied().filter(vibrates).collect();
+    roots.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+    roots
 }
 
 /// Modes of two models that are the same vibration, by their places in both lists; each mode is in one pair at most.
@@ -98,11 +100,11 @@ fn likeness(first: &Mode, second: &Mode) -> f64 {
 }
 
 /// A at rest.
-fn dynamics(model: &dyn Model, values: &Values) -> DMatrix<f64> {
+pub(crate) fn dynamics(model: &dyn Model, p: &[f64]) -> DMatrix<f64> {
     let about = model.about();
     let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
     let mut nonzeros = vec![0.0; about.matrices.len()];
-    model.matrices(values.as_slice(), &x, &u, &mut nonzeros);
+    model.matrices(p, &x, &u, &mut nonzeros);
     let mut a = DMatrix::zeros(x.len(), x.len());
     for (entry, &value) in about.matrices.iter().zip(&nonzeros) {
         if entry.matrix == Matrix::A {
@@ -133,7 +135,7 @@ fn mode(model: &dyn Model, a: &DMatrix<f64>, root: Complex<f64>) -> Mode {
 }
 
 /// The vector that `A - λ` takes to the smallest: inverse iteration from a shifted root.
-fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
+pub(crate) fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
     const SHIFT: f64 = 1e-9;
     const STEPS: usize = 3;
     let count = a.nrows();

@@ -5,3 +5,4 @@ mod cleat;
 
 mod cleat_run;
 mod kc_rig;
+mod tangent;

@@ -1,6 +1,7 @@
 //! Random roads of ISO 8608: a power spectral density that falls with the square of the wave number.
 
 use super::RoadError;
+use crate::random::SplitMix;
 use std::f64::consts::TAU;
 
 /// Road class of ISO 8608, from very good (A) to hardly passable (H).
@@ -115,18 +116,4 @@ fn height(waves: &[Wave], x: f64) -> f64 {
 fn fade_in(x: f64) -> f64 {
     let u = (x / FADE_IN).min(1.0);
     u * u * (3.0 - 2.0 * u)
-}
-
-/// SplitMix64 (Steele, Lea and Flood 2014): one multiplication chain a number, the same on every machine.
-struct SplitMix(u64);
-
-impl SplitMix {
-    /// Uniform in [0, 1).
-    fn uniform(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
 }

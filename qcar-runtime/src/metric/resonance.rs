@@ -1,0 +1,100 @@
+//! The largest magnitude of a channel over frequency, where it stands, and how both change.
+
+use nalgebra::Complex;
+
+use crate::model::{About, Channel, Model};
+use crate::response::Response;
+use crate::response::parameters::Values;
+use crate::response::ratio::between;
+
+/// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
+pub(super) struct Resonance {
+    pub value: [f64; 2],
+    pub slopes: Vec<(usize, [f64; 2])>,
+}
+
+/// Where peaks are looked for, Hz: what a body and its wheel do.
+const BAND: [f64; 2] = [0.5, 50.0];
+/// Lines of the first look: closer than the width of a peak of 1 % damping.
+const LINES: usize = 300;
+/// Lines of each further look between the neighbours of the largest, and how many looks there are.
+const CLOSER: usize = 9;
+const LOOKS: usize = 8;
+
+/// The excitation that drives a channel: that which it is a ratio to, else the road along the same axis, else whatever
+/// acts there.
+fn excitation(about: &About, channel: &Channel) -> Option<usize> {
+    let below = &channel.denominator;
+    let along = || {
+        about
+            .excitations
+            .iter()
+            .enumerate()
+            .filter(|(_, own)| own.axis == below.axis)
+    };
+    let named = along().find(|(_, own)| own.name == below.location);
+    let found = named
+        .or_else(|| along().find(|(_, own)| own.road))
+        .or_else(|| along().next());
+    found.map(|(place, _)| place)
+}
+
+/// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
+pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
+    let excitation = excitation(model.about(), channel)?;
+    let ratio = |frequency: &[f64], jacobian: bool| {
+        let mut response = Response::new(model, excitation, frequency);
+        if jacobian {
+            response.evaluate(values.as_slice());
+        } else {
+            response.evaluate_values(values.as_slice());
+        }
+        between(&response, values, &channel.numerator, &channel.denominator).ok()
+    };
+    let mut band = BAND;
+    let mut lines = LINES;
+    for _ in 0..=LOOKS {
+        let frequency = spaced(band, lines);
+        let value = ratio(&frequency, false)?.value;
+        let largest = value.iter().map(|value| value.norm()).enumerate();
+        let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        band = [frequency[at.saturating_sub(1)], frequency[(at + 1).min(lines - 1)]];
+        lines = CLOSER;
+    }
+    let at = (band[0] * band[1]).sqrt();
+    if !wanted {
+        let value = ratio(&[at], false)?.value[0].norm();
+        return Some(Resonance {
+            value: [value, at],
+            slopes: Vec::new(),
+        });
+    }
+    // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
+    let step = 1e-4 * at;
+    let near = ratio(&[at - step, at, at + step], true)?;
+    let size: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
+    let bend = (size[0] - 2.0 * size[1] + size[2]) / (step * step);
+    let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
+    let slope = |slopes: &[Complex<f64>]| {
+        let by = |line: usize| (near.value[line].conj() * slopes[line]).re / size[line];
+        let shift = if is_inside {
+            -(by(2) - by(0)) / (2.0 * step) / bend
+        } else {
+            0.0
+        };
+        [by(1), shift]
+    };
+    Some(Resonance {
+        value: [size[1], at],
+        slopes: near
+            .jacobian
+            .iter()
+            .map(|(parameter, slopes)| (*parameter, slope(slopes)))
+            .collect(),
+    })
+}
+
+fn spaced([from, to]: [f64; 2], lines: usize) -> Vec<f64> {
+    let ratio = (to / from).powf(1.0 / (lines - 1) as f64);
+    (0..lines).map(|line| from * ratio.powi(line as i32)).collect()
+}
