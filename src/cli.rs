@@ -7,7 +7,7 @@ use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, export, fit, frf, import, inspect, kc, matrices, new, patch,
-    score, show, simulate, study,
+    score, sensitivity, show, simulate, study, target,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -49,6 +49,8 @@ enum Verb {
     Fit(fit::Arguments),
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
+    Sensitivity(sensitivity::Arguments),
+    Target(target::Arguments),
     Discover(discover::Arguments),
     Study(study::Arguments),
     Compare(compare::Arguments),
@@ -78,6 +80,8 @@ impl Cli {
             Verb::Fit(arguments) => fit::run(&arguments),
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
+            Verb::Sensitivity(arguments) => sensitivity::run(&arguments),
+            Verb::Target(arguments) => target::run(&arguments),
             Verb::Discover(arguments) => discover::run(&arguments),
             Verb::Study(arguments) => study::run(&arguments),
             Verb::Compare(arguments) => compare::run(&arguments),

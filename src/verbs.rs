@@ -40,6 +40,10 @@ pub mod fit;
 pub mod score;
 // driven over its roads,
 pub mod simulate;
+// what its metrics depend on,
+pub mod sensitivity;
+// what it must be for them to be as they are wanted,
+pub mod target;
 // and what it lacks.
 pub mod discover;
 // All of that at once,

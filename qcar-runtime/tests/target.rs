@@ -47,6 +47,7 @@ fn at_most(result: usize, value: f64) -> Limit {
         result,
         sense: Sense::AtMost,
         value,
+        wish: None,
     }
 }
 
@@ -88,6 +89,7 @@ fn couplings_and_steps_hold() {
             result: 0,
             sense: Sense::AtLeast,
             value: 7.3,
+            wish: None,
         }],
     );
     task.couplings = vec![Coupling {

@@ -27,6 +27,8 @@ pub struct Axle<'a> {
     pub moves: Vec<Move>,
     /// How many there are.
     pub knobs: usize,
+    /// Means of readings, by their places: further results behind the readings.
+    pub means: Vec<Vec<usize>>,
 }
 
 impl Axle<'_> {
@@ -55,7 +57,9 @@ impl Axle<'_> {
 
 impl Designs for Axle<'_> {
     fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
-        let values = self.ground.measure(&self.values_of(design)).ok()?;
+        let mut values = self.ground.measure(&self.values_of(design)).ok()?;
+        let means: Vec<f64> = self.means.iter().map(|of| mean(of, |at| values[at])).collect();
+        values.extend(means);
         values.iter().all(|value| value.is_finite()).then_some(values)
     }
 
@@ -68,6 +72,14 @@ impl Designs for Axle<'_> {
         let directions: Vec<Vec<f64>> = (0..self.knobs).map(|knob| self.direction(knob, sizes[knob])).collect();
         let found = self.ground.measure_with(&self.values_of(design), &directions).ok()?;
         let by_knob = |slopes: &Vec<f64>| slopes.iter().zip(&sizes).map(|(slope, size)| slope / size).collect();
-        Some(found.slopes.iter().map(by_knob).collect())
+        let mut slopes: Vec<Vec<f64>> = found.slopes.iter().map(by_knob).collect();
+        let of_mean = |of: &Vec<usize>| (0..self.knobs).map(|knob| mean(of, |at| slopes[at][knob])).collect();
+        let means: Vec<Vec<f64>> = self.means.iter().map(of_mean).collect();
+        slopes.extend(means);
+        Some(slopes)
     }
+}
+
+fn mean(of: &[usize], value: impl Fn(usize) -> f64) -> f64 {
+    of.iter().map(|&at| value(at)).sum::<f64>() / of.len() as f64
 }

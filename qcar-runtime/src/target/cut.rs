@@ -34,7 +34,11 @@ pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed
         };
         let design: Vec<f64> = (0..point.len()).map(value).collect();
         let excess = task.excesses(&design, &task.designs.values(&design)?);
-        let most = excess.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let most = excess
+            .iter()
+            .enumerate()
+            .filter(|(at, _)| task.wish(*at).is_none())
+            .max_by(|a, b| a.1.total_cmp(b.1));
         let broken = most.filter(|(_, excess)| **excess > 0.0).map(|(at, _)| at);
         Some(Dot {
             at: knobs.map(|k| design[k]),

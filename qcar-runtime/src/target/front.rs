@@ -120,7 +120,7 @@ fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: Vec<Vec<f64>>) ->
         };
         Some(Member {
             aims: aims.iter().map(aim).collect(),
-            broken: excess.iter().map(|excess| excess.max(0.0)).sum(),
+            broken: task.broken(&excess, 0.0),
             places: task
                 .knobs
                 .iter()

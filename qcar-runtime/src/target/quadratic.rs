@@ -1,6 +1,6 @@
 //! Least squares under linear inequalities that may be broken at a price, in a box.
 //!
-//! `min Σ w (d - e)² + price Σ max(0, g + A d)` over `low ≤ d ≤ high`. For given multipliers the best `d` stands for each knob
+//! `min Σ w (d - e)² + Σ price max(0, g + A d)` over `low ≤ d ≤ high`. For given multipliers the best `d` stands for each knob
 //! alone; the multipliers climb the dual, one after the other (Hildreth, Naval Res. Logist. Quart. 4, 1957).
 
 /// The programme.
@@ -15,18 +15,19 @@ pub(super) struct Quadratic<'a> {
     pub excess: &'a [f64],
     /// For each inequality its derivative by each knob.
     pub slopes: &'a [Vec<f64>],
-    /// The most that a multiplier may become.
-    pub price: f64,
+    /// The most that the multiplier of each inequality may become.
+    pub prices: &'a [f64],
 }
 
 const SWEEPS: usize = 400;
 const HALVINGS: usize = 50;
-/// Multipliers that move by less than this part of the price are settled.
+/// Multipliers that move by less than this part of the highest price are settled.
 const SETTLED: f64 = 1e-9;
 
 impl Quadratic<'_> {
     /// The step, and the multiplier of each inequality.
     pub fn solve(&self) -> (Vec<f64>, Vec<f64>) {
+        let highest = self.prices.iter().copied().fold(0.0, f64::max);
         let mut multipliers = vec![0.0; self.excess.len()];
         let mut pull = vec![0.0; self.weights.len()];
         for _ in 0..SWEEPS {
@@ -40,7 +41,7 @@ impl Quadratic<'_> {
                 multipliers[row] = after;
                 moved = moved.max((after - before).abs());
             }
-            if moved < SETTLED * self.price {
+            if moved < SETTLED * highest {
                 break;
             }
         }
@@ -68,10 +69,11 @@ impl Quadratic<'_> {
         if left(0.0) <= 0.0 {
             return 0.0;
         }
-        if left(self.price) >= 0.0 {
-            return self.price;
+        let price = self.prices[row];
+        if left(price) >= 0.0 {
+            return price;
         }
-        let (mut low, mut high) = (0.0, self.price);
+        let (mut low, mut high) = (0.0, price);
         for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
             if left(middle) > 0.0 {
@@ -98,7 +100,7 @@ mod tests {
             high: &[9.0, 9.0],
             excess: &[-1.0],
             slopes: &[vec![1.0, 1.0]],
-            price: 100.0,
+            prices: &[100.0],
         };
         let (step, multipliers) = quadratic.solve();
         assert!((step[0] - 1.0).abs() < 1e-7 && step[1].abs() < 1e-7, "{step:?}");

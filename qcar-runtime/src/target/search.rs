@@ -17,9 +17,9 @@ pub struct Found {
     pub design: Vec<f64>,
     /// Its results.
     pub values: Vec<f64>,
-    /// What it costs.
+    /// What it costs, with what missed wishes do.
     pub cost: f64,
-    /// By how much each limit and coupling is exceeded, over its size; at most zero where all is met.
+    /// By how much each limit and coupling is exceeded, over its size; at most zero where it is met.
     pub excess: Vec<f64>,
     /// By how much the cost would fall if a limit were looser by its own size. Where not all is met, of those that stand in
     /// the way the share of each, from 0 to 1.
@@ -70,8 +70,12 @@ pub fn search(task: &Task<'_>, seed: u64, told: Told<'_>) -> Found {
 struct State {
     places: Vec<f64>,
     values: Vec<f64>,
+    /// With that of missed wishes.
     cost: f64,
     excess: Vec<f64>,
+    /// By how much all that must hold is broken together.
+    broken: f64,
+    met: bool,
     multipliers: Vec<f64>,
     price: f64,
     effort: [usize; 2],
@@ -83,7 +87,9 @@ impl State {
         let values = task.designs.values(&design)?;
         let excess = task.excesses(&design, &values);
         Some(Self {
-            cost: task.cost(&design),
+            cost: task.cost(&design) + task.missed(&excess),
+            broken: task.broken(&excess, MARGIN),
+            met: task.holds(&excess),
             multipliers: vec![0.0; excess.len()],
             places,
             values,
@@ -93,24 +99,16 @@ impl State {
         })
     }
 
-    fn broken(&self) -> f64 {
-        self.excess.iter().map(|excess| (excess + MARGIN).max(0.0)).sum()
-    }
-
-    fn met(&self) -> bool {
-        self.excess.iter().all(|excess| *excess <= 0.0)
-    }
-
     fn merit(&self) -> f64 {
-        self.cost + self.price * self.broken()
+        self.cost + self.price * self.broken
     }
 
     /// What is met comes before what is not, then what costs less.
     fn rank(&self) -> f64 {
-        if self.met() {
+        if self.met {
             self.cost
         } else {
-            1e12 * (1.0 + self.broken())
+            1e12 * (1.0 + self.broken)
         }
     }
 }
@@ -142,7 +140,7 @@ fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
 fn settle(task: &Task<'_>, mut state: State) -> State {
     for _ in 0..3 {
         state = descend(task, state, &vec![true; task.knobs.len()]);
-        if state.met() {
+        if state.met {
             break;
         }
         state.price *= 10.0;
@@ -220,6 +218,9 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
     });
     let radius = |free: bool| if free { radius } else { 0.0 };
     let excess: Vec<f64> = state.excess.iter().map(|excess| excess + MARGIN).collect();
+    let prices: Vec<f64> = (0..excess.len())
+        .map(|at| task.wish(at).unwrap_or(state.price))
+        .collect();
     let quadratic = Quadratic {
         weights: &weights,
         wanted: &wanted.collect::<Vec<_>>(),
@@ -231,7 +232,7 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
             .collect::<Vec<_>>(),
         excess: &excess,
         slopes,
-        price: state.price,
+        prices: &prices,
     };
     quadratic.solve()
 }
@@ -239,11 +240,12 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
 /// The merit after a step, if all were as linear as it looks.
 fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -> f64 {
     let places: Vec<f64> = state.places.iter().zip(step).map(|(place, d)| place + d).collect();
-    let broken = state.excess.iter().zip(slopes).map(|(excess, slopes)| {
+    let after = state.excess.iter().zip(slopes).map(|(excess, slopes)| {
         let moved: f64 = slopes.iter().zip(step).map(|(slope, d)| slope * d).sum();
-        (excess + MARGIN + moved).max(0.0)
+        excess + moved
     });
-    task.cost(&task.design(&places)) + state.price * broken.sum::<f64>()
+    let after: Vec<f64> = after.collect();
+    task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, MARGIN)
 }
 
 /// Goes to designs that can be had: rounds, tries the neighbours of each knob, and lets the others follow.
@@ -299,7 +301,7 @@ fn had(task: &Task<'_>, from: State) -> State {
 }
 
 fn found(task: &Task<'_>, state: State) -> Found {
-    let met = state.met();
+    let met = state.met;
     let total: f64 = state
         .excess
         .iter()

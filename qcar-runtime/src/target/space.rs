@@ -67,14 +67,8 @@ struct Drawn {
     places: Vec<f64>,
     /// Of each limit and coupling; `None` where there are no results.
     excess: Option<Vec<f64>>,
-}
-
-impl Drawn {
-    fn is_good(&self) -> bool {
-        self.excess
-            .as_ref()
-            .is_some_and(|excess| excess.iter().all(|excess| *excess <= 0.0))
-    }
+    /// All that must hold does.
+    good: bool,
 }
 
 /// The largest box about a good design that was found; none where `known` are not good and no other was met.
@@ -128,7 +122,7 @@ fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: us
         let excess = own.excess.as_ref().expect("a good design has results");
         excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)
     };
-    let good = drawn.into_iter().filter(Drawn::is_good);
+    let good = drawn.into_iter().filter(|own| own.good);
     good.min_by(|a, b| inside(a).total_cmp(&inside(b)))
         .map(|own| own.places)
 }
@@ -161,17 +155,18 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
 
 fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {
     let design = task.design(&places);
-    let values = task.designs.values(&design);
-    Drawn {
-        excess: values.map(|values| task.excesses(&design, &values)),
-        places,
-    }
+    let excess = task
+        .designs
+        .values(&design)
+        .map(|values| task.excesses(&design, &values));
+    let good = excess.as_ref().is_some_and(|excess| task.holds(excess));
+    Drawn { places, excess, good }
 }
 
 /// The box without the bad designs: of those about some good ones the one with most good designs and most volume. None where
 /// all are bad.
 fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
-    let (good, bad): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|own| own.is_good());
+    let (good, bad): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|own| own.good);
     if bad.is_empty() {
         return Some(sides.clone());
     }
@@ -236,7 +231,7 @@ fn log_volume(sides: &Sides) -> f64 {
 
 fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> Space {
     let count = drawn.len();
-    let good = drawn.iter().filter(|own| own.is_good()).count();
+    let good = drawn.iter().filter(|own| own.good).count();
     let met = |at: usize| {
         drawn
             .iter()

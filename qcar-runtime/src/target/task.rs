@@ -35,6 +35,8 @@ pub struct Limit {
     pub sense: Sense,
     /// In the unit of the result.
     pub value: f64,
+    /// What it costs to miss it by its own size, of a wish; `None` for what must hold.
+    pub wish: Option<f64>,
 }
 
 /// Which side of a limit is good.
@@ -188,9 +190,34 @@ impl Task<'_> {
             .collect()
     }
 
-    /// True where all that is wanted holds; false, too, where a design has no results.
+    /// True where all that must hold does.
+    pub fn holds(&self, excess: &[f64]) -> bool {
+        self.broken(excess, 0.0) == 0.0
+    }
+
+    /// The sum by which all that must hold is exceeded, or nearer to it than a margin.
+    pub fn broken(&self, excess: &[f64], margin: f64) -> f64 {
+        let hard = excess.iter().enumerate().filter(|(at, _)| self.wish(*at).is_none());
+        hard.map(|(_, excess)| (excess + margin).max(0.0)).sum()
+    }
+
+    /// What missed wishes cost.
+    pub fn missed(&self, excess: &[f64]) -> f64 {
+        let wishes = excess
+            .iter()
+            .enumerate()
+            .filter_map(|(at, excess)| Some(self.wish(at)? * excess.max(0.0)));
+        wishes.sum()
+    }
+
+    /// What it costs to miss a limit or coupling by its own size; `None` where it must hold.
+    pub fn wish(&self, at: usize) -> Option<f64> {
+        self.limits.get(at).and_then(|limit| limit.wish)
+    }
+
+    /// True where all that must hold does; false, too, where a design has no results.
     pub fn is_good(&self, design: &[f64]) -> bool {
         let values = self.designs.values(design);
-        values.is_some_and(|values| self.excesses(design, &values).iter().all(|excess| *excess <= 0.0))
+        values.is_some_and(|values| self.holds(&self.excesses(design, &values)))
     }
 }
