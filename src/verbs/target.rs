@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
+use crate::report::{Report, page};
 use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::verbs::sensitivity::subject::{Beneath, Subject};
@@ -18,8 +19,10 @@ mod file;
 mod plan;
 // What it gives.
 mod gather;
-// As text.
+// As text and as values for other verbs.
 mod render;
+// As a workbook.
+mod workbook;
 
 use file::Read;
 use plan::Plan;
@@ -65,6 +68,17 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted);
     if let Some(folder) = &arguments.out {
         put(folder, "target.json", &json::line(&answer))?;
+        put(
+            folder,
+            "parameters.toml",
+            &render::parameter_file(&answer, &gather::design(&plan, &answer, &subject)),
+        )?;
+        workbook::write(&answer, folder)?;
+        put(
+            folder,
+            "report.html",
+            &page(Report::Targets, &format!("{}: targets", answer.model), &answer),
+        )?;
     }
     let result = match arguments.format {
         Format::Text => prose(&render::text(&answer)),

@@ -2,7 +2,7 @@
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::target::{
-    Axle, Cut, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, search, space,
+    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, search, space,
 };
 use serde::Serialize;
 
@@ -22,6 +22,8 @@ pub(super) struct Answer {
     pub cost: f64,
     pub parameters: Vec<Parameter>,
     pub targets: Vec<Target>,
+    /// By metric of the targets.
+    pub sensitivity: Vec<Sensitivity>,
     pub front: Option<FrontAnswer>,
     pub space: Option<SpaceAnswer>,
 }
@@ -62,6 +64,14 @@ pub(super) struct Target {
     pub multiplier: f64,
     /// Share of the designs in the solution space that meet it.
     pub in_space: Option<f64>,
+}
+
+/// What a metric depends on at the design, mean over the targets that name it.
+#[derive(Serialize)]
+pub(super) struct Sensitivity {
+    pub metric: String,
+    /// By parameter: percent of the metric for one percent of it.
+    pub elasticities: Ordered<f64>,
 }
 
 /// The front.
@@ -172,6 +182,7 @@ pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: 
         cost: found.cost,
         parameters: parameters(plan, &found, space.as_ref()),
         targets: targets(plan, &task, &found, space.as_ref()),
+        sensitivity: sensitivity(plan, &axle, &found),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
     }
@@ -193,6 +204,53 @@ fn parameters(plan: &Plan, found: &Found, space: Option<&Space>) -> Vec<Paramete
         },
     })
     .collect()
+}
+
+fn sensitivity(plan: &Plan, axle: &Axle<'_>, found: &Found) -> Vec<Sensitivity> {
+    let Some(slopes) = axle.slopes(&found.design) else {
+        return Vec::new();
+    };
+    let mut metrics: Vec<&str> = Vec::new();
+    for wanted in &plan.wanted[..plan.limits.len()] {
+        if !metrics.contains(&&*wanted.metric) {
+            metrics.push(&wanted.metric);
+        }
+    }
+    let of = |metric: &&str| {
+        let own = plan
+            .limits
+            .iter()
+            .zip(&plan.wanted)
+            .filter(|(_, wanted)| wanted.metric == **metric);
+        let results: Vec<usize> = own.map(|(limit, _)| limit.result).collect();
+        let elasticity = |k: usize| {
+            let all = results
+                .iter()
+                .map(|&at| slopes[at][k] * found.design[k] / found.values[at]);
+            all.sum::<f64>() / results.len() as f64
+        };
+        let names = plan.knobs.iter().map(|knob| knob.name.clone()).enumerate();
+        Sensitivity {
+            metric: metric.to_string(),
+            elasticities: names.map(|(k, name)| (name, elasticity(k))).collect(),
+        }
+    };
+    metrics.iter().map(of).collect()
+}
+
+/// The value of every parameter that is not tied, by the design.
+pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Vec<(String, f64, String)> {
+    let mut values = subject.values.clone();
+    for own in &plan.moves {
+        values.set(
+            own.parameter,
+            own.factor * answer.parameters[own.knob].design + own.constant,
+        );
+    }
+    let all = subject.model.about().parameters.iter().enumerate();
+    let own = all.filter(|(place, _)| values.leader(*place) == *place);
+    own.map(|(place, own)| (own.name.to_string(), values.as_slice()[place], own.unit.to_string()))
+        .collect()
 }
 
 fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -> Vec<Target> {

@@ -162,3 +162,12 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
         table.text()
     )
 }
+
+/// A parameter file as `--params` takes it.
+pub(super) fn parameter_file(of: &Answer, design: &[(String, f64, String)]) -> String {
+    let mut out = format!("# {} as its targets want it\n\n[parameters]\n", of.model);
+    for (name, value, unit) in design {
+        let _ = writeln!(out, "{name} = {value:?} # {unit}");
+    }
+    out
+}
