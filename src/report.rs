@@ -78,13 +78,14 @@ const COMPARISON: [&str; 10] = [
 ];
 
 /// The sections of targets; the last one starts.
-const TARGETS: [&str; 7] = [
+const TARGETS: [&str; 8] = [
     include_str!("report/js/target/wanted.js"),
     include_str!("report/js/target/intervals.js"),
     include_str!("report/js/target/dots.js"),
     include_str!("report/js/target/front.js"),
     include_str!("report/js/target/cuts.js"),
     include_str!("report/js/target/tornado.js"),
+    include_str!("report/js/target/rides.js"),
     include_str!("report/js/target/target.js"),
 ];
 

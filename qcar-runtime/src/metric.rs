@@ -19,5 +19,5 @@ mod course;
 mod ground;
 
 pub use course::Course;
-pub use ground::{Ground, MetricError, Reading, Slopes};
+pub use ground::{Ground, MetricError, Reading, Slopes, Trace};
 pub use name::{Measure, Metric, What, metrics};

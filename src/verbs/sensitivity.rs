@@ -25,7 +25,7 @@ pub(crate) mod subject;
 // Names of metrics and parameters.
 pub(crate) mod chosen;
 // What they say.
-mod gather;
+pub(crate) mod gather;
 // As text and CSV.
 mod render;
 // And drawn.

@@ -1,8 +1,9 @@
 //! `qcar target`: what an axle must be to meet targets.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
+use qcar_runtime::metric::Ground;
 
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
@@ -23,8 +24,12 @@ mod gather;
 mod render;
 // As a workbook.
 mod workbook;
+// As a page.
+mod contents;
 
+use contents::Contents;
 use file::Read;
+use gather::Answer;
 use plan::Plan;
 
 /// Find what an axle must be to meet targets: the cheapest design, the front between metrics, and the box of good designs
@@ -67,18 +72,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
     let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted);
     if let Some(folder) = &arguments.out {
-        put(folder, "target.json", &json::line(&answer))?;
-        put(
-            folder,
-            "parameters.toml",
-            &render::parameter_file(&answer, &gather::design(&plan, &answer, &subject)),
-        )?;
-        workbook::write(&answer, folder)?;
-        put(
-            folder,
-            "report.html",
-            &page(Report::Targets, &format!("{}: targets", answer.model), &answer),
-        )?;
+        write(&answer, &plan, &subject, &ground, folder)?;
     }
     let result = match arguments.format {
         Format::Text => prose(&render::text(&answer)),
@@ -89,4 +83,18 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     } else {
         Err(Failure::Finding(result))
     }
+}
+
+fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, folder: &Path) -> Result<(), Failure> {
+    let design = gather::design(plan, answer, subject);
+    let contents = Contents::of(answer, ground, &subject.values, &design);
+    put(folder, "target.json", &json::line(answer))?;
+    put(
+        folder,
+        "parameters.toml",
+        &render::parameter_file(ground.about(), &design),
+    )?;
+    workbook::write(answer, folder)?;
+    let title = format!("{}: targets", answer.model);
+    Ok(put(folder, "report.html", &page(Report::Targets, &title, &contents))?)
 }

@@ -13,14 +13,24 @@ fn ground(values: &Values) -> Ground<'static> {
     let parameters = cleat::parameters();
     let car = cleat::car(&parameters);
     let courses = Course::standard().expect("the standard cleats are roads");
-    let some = courses.into_iter().filter(|course| ["30kmh_20mm", "40kmh_30mm"].contains(&course.name.as_str()));
-    Ground::new(&AxleD, values, &RoleNames::default(), Some((car.tyre, car.load)), some.collect())
+    let some = courses
+        .into_iter()
+        .filter(|course| ["30kmh_20mm", "40kmh_30mm"].contains(&course.name.as_str()));
+    Ground::new(
+        &AxleD,
+        values,
+        &RoleNames::default(),
+        Some((car.tyre, car.load)),
+        some.collect(),
+    )
 }
 
 /// Parameters that a designer moves, by their places.
 fn open() -> Vec<usize> {
     let all = AxleD.about().parameters.iter().enumerate();
-    all.filter(|(_, own)| !own.known && !own.name.starts_with("static")).map(|(place, _)| place).collect()
+    all.filter(|(_, own)| !own.known && !own.name.starts_with("static"))
+        .map(|(place, _)| place)
+        .collect()
 }
 
 /// By how much each parameter is moved: half of that error of a difference which falls with it is that which grows.
@@ -33,14 +43,19 @@ fn differences(ground: &Ground<'_>, values: &Values, parameter: usize) -> Vec<f6
         ground.measure(&moved).expect("it is measured")
     };
     let [up, down, far_up, far_down] = [1.0, -1.0, 2.0, -2.0].map(moved);
-    (0..up.len()).map(|at| (8.0 * (up[at] - down[at]) - (far_up[at] - far_down[at])) / (12.0 * PART)).collect()
+    (0..up.len())
+        .map(|at| (8.0 * (up[at] - down[at]) - (far_up[at] - far_down[at])) / (12.0 * PART))
+        .collect()
 }
 
 fn hold(chosen: fn(What) -> bool, tolerance: f64) {
     let values = cleat::parameters();
     let mut ground = ground(&values);
     let metrics = 0..ground.metrics().len();
-    let readings = metrics.filter(|&at| chosen(ground.metrics()[at].what)).flat_map(|at| ground.readings_of(at)).collect();
+    let readings = metrics
+        .filter(|&at| chosen(ground.metrics()[at].what))
+        .flat_map(|at| ground.readings_of(at))
+        .collect();
     ground.choose(readings);
     let parameters = open();
     assert!(parameters.len() > 15 && !ground.readings().is_empty());
@@ -74,7 +89,11 @@ fn derivatives_of_ridden_metrics_are_limits_of_differences() {
 fn the_travel_is_that_of_the_wheel_over_the_body() {
     let values = cleat::parameters();
     let mut ground = ground(&values);
-    let place = ground.metrics().iter().position(|metric| metric.name == "suspension.travel").expect("it is there");
+    let place = ground
+        .metrics()
+        .iter()
+        .position(|metric| metric.name == "suspension.travel")
+        .expect("it is there");
     ground.choose(ground.readings_of(place));
     for travel in ground.measure(&values).expect("it is measured") {
         // Over a cleat of 20 or 30 mm the suspension gives way by about that.
@@ -88,7 +107,13 @@ fn an_interval_is_that_of_drawn_designs() {
     let values = cleat::parameters();
     let mut ground = ground(&values);
     let names = ["body_z.after_shake", "wheel_z.peak"];
-    let places = names.map(|name| ground.metrics().iter().position(|metric| metric.name == name).expect("it is there"));
+    let places = names.map(|name| {
+        ground
+            .metrics()
+            .iter()
+            .position(|metric| metric.name == name)
+            .expect("it is there")
+    });
     let readings = places.iter().flat_map(|&at| ground.readings_of(at)).collect();
     ground.choose(readings);
     let parameters = open();

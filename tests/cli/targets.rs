@@ -27,7 +27,10 @@ fn the_file_of_the_page_is_read() {
     let folder = repository();
     let blocks = blocks("docs/targets.md");
     let shown = blocks.iter().find(|block| block.kind == "toml").unwrap();
-    let text = shown.text.replace("../campaigns", "models/campaigns").replace("params = ", "# params = ");
+    let text = shown
+        .text
+        .replace("../campaigns", "models/campaigns")
+        .replace("params = ", "# params = ");
     fs::write(folder.path().join("targets.toml"), text).unwrap();
     let ran = run_line(folder.path(), "target targets.toml");
     assert!(ran.status < 2, "{}", ran.stderr);
@@ -46,7 +49,10 @@ fn the_example_is_met_with_a_front_and_a_solution_space() {
     let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(answer["met"], true);
     let targets = answer["targets"].as_array().unwrap();
-    assert!(targets.iter().all(|own| own["met"] == true || !own["wish"].is_null()), "{targets:?}");
+    assert!(
+        targets.iter().all(|own| own["met"] == true || !own["wish"].is_null()),
+        "{targets:?}"
+    );
     assert!(targets.iter().any(|own| own["multiplier"].as_f64().unwrap() > 0.0));
     assert!(answer["front"]["points"].as_array().unwrap().len() > 5);
     let space = &answer["space"];
@@ -63,14 +69,20 @@ fn holds_inside(answer: &Value, folder: &std::path::Path) {
     let targets = answer["targets"].as_array().unwrap();
     let mut state = 1_u64;
     let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        state = state
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (state >> 11) as f64 / (1_u64 << 53) as f64
     };
     let (mut good, count) = (0, 20);
     for _ in 0..count {
         let set = parameters.iter().map(|own| {
             let [low, high] = [0, 1].map(|end| own["interval"][end].as_f64().unwrap());
-            format!("--set {}={}", own["name"].as_str().unwrap(), low + (high - low) * uniform())
+            format!(
+                "--set {}={}",
+                own["name"].as_str().unwrap(),
+                low + (high - low) * uniform()
+            )
         });
         let set: Vec<String> = set.collect();
         let line = format!(
@@ -97,7 +109,13 @@ fn a_campaign_says_how_sure_its_metrics_are() {
     let found = result(&["sensitivity", "models/campaigns/axle_a_rig"]);
     let metrics = found["metrics"].as_array().unwrap();
     let names: Vec<&str> = metrics.iter().map(|own| own["name"].as_str().unwrap()).collect();
-    for name in ["body_x.peak", "wheel_z.after_shake", "tyre.dynamic_load", "suspension.travel", "mode.1.frequency"] {
+    for name in [
+        "body_x.peak",
+        "wheel_z.after_shake",
+        "tyre.dynamic_load",
+        "suspension.travel",
+        "mode.1.frequency",
+    ] {
         assert!(names.contains(&name), "{name} in {names:?}");
     }
     for own in metrics {
@@ -110,44 +128,121 @@ fn a_campaign_says_how_sure_its_metrics_are() {
 
 #[test]
 fn results_are_the_same_every_time() {
-    let line = ["sensitivity", "axle_a", "--campaign", "models/campaigns/axle_a_rig", "--metrics", "body_*.peak", "--sobol", "100"];
+    let line = [
+        "sensitivity",
+        "axle_a",
+        "--campaign",
+        "models/campaigns/axle_a_rig",
+        "--metrics",
+        "body_*.peak",
+        "--sobol",
+        "100",
+    ];
     assert_eq!(succeeds(&line), succeeds(&line));
 }
 
 /// What of the example is replaced by what, and what is said then.
 fn refused(old: &str, new: &str, said: &[&str]) {
     let folder = repository();
-    let text = fs::read_to_string(EXAMPLE).unwrap().replace("../campaigns", "models/campaigns");
+    let text = fs::read_to_string(EXAMPLE)
+        .unwrap()
+        .replace("../campaigns", "models/campaigns");
     assert!(text.contains(old), "{old}");
     let file = folder.path().join("targets.toml");
     fs::write(&file, text.replace(old, new)).unwrap();
     let ran = run_line(folder.path(), "target targets.toml");
     assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
     for fragment in said {
-        assert!(ran.stderr.contains(fragment), "expected `{fragment}` in\n{}", ran.stderr);
+        assert!(
+            ran.stderr.contains(fragment),
+            "expected `{fragment}` in\n{}",
+            ran.stderr
+        );
     }
 }
 
 #[test]
 fn what_cannot_be_wanted_is_refused_with_place_and_remedy() {
-    refused("\"body_x.peak\"\nat_most", "\"body_x.peek\"\nat_most", &["targets.toml, line 6", "target.metric", "did you mean `body_x.peak`?"]);
-    refused("at_most = \"92 %\"", "at_most = \"92 %\"\nat_least = \"95 %\"", &["line 8", "target.at_least", "targets that can hold together"]);
-    refused("at_most = \"92 %\"", "at_most = \"2 kg\"", &["line 7", "a number in m/s^2"]);
-    refused("at_most = \"92 %\"", "at_most = \"92 %\"\nrun = 3", &["line 8", "unknown field `run`"]);
-    refused("at_most = \"92 %\"", "at_most = \"92 %\"\nruns = [\"x\"]", &["line 8", "`x`", "cleat/v30_h30.csv.gz"]);
-    refused("name = \"k_tire\"", "name = \"k_tyre\"", &["parameter.name", "did you mean `k_tire`?"]);
-    refused("[\"85 %\", \"115 %\"]", "[\"115 %\", \"85 %\"]", &["parameter.range", "a lower value and a higher one"]);
-    refused("[\"85 %\", \"115 %\"]", "[0, \"115 %\"]", &["parameter.range", "for which model `axle_a` is valid"]);
-    refused("[\"k_wheel_x\", \"c_wheel_x\"]", "[\"k_wheel_x\", \"m_wheel\"]", &["space.cuts", "`m_wheel`", "[[parameter]]"]);
+    refused(
+        "\"body_x.peak\"\nat_most",
+        "\"body_x.peek\"\nat_most",
+        &["targets.toml, line 6", "target.metric", "did you mean `body_x.peak`?"],
+    );
+    refused(
+        "at_most = \"92 %\"",
+        "at_most = \"92 %\"\nat_least = \"95 %\"",
+        &["line 8", "target.at_least", "targets that can hold together"],
+    );
+    refused(
+        "at_most = \"92 %\"",
+        "at_most = \"2 kg\"",
+        &["line 7", "a number in m/s^2"],
+    );
+    refused(
+        "at_most = \"92 %\"",
+        "at_most = \"92 %\"\nrun = 3",
+        &["line 8", "unknown field `run`"],
+    );
+    refused(
+        "at_most = \"92 %\"",
+        "at_most = \"92 %\"\nruns = [\"x\"]",
+        &["line 8", "`x`", "cleat/v30_h30.csv.gz"],
+    );
+    refused(
+        "name = \"k_tire\"",
+        "name = \"k_tyre\"",
+        &["parameter.name", "did you mean `k_tire`?"],
+    );
+    refused(
+        "[\"85 %\", \"115 %\"]",
+        "[\"115 %\", \"85 %\"]",
+        &["parameter.range", "a lower value and a higher one"],
+    );
+    refused(
+        "[\"85 %\", \"115 %\"]",
+        "[0, \"115 %\"]",
+        &["parameter.range", "for which model `axle_a` is valid"],
+    );
+    refused(
+        "[\"k_wheel_x\", \"c_wheel_x\"]",
+        "[\"k_wheel_x\", \"m_wheel\"]",
+        &["space.cuts", "`m_wheel`", "[[parameter]]"],
+    );
 }
 
 #[test]
 fn a_metric_or_parameter_that_is_not_there_is_refused() {
     for (arguments, said) in [
-        (&["sensitivity", "quarter_car", "--metrics", "body_z.peak"][..], "r_tire"),
-        (&["sensitivity", "axle_a", "--campaign", "models/campaigns/axle_a_rig", "--metrics", "body_z.peek"], "did you mean `body_z.peak`?"),
-        (&["sensitivity", "axle_a", "--campaign", "models/campaigns/axle_a_rig", "--parameters", "k_tyre"], "did you mean `k_tire`?"),
-        (&["sensitivity", "models/campaigns"], "without campaign.toml or fit.json"),
+        (
+            &["sensitivity", "quarter_car", "--metrics", "body_z.peak"][..],
+            "r_tire",
+        ),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--metrics",
+                "body_z.peek",
+            ],
+            "did you mean `body_z.peak`?",
+        ),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--parameters",
+                "k_tyre",
+            ],
+            "did you mean `k_tire`?",
+        ),
+        (
+            &["sensitivity", "models/campaigns"],
+            "without campaign.toml or fit.json",
+        ),
     ] {
         let ran = qcar(arguments);
         assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{arguments:?}");

@@ -28,6 +28,15 @@ pub struct Ground<'a> {
     wheel: Option<usize>,
 }
 
+/// Accelerations of a ride.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// When the wheel feels the obstacle, s.
+    pub onset: f64,
+    /// Of each mass, m/s².
+    pub accelerations: Vec<(Signal, Vec<f64>)>,
+}
+
 /// One metric on one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
@@ -176,28 +185,11 @@ impl<'a> Ground<'a> {
 
     fn drive(&self, values: &Values, course: usize, directions: &[Vec<f64>]) -> Result<Signals, MetricError> {
         let course = &self.courses[course];
-        let (tyre, load) = self.tyre.expect("what is ridden has a tyre");
-        let car = Car {
-            model: &self.model,
-            parameters: values.as_slice(),
-            tyre,
-            load,
-            variant: Variant::Complete,
-        };
         let failed = |reason| MetricError::Ride {
             course: course.name.clone(),
             reason,
         };
-        let (drive, settings) = (course.drive(), Settings::default());
-        let (signals, slopes) = if directions.is_empty() {
-            let ride = ride(&car, &drive, &settings).map_err(failed)?;
-            let [vertical, _] = ride.force;
-            (ride.outputs.into_iter().chain([vertical]).collect(), Vec::new())
-        } else {
-            let tangent = tangent(&car, &drive, &settings, directions).map_err(failed)?;
-            (tangent.signals, tangent.slopes)
-        };
-        let signals: Vec<Vec<f64>> = signals;
+        let (signals, slopes) = self.ride(values, course, directions).map_err(failed)?;
         let impact = self
             .wheel
             .and_then(|wheel| Impact::of(&signals[wheel], course.sample_rate));
@@ -210,6 +202,72 @@ impl<'a> Ground<'a> {
             impact,
             rate: course.sample_rate,
         })
+    }
+
+    /// The signals of a ride and, for each direction, their derivatives: outputs, then the force of the tyre.
+    fn ride(
+        &self,
+        values: &Values,
+        course: &Course,
+        directions: &[Vec<f64>],
+    ) -> Result<(Vec<Vec<f64>>, Vec<Vec<Vec<f64>>>), SimulateError> {
+        let (tyre, load) = self.tyre.expect("what is ridden has a tyre");
+        // All other outputs are rates of states, which a ride need not ask for.
+        let unasked = self.model.added().filter(|added| !self.reads(*added));
+        let car = Car {
+            model: if unasked.is_some() {
+                self.model.inner()
+            } else {
+                &self.model as &dyn Model
+            },
+            parameters: values.as_slice(),
+            tyre,
+            load,
+            variant: Variant::Complete,
+        };
+        let (drive, settings) = (course.drive(), Settings::default());
+        let (mut signals, mut slopes) = if directions.is_empty() {
+            let ride = ride(&car, &drive, &settings)?;
+            let [vertical, _] = ride.force;
+            (
+                ride.outputs.into_iter().chain([vertical]).collect::<Vec<_>>(),
+                Vec::new(),
+            )
+        } else {
+            let tangent = tangent(&car, &drive, &settings, directions)?;
+            (tangent.signals, tangent.slopes)
+        };
+        if let Some(added) = unasked {
+            slopes
+                .iter_mut()
+                .chain([&mut signals])
+                .for_each(|own| own.insert(added, Vec::new()));
+        }
+        Ok((signals, slopes))
+    }
+
+    /// What each mass does on a course.
+    ///
+    /// # Errors
+    /// As [`Ground::measure`].
+    pub fn trace(&self, values: &Values, course: usize) -> Result<Trace, MetricError> {
+        let signals = self.drive(values, course, &[])?;
+        let outputs = self.about().outputs.iter().zip(signals.values);
+        let accelerations = outputs.filter(|(own, _)| own.signal.kind == SignalKind::Motion(Quantity::Acceleration));
+        Ok(Trace {
+            onset: signals.impact.onset as f64 / signals.rate,
+            accelerations: accelerations
+                .map(|(own, values)| (own.signal.clone(), values))
+                .collect(),
+        })
+    }
+
+    /// True where a reading is of an output.
+    fn reads(&self, output: usize) -> bool {
+        let what = |reading: &Reading| self.metrics[reading.metric].what;
+        self.readings
+            .iter()
+            .any(|own| matches!(what(own), What::Ride(of, _) if of == output))
     }
 }
 

@@ -42,6 +42,16 @@ impl<'a> Watched<'a> {
         Self { inner, about, travel }
     }
 
+    /// The place of the output that is added.
+    pub fn added(&self) -> Option<usize> {
+        self.travel.map(|_| self.own())
+    }
+
+    /// The model without it.
+    pub fn inner(&self) -> &'a dyn Model {
+        self.inner
+    }
+
     fn own(&self) -> usize {
         self.inner.about().outputs.len()
     }

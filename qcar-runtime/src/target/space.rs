@@ -56,8 +56,11 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Rounds without growth, at most.
-const FINAL_ROUNDS: usize = 40;
+/// Rounds in which a box that is good enough grows by so little that it soon is not, at most.
+const FINAL_ROUNDS: usize = 30;
+const FINAL_GROWTH: f64 = 0.004;
+/// All designs that are evaluated are no more than so many times those that judge a box.
+const MOST_JUDGED: usize = 150;
 
 /// A box in places of the knobs.
 type Sides = Vec<[f64; 2]>;
@@ -91,19 +94,47 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     let judges = settings
         .samples
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
+    let mut best = None;
     for round in 0..FINAL_ROUNDS {
         told(settings.rounds + round, rounds);
         let drawn = draw(task, &sides, judges, &mut random);
         evaluated += drawn.len();
-        let judged = judged(task, &sides, &drawn, evaluated);
-        if judged.at_least >= settings.probability {
-            told(rounds, rounds);
-            return Some(judged);
+        if judged(task, &sides, &drawn, evaluated).at_least >= settings.probability {
+            best = Some(sides.clone());
+            grow(&mut sides, FINAL_GROWTH);
+        } else if best.is_some() {
+            break;
+        } else {
+            sides = trimmed(&sides, &drawn).unwrap_or_else(|| shrunk(&sides));
         }
-        sides = trimmed(&sides, &drawn).unwrap_or_else(|| shrunk(&sides));
     }
-    let drawn = draw(task, &sides, judges, &mut random);
-    Some(judged(task, &sides, &drawn, evaluated + judges))
+    told(rounds, rounds);
+    Some(confirmed(
+        task,
+        best.unwrap_or(sides),
+        (settings.probability, judges),
+        evaluated,
+        &mut random,
+    ))
+}
+
+/// A box as designs judge it that had no part in finding it; where they find too many bad ones, one that is a little smaller.
+fn confirmed(
+    task: &Task<'_>,
+    mut sides: Sides,
+    (probability, judges): (f64, usize),
+    mut evaluated: usize,
+    random: &mut SplitMix,
+) -> Space {
+    loop {
+        let drawn = draw(task, &sides, judges, random);
+        evaluated += drawn.len();
+        let judged = judged(task, &sides, &drawn, evaluated);
+        if judged.at_least >= probability || evaluated > MOST_JUDGED * judges {
+            return judged;
+        }
+        sides = shrunk(&sides);
+    }
 }
 
 /// The good design that is furthest inside all limits.

@@ -82,11 +82,10 @@ pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
     let roles = Roles::of(ground.about(), names).ok();
     let body = roles.as_ref().and_then(|roles| Some(roles.on_rig().ok()?.body));
     let ends: Vec<String> = roles.map(|roles| roles.wheel).into_iter().chain(body).collect();
-    let is_end = |name: &str| {
-        ends.iter().any(|mass| {
-            name.strip_prefix(mass.as_str())
-                .is_some_and(|rest| rest.starts_with('_'))
-        })
+    let is_end = |place: &str| {
+        place
+            .rsplit_once('_')
+            .is_some_and(|(mass, _)| ends.iter().any(|end| end == mass))
     };
     let wanted = |metric: &Metric| match metric.name.rsplit_once('.') {
         Some((place, "peak" | "after_shake" | "vdv")) => metric.what.is_ridden() && is_end(place),

@@ -10,6 +10,9 @@ use serde::Serialize;
 use super::subject::Subject;
 use crate::json::Ordered;
 
+/// What is nearer to zero is what rounding has left of it.
+const ROUNDING: f64 = 1e-9;
+
 /// All that is known.
 #[derive(Serialize)]
 pub(crate) struct Sensitivity {
@@ -132,7 +135,7 @@ pub(crate) fn gather(
             value,
             values: range.clone().map(|at| (run(at), local.values[at])).collect(),
             elasticities: (0..names.len())
-                .map(|k| (names[k].clone(), mean(&|at| local.elasticities[at][k])))
+                .map(|k| (names[k].clone(), rounded(mean(&|at| local.elasticities[at][k]))))
                 .collect(),
             by_run: range
                 .clone()
@@ -165,6 +168,11 @@ pub(crate) fn gather(
         );
     }
     Ok(result)
+}
+
+/// The value, or zero where rounding has left nothing else.
+pub(crate) fn rounded(value: f64) -> f64 {
+    if value.abs() < ROUNDING { 0.0 } else { value }
 }
 
 fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &Ground<'_>) -> Vec<Parameter> {

@@ -10,7 +10,7 @@ use crate::units;
 pub(super) fn text(of: &Sensitivity) -> String {
     let mut out = format!("{}: {}\n", of.subject, runs(of));
     out += "Percent of a metric for one percent of a parameter, the most important first.\n\n";
-    out += &table(of, |metric, k| number(metric.elasticities.0[k].1, 2)).text();
+    out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));
     out += "\n";
     out += &values(of).text();
     if let Some(global) = &of.global {
@@ -25,7 +25,7 @@ pub(super) fn text(of: &Sensitivity) -> String {
             Some(sobol) => format!("{:.0} / {:.0}", 100.0 * sobol.0[k].1.first, 100.0 * sobol.0[k].1.total),
             None => "-".into(),
         };
-        out += &table(of, share).text();
+        out += &tables(of, share);
     }
     out
 }
@@ -45,15 +45,22 @@ fn runs(of: &Sensitivity) -> String {
     }
 }
 
-/// Parameters down, metrics across.
-fn table(of: &Sensitivity, cell: impl Fn(&MetricResult, usize) -> String) -> Table {
-    let headings = std::iter::once("parameter".to_string()).chain(of.metrics.iter().map(|metric| metric.name.clone()));
-    let mut table = Table::with_headings(headings.collect());
-    for k in by_weight(of) {
-        let cells = of.metrics.iter().map(|metric| cell(metric, k));
-        table.row(std::iter::once(of.parameters[k].name.clone()).chain(cells).collect());
-    }
-    table
+/// Metrics beside each other.
+const ACROSS: usize = 8;
+
+/// Parameters down, metrics across, in as many tables as these take.
+fn tables(of: &Sensitivity, cell: impl Fn(&MetricResult, usize) -> String) -> String {
+    let order = by_weight(of);
+    let table = |metrics: &[MetricResult]| {
+        let names = metrics.iter().map(|metric| metric.name.clone());
+        let mut table = Table::with_headings(std::iter::once("parameter".into()).chain(names).collect());
+        for &k in &order {
+            let cells = metrics.iter().map(|metric| cell(metric, k));
+            table.row(std::iter::once(of.parameters[k].name.clone()).chain(cells).collect());
+        }
+        table.text()
+    };
+    of.metrics.chunks(ACROSS).map(table).collect::<Vec<_>>().join("\n")
 }
 
 /// Places of the parameters, that which moves any metric most first.

@@ -1,6 +1,7 @@
 //! What a task gives: a design, a front and a box.
 
 use qcar_runtime::metric::Ground;
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::target::{
     Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, search, space,
 };
@@ -9,6 +10,7 @@ use serde::Serialize;
 use super::plan::Plan;
 use crate::json::Ordered;
 use crate::progress::while_counting;
+use crate::verbs::sensitivity::gather::rounded;
 use crate::verbs::sensitivity::subject::Subject;
 
 /// All that was found.
@@ -227,7 +229,7 @@ fn sensitivity(plan: &Plan, axle: &Axle<'_>, found: &Found) -> Vec<Sensitivity> 
             let all = results
                 .iter()
                 .map(|&at| slopes[at][k] * found.design[k] / found.values[at]);
-            all.sum::<f64>() / results.len() as f64
+            rounded(all.sum::<f64>() / results.len() as f64)
         };
         let names = plan.knobs.iter().map(|knob| knob.name.clone()).enumerate();
         Sensitivity {
@@ -238,8 +240,8 @@ fn sensitivity(plan: &Plan, axle: &Axle<'_>, found: &Found) -> Vec<Sensitivity> 
     metrics.iter().map(of).collect()
 }
 
-/// The value of every parameter that is not tied, by the design.
-pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Vec<(String, f64, String)> {
+/// The values of the design.
+pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Values {
     let mut values = subject.values.clone();
     for own in &plan.moves {
         values.set(
@@ -247,10 +249,7 @@ pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Vec<(St
             own.factor * answer.parameters[own.knob].design + own.constant,
         );
     }
-    let all = subject.model.about().parameters.iter().enumerate();
-    let own = all.filter(|(place, _)| values.leader(*place) == *place);
-    own.map(|(place, own)| (own.name.to_string(), values.as_slice()[place], own.unit.to_string()))
-        .collect()
+    values
 }
 
 fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -> Vec<Target> {

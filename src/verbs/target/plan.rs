@@ -426,6 +426,20 @@ impl<'a> Planner<'a, '_> {
             let Some(metric) = self.metric(&target.metric, "target.metric") else {
                 continue;
             };
+            if let Some(wish) = target
+                .wish
+                .as_ref()
+                .filter(|wish| !(*wish.get_ref() > 0.0 && wish.get_ref().is_finite()))
+            {
+                let found = wish.get_ref().to_string();
+                self.wrong(
+                    wish,
+                    "target.wish",
+                    &found,
+                    "a cost above zero",
+                    "correct it, or remove it from what must hold",
+                );
+            }
             if target.at_most.is_none() && target.at_least.is_none() {
                 let found = "neither `at_most` nor `at_least`";
                 self.wrong(&target.metric, "target", found, "a limit", "add one of both");

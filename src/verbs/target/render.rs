@@ -2,6 +2,9 @@
 
 use std::fmt::Write;
 
+use qcar_runtime::model::About;
+use qcar_runtime::response::parameters::Values;
+
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
 use crate::table::{Table, number, or_dash};
 use crate::units;
@@ -164,10 +167,12 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
 }
 
 /// A parameter file as `--params` takes it.
-pub(super) fn parameter_file(of: &Answer, design: &[(String, f64, String)]) -> String {
-    let mut out = format!("# {} as its targets want it\n\n[parameters]\n", of.model);
-    for (name, value, unit) in design {
-        let _ = writeln!(out, "{name} = {value:?} # {unit}");
+pub(super) fn parameter_file(about: &About, design: &Values) -> String {
+    let mut out = format!("# {} as its targets want it\n\n[parameters]\n", about.name);
+    for (place, (own, value)) in about.parameters.iter().zip(design.as_slice()).enumerate() {
+        if design.leader(place) == place {
+            let _ = writeln!(out, "{} = {value:?} # {}", own.name, own.unit);
+        }
     }
     out
 }

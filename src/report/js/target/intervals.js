@@ -33,18 +33,18 @@ function intervals(data) {
   return { element };
 }
 
-const BAR = { width: 180, height: 18 };
+const RANGE_BAR = { width: 180, height: 18 };
 
 function intervalBar({ range, today, design, interval }) {
-  const x = (value) => (BAR.width * (value - range[0])) / (range[1] - range[0]);
+  const x = (value) => (RANGE_BAR.width * (value - range[0])) / (range[1] - range[0]);
   const mark = (value, role, width) =>
     value >= range[0] && value <= range[1]
-      ? svg('path', { d: `M${x(value)} 1V${BAR.height - 1}`, style: `stroke:var(--${role})`, 'stroke-width': width })
+      ? svg('path', { d: `M${x(value)} 1V${RANGE_BAR.height - 1}`, style: `stroke:var(--${role})`, 'stroke-width': width })
       : null;
   return svg(
     'svg',
-    { class: 'interval', viewBox: `-2 0 ${BAR.width + 4} ${BAR.height}`, width: BAR.width + 4, height: BAR.height, 'aria-hidden': 'true' },
-    svg('rect', { x: 0, y: 6, width: BAR.width, height: 6, style: 'fill:var(--grid)' }),
+    { class: 'interval', viewBox: `-2 0 ${RANGE_BAR.width + 4} ${RANGE_BAR.height}`, width: RANGE_BAR.width + 4, height: RANGE_BAR.height, 'aria-hidden': 'true' },
+    svg('rect', { x: 0, y: 6, width: RANGE_BAR.width, height: 6, style: 'fill:var(--grid)' }),
     interval
       ? svg('rect', { x: x(interval[0]), y: 3, width: x(interval[1]) - x(interval[0]), height: 12, style: 'fill:var(--band)' })
       : null,
