@@ -54,6 +54,11 @@ fn verbs_print_the_keys_that_are_documented() {
 #[test]
 fn a_study_holds_the_results_of_the_verbs() {
     let folder = tempfile::tempdir().unwrap();
+    agree(
+        "sensitivity",
+        &result(&format!("sensitivity axle_a --campaign {AXLE} --metrics body_x.peak")),
+    );
+    agree("target", &result("target models/targets/axle_a.toml"));
     let study = result(&format!("study {AXLE} --out {}", folder.path().display()));
     agree("study", &study);
     agree("discover", &study["discover"]);

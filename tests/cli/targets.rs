@@ -126,6 +126,60 @@ fn a_campaign_says_how_sure_its_metrics_are() {
     assert_eq!(found["runs"].as_array().unwrap().len(), 3);
 }
 
+/// A model with a digressive damper, beside the campaign of the model without: derivatives through its rides are limits of
+/// differences, which the command line gives for values that are moved.
+#[test]
+fn a_nonlinear_model_of_another_campaign_has_sensitivities() {
+    let folder = repository();
+    let patch = "patch axle_a digressive_damper --at damper --out bent.axle";
+    assert_eq!(run_line(folder.path(), patch).status, 0);
+    let run = |set: &str| -> Value {
+        let line = format!(
+            "sensitivity bent.axle --campaign models/campaigns/axle_a_rig --parameters c0,v0 --format json --metrics \
+             body_z.after_shake,wheel_z.weighted_rms,tyre.dynamic_load {set}"
+        );
+        let ran = run_line(folder.path(), &line);
+        assert_eq!(ran.status, 0, "{}", ran.stderr);
+        serde_json::from_str(&ran.stdout).unwrap()
+    };
+    let value = |of: &Value, metric: usize| {
+        of["metrics"][metric]["values"]["cleat/v30_h20.csv.gz"]
+            .as_f64()
+            .unwrap()
+    };
+    let here = run("");
+    for (at, name) in ["c0", "v0"].into_iter().enumerate() {
+        let own = here["parameters"][at]["value"].as_f64().unwrap();
+        let [up, down] = [1.002, 0.998].map(|part| run(&format!("--set {name}={}", part * own)));
+        for metric in 0..3 {
+            let difference = (value(&up, metric) - value(&down, metric)) / (0.004 * value(&here, metric));
+            let found = here["metrics"][metric]["by_run"]["cleat/v30_h20.csv.gz"][at]
+                .as_f64()
+                .unwrap();
+            // The rides keep a tolerance of 1e-6, which a difference of 4e-3 makes 2.5e-4.
+            assert!(
+                (found - difference).abs() < 1e-3,
+                "{metric} by {name}: {found} and {difference}"
+            );
+        }
+    }
+}
+
+/// What a fit has written stands for its model, values and standard errors.
+#[test]
+fn results_of_a_fit_are_a_subject() {
+    let folder = repository();
+    let fit = "fit models/campaigns/axle_a_rig --out fitted";
+    assert_eq!(run_line(folder.path(), fit).status, 0);
+    let ran = run_line(
+        folder.path(),
+        "sensitivity fitted --metrics mode.1.damping --format json",
+    );
+    let found: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(found["model"], "axle_a");
+    assert!(found["metrics"][0]["doubt"]["deviation"].as_f64().unwrap() > 0.0);
+}
+
 #[test]
 fn results_are_the_same_every_time() {
     let line = [

@@ -123,15 +123,36 @@ fn of_model(
         .chain(own.to_vec())
         .chain(beneath.params.map(PathBuf::from))
         .collect();
-    let values = parameters::resolve(model.about(), files.iter().map(PathBuf::as_path), beneath.set)?;
+    let campaign = beneath.campaign.map(Campaign::open).transpose()?;
+    let values = resolved(&model, &files, campaign.as_ref(), beneath.set)?;
     let mut facts = BTreeMap::new();
     for file in &files {
         let beside = Beside::read(file)?;
         facts.extend(beside.vehicle);
         errors.deviations.extend(beside.errors);
     }
-    let campaign = beneath.campaign.map(Campaign::open).transpose()?;
     finish(name, model, values, facts, campaign, errors)
+}
+
+/// Values of a model from files of which one may be a campaign of another model: of its values, those that the model has.
+fn resolved(
+    model: &Loaded,
+    files: &[PathBuf],
+    campaign: Option<&Campaign>,
+    set: &[Setting],
+) -> Result<Values, Failure> {
+    let paths = files.iter().map(PathBuf::as_path);
+    let own = campaign
+        .map(|campaign| catalogue::of_campaign(campaign, None))
+        .transpose()?;
+    let other = own.filter(|own| own.about().name != model.about().name);
+    Ok(match other {
+        Some(other) => {
+            let [values, _] = parameters::resolve_both([model.about(), other.about()], paths, set)?;
+            values
+        }
+        None => parameters::resolve(model.about(), paths, set)?,
+    })
 }
 
 /// A campaign: its model fitted to its rig runs, unless the user has values; where it has none, with its start values.

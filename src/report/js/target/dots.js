@@ -38,7 +38,7 @@ function plane(kind, name, axes, dots, shapes = () => []) {
     name,
     svg(
       'svg',
-      { class: 'heat', style: 'max-width:520px', viewBox: `0 0 ${PLANE.width} ${PLANE.height}`, role: 'img', 'aria-label': name },
+      { class: 'plane', viewBox: `0 0 ${PLANE.width} ${PLANE.height}`, role: 'img', 'aria-label': name },
       across,
       upward,
       shapes(x, y),
