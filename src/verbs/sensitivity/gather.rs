@@ -1,10 +1,12 @@
 //! Sensitivities as the verb prints them: each metric over all of its runs.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 
-use qcar_runtime::metric::{Ground, MetricError};
+use qcar_runtime::metric::{Ground, MetricError, Reading};
 use qcar_runtime::progress::Told;
-use qcar_runtime::sensitivity::{Doubt, Index, Interval, Plan, elasticities, indices};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::sensitivity::{Doubt, Elasticities, Index, Indices, Interval, Plan, elasticities, indices};
 use serde::Serialize;
 
 use super::subject::Subject;
@@ -102,7 +104,8 @@ pub(crate) fn gather(
     asked: &Asked<'_>,
     told: Told<'_>,
 ) -> Result<Sensitivity, MetricError> {
-    let groups: Vec<_> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
+    let groups: Vec<Vec<Reading>> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
+    let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
     ground.choose(groups.concat());
     let local = elasticities(ground, &subject.values, asked.parameters)?;
     let about = ground.about();
@@ -113,40 +116,13 @@ pub(crate) fn gather(
         .collect();
     let doubt = doubt(subject, asked, &names);
     let mut first = 0;
-    let mut metrics = Vec::new();
-    for (&metric, group) in asked.metrics.iter().zip(&groups) {
-        let range = first..first + group.len();
+    let mut metric = |(&metric, &size): (&usize, &usize)| {
+        let range = first..first + size;
         first = range.end;
-        let own = &ground.metrics()[metric];
-        let run = |at: usize| {
-            ground.readings()[at]
-                .course
-                .map_or("at rest".into(), |run| ground.courses()[run].name.clone())
-        };
-        let mean = |of: &dyn Fn(usize) -> f64| range.clone().map(of).sum::<f64>() / group.len() as f64;
-        let value = mean(&|at| local.values[at]);
-        let relative: Vec<f64> = (0..names.len())
-            .map(|k| mean(&|at| local.slopes[at][k] / local.values[at]))
-            .collect();
-        metrics.push(MetricResult {
-            name: own.name.clone(),
-            unit: own.unit,
-            doc: own.doc.clone(),
-            value,
-            values: range.clone().map(|at| (run(at), local.values[at])).collect(),
-            elasticities: (0..names.len())
-                .map(|k| (names[k].clone(), rounded(mean(&|at| local.elasticities[at][k]))))
-                .collect(),
-            by_run: range
-                .clone()
-                .map(|at| (run(at), local.elasticities[at].clone()))
-                .collect(),
-            doubt: doubt.as_ref().map(|doubt| doubted(value, &names, &doubt.of(&relative))),
-            sobol: None,
-            spread: None,
-        });
-    }
-    let mut result = Sensitivity {
+        result(ground, &local, (metric, range), &names, doubt.as_ref())
+    };
+    let metrics = asked.metrics.iter().zip(&sizes).map(&mut metric).collect();
+    let mut found = Sensitivity {
         subject: subject.name.clone(),
         model: about.name.to_string(),
         runs: ground.courses().iter().map(|course| course.name.clone()).collect(),
@@ -155,19 +131,49 @@ pub(crate) fn gather(
         global: None,
     };
     if let Some((plan, spread)) = asked.global {
-        let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
-        add_indices(
-            &mut result,
-            subject,
-            ground,
-            asked,
-            &sizes,
-            &local.values,
-            (plan, spread),
-            told,
-        );
+        let relative = |values: &Values| Some(means(&ground.measure(values).ok()?, &local.values, &sizes));
+        let own = drawn(subject, asked, (plan, spread), told, relative);
+        add(&mut found, &own, spread);
     }
-    Ok(result)
+    Ok(found)
+}
+
+/// A metric over the readings in a range of places.
+fn result(
+    ground: &Ground<'_>,
+    local: &Elasticities,
+    (metric, range): (usize, Range<usize>),
+    names: &[String],
+    doubt: Option<&Doubt>,
+) -> MetricResult {
+    let own = &ground.metrics()[metric];
+    let run = |at: usize| {
+        let course = ground.readings()[at].course;
+        course.map_or("at rest".into(), |run| ground.courses()[run].name.clone())
+    };
+    let mean = |of: &dyn Fn(usize) -> f64| range.clone().map(of).sum::<f64>() / range.len() as f64;
+    let by_parameter =
+        |of: &dyn Fn(usize, usize) -> f64| (0..names.len()).map(|k| mean(&|at| of(at, k))).collect::<Vec<_>>();
+    let value = mean(&|at| local.values[at]);
+    let relative = by_parameter(&|at, k| local.slopes[at][k] / local.values[at]);
+    let elastic = by_parameter(&|at, k| local.elasticities[at][k])
+        .into_iter()
+        .map(rounded);
+    MetricResult {
+        name: own.name.clone(),
+        unit: own.unit,
+        doc: own.doc.clone(),
+        value,
+        values: range.clone().map(|at| (run(at), local.values[at])).collect(),
+        elasticities: names.iter().cloned().zip(elastic).collect(),
+        by_run: range
+            .clone()
+            .map(|at| (run(at), local.elasticities[at].clone()))
+            .collect(),
+        doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&relative))),
+        sobol: None,
+        spread: None,
+    }
 }
 
 /// The value, or zero where rounding has left nothing else.
@@ -220,36 +226,34 @@ fn doubted(value: f64, names: &[String], relative: &Interval) -> Doubted {
     }
 }
 
-#[expect(clippy::too_many_arguments, reason = "all of them are what was found before")]
-fn add_indices(
-    result: &mut Sensitivity,
+/// Indices of what `relative` gives, for parameters that lie within `spread` of their values.
+fn drawn(
     subject: &Subject,
-    ground: &Ground<'_>,
     asked: &Asked<'_>,
-    sizes: &[usize],
-    today: &[f64],
     (plan, spread): (Plan, f64),
     told: Told<'_>,
-) {
-    let found = indices(asked.parameters.len(), plan, told, |u| {
+    relative: impl Fn(&Values) -> Option<Vec<f64>> + Sync + Send,
+) -> Indices {
+    indices(asked.parameters.len(), plan, told, |u| {
         let mut values = subject.values.clone();
         for (&parameter, u) in asked.parameters.iter().zip(u) {
             let own = subject.values.as_slice()[parameter];
             values.set(parameter, own * (1.0 + spread * (2.0 * u - 1.0)));
         }
-        let values = ground.measure(&values).ok()?;
-        Some(means(&values, today, sizes))
-    });
-    for (at, metric) in result.metrics.iter_mut().enumerate() {
-        let Some(of) = found.of.get(at) else { continue };
-        let names = result.parameters.iter().map(|own| own.name.clone());
+        relative(&values)
+    })
+}
+
+fn add(to: &mut Sensitivity, own: &Indices, spread: f64) {
+    for ((metric, of), moments) in to.metrics.iter_mut().zip(&own.of).zip(&own.moments) {
+        let names = to.parameters.iter().map(|parameter| parameter.name.clone());
         metric.sobol = Some(names.zip(of.iter().copied()).collect());
-        metric.spread = Some(found.moments[at].map(|moment| moment * metric.value));
+        metric.spread = Some(moments.map(|moment| moment * metric.value));
     }
-    result.global = Some(Global {
+    to.global = Some(Global {
         spread,
-        designs: found.designs,
-        failed: found.failed,
+        designs: own.designs,
+        failed: own.failed,
     });
 }
 

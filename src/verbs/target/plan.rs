@@ -213,72 +213,17 @@ impl<'a> Planner<'a, '_> {
     }
 
     fn knob(&mut self, own: &file::Parameter, place: usize) -> Option<(Knob, String)> {
-        let subject = self.subject;
-        let about = &subject.model.about().parameters[place];
-        let (unit, today) = (about.unit.to_string(), self.values().as_slice()[place]);
-        let [low, high] = own.range.get_ref();
-        let lower = self.amount(low, &own.range, "parameter.range", &unit, today)?;
-        let upper = self.amount(high, &own.range, "parameter.range", &unit, today)?;
-        if lower >= upper {
-            let found = format!("{lower} to {upper} {unit}");
-            self.wrong(
-                &own.range,
-                "parameter.range",
-                &found,
-                "a lower value and a higher one",
-                "correct the range",
-            );
-            return None;
-        }
-        if let Some((least, most)) = about.range.filter(|(least, most)| lower < *least || upper > *most) {
-            let found = format!("{lower} to {upper} {unit}");
-            let expected = format!(
-                "a range within {least} to {most} {unit}, for which model `{}` is valid",
-                subject.model.about().name
-            );
-            self.wrong(
-                &own.range,
-                "parameter.range",
-                &found,
-                &expected,
-                "narrow the range, or widen that of the model",
-            );
-            return None;
-        }
-        for end in [lower, upper] {
-            let mut values = self.values().clone();
-            values.set(place, end);
-            if let Err(error) = subject.model.check_inertias(values.as_slice()) {
-                let found = format!("{end} {unit}, where {error}");
-                self.wrong(
-                    &own.range,
-                    "parameter.range",
-                    &found,
-                    "a range in which all masses are above zero",
-                    "narrow the range",
-                );
-                return None;
-            }
-        }
+        let (unit, today) = (
+            self.subject.model.about().parameters[place].unit.to_string(),
+            self.values().as_slice()[place],
+        );
+        let [lower, upper] = self.range(&own.range, place, &unit)?;
         let step = match &own.step {
-            Some(step) => Some(self.amount(step.get_ref(), step, "parameter.step", &unit, today)?),
+            Some(at) => Some(self.step(at, &unit, (today, upper - lower))?),
             None => None,
         };
-        if let Some(step) = step.filter(|step| !(*step > 0.0 && *step <= upper - lower)) {
-            let at = own.step.as_ref()?;
-            let found = format!("{step} {unit}");
-            self.wrong(
-                at,
-                "parameter.step",
-                &found,
-                "a step above zero that fits into the range",
-                "correct the step",
-            );
-            return None;
-        }
         let cost = own.cost.as_ref().map_or(1.0, |cost| *cost.get_ref());
-        if !(cost >= 0.0 && cost.is_finite()) {
-            let at = own.cost.as_ref()?;
+        if let Some(at) = own.cost.as_ref().filter(|_| !(cost >= 0.0 && cost.is_finite())) {
             self.wrong(
                 at,
                 "parameter.cost",
@@ -300,6 +245,66 @@ impl<'a> Planner<'a, '_> {
             },
             unit,
         ))
+    }
+
+    fn step(&mut self, at: &Spanned<Amount>, unit: &str, (today, span): (f64, f64)) -> Option<f64> {
+        let step = self.amount(at.get_ref(), at, "parameter.step", unit, today)?;
+        if step > 0.0 && step <= span {
+            return Some(step);
+        }
+        let found = format!("{step} {unit}");
+        self.wrong(
+            at,
+            "parameter.step",
+            &found,
+            "a step above zero that fits into the range",
+            "correct the step",
+        );
+        None
+    }
+
+    /// The ends of a range in which the model is valid and has masses.
+    fn range(&mut self, at: &Spanned<[Amount; 2]>, place: usize, unit: &str) -> Option<[f64; 2]> {
+        const KEY: &str = "parameter.range";
+        let (model, values) = (&self.subject.model, self.values());
+        let [low, high] = at.get_ref();
+        let today = values.as_slice()[place];
+        let lower = self.amount(low, at, KEY, unit, today)?;
+        let upper = self.amount(high, at, KEY, unit, today)?;
+        let found = format!("{lower} to {upper} {unit}");
+        if lower >= upper {
+            self.wrong(at, KEY, &found, "a lower value and a higher one", "correct the range");
+            return None;
+        }
+        let valid = model.about().parameters[place].range;
+        if let Some((least, most)) = valid.filter(|(least, most)| lower < *least || upper > *most) {
+            let name = &model.about().name;
+            let expected = format!("a range within {least} to {most} {unit}, for which model `{name}` is valid");
+            self.wrong(
+                at,
+                KEY,
+                &found,
+                &expected,
+                "narrow the range, or widen that of the model",
+            );
+            return None;
+        }
+        for end in [lower, upper] {
+            let mut moved = values.clone();
+            moved.set(place, end);
+            if let Err(error) = model.check_inertias(moved.as_slice()) {
+                let found = format!("{end} {unit}, where {error}");
+                self.wrong(
+                    at,
+                    KEY,
+                    &found,
+                    "a range in which all masses are above zero",
+                    "narrow the range",
+                );
+                return None;
+            }
+        }
+        Some([lower, upper])
     }
 
     fn amount<T>(&mut self, own: &Amount, at: &Spanned<T>, key: &str, unit: &str, today: f64) -> Option<f64> {
