@@ -32,7 +32,7 @@ mod render;
 mod figure;
 
 use gather::Asked;
-use subject::{Beneath, Subject};
+use subject::{Beneath, RandomRoad, Subject};
 
 /// Print what metrics of an axle depend on: elasticities, shares of variance, and how sure they are
 ///
@@ -57,6 +57,12 @@ pub struct Arguments {
     /// One value, in place of that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
+    /// A random road of ISO 8608 beside the cleats, such as C@60km/h; may be repeated
+    #[arg(long, value_name = "CLASS@SPEED")]
+    road: Vec<RandomRoad>,
+    /// Only these runs; a * stands for any letters
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    runs: Vec<String>,
     /// These metrics; a * stands for any letters
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     metrics: Vec<String>,
@@ -126,8 +132,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         campaign: arguments.campaign.as_deref(),
         params: arguments.params.as_deref(),
         set: &arguments.set,
+        roads: &arguments.road,
     };
-    let subject = Subject::of(&arguments.subject, &beneath)?;
+    let mut subject = Subject::of(&arguments.subject, &beneath)?;
+    chosen::keep_runs(&mut subject.courses, &arguments.runs)?;
     let mut ground = subject.ground();
     if arguments.list {
         return Ok(list(&ground));

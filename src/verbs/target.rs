@@ -61,10 +61,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let read = Read::of(&arguments.targets)?;
     let campaign = read.file.campaign.as_ref().map(|path| read.beside(path));
     let params = read.file.params.as_ref().map(|path| read.beside(path));
+    let roads = read.roads()?;
     let beneath = Beneath {
         campaign: campaign.as_deref(),
         params: params.as_deref(),
         set: &arguments.set,
+        roads: &roads,
     };
     let subject = Subject::of(&read.subject(), &beneath)?;
     let mut ground = subject.ground();

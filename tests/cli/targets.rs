@@ -165,6 +165,35 @@ fn a_nonlinear_model_of_another_campaign_has_sensitivities() {
     }
 }
 
+/// The next class of ISO 8608 has twice the amplitude, and what is felt of a smooth road grows as it.
+#[test]
+fn the_next_class_of_road_is_felt_twice() {
+    let felt = |class: &str| {
+        let road = format!("{class}@60km/h");
+        let found = result(&[
+            "sensitivity",
+            "axle_a",
+            "--campaign",
+            "models/campaigns/axle_a_rig",
+            "--metrics",
+            "body_z.weighted_rms,body_z.peak",
+            "--parameters",
+            "k_tire",
+            "--road",
+            &road,
+        ]);
+        let run = format!("iso_{class}_60kmh");
+        assert_eq!(
+            found["metrics"][1]["values"][&run],
+            Value::Null,
+            "a road without an obstacle has no impact"
+        );
+        found["metrics"][0]["values"][&run].as_f64().unwrap()
+    };
+    let ratio = felt("B") / felt("A");
+    assert!((ratio - 2.0).abs() < 0.05, "{ratio}");
+}
+
 /// What a fit has written stands for its model, values and standard errors.
 #[test]
 fn results_of_a_fit_are_a_subject() {
@@ -293,6 +322,18 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
             ],
             "did you mean `k_tire`?",
         ),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--runs",
+                "x",
+            ],
+            "cleat/v30_h30.csv.gz",
+        ),
+        (&["sensitivity", "axle_a", "--road", "Z@60km/h"], "C@60km/h"),
         (
             &["sensitivity", "models/campaigns"],
             "without campaign.toml or fit.json",

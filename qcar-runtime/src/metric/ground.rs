@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use rayon::prelude::*;
 
 use super::course::Course;
-use super::name::{Metric, What, metrics};
+use super::name::{Measure, Metric, What, metrics};
 use super::record::{Impact, Seen};
 use super::watched::Watched;
 use super::{resonance, vibration};
@@ -13,7 +13,7 @@ use crate::campaign::RoleNames;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
 use crate::roles::Roles;
-use crate::simulate::{Car, Settings, SimulateError, Variant, ride, tangent};
+use crate::simulate::{Car, Settings, SimulateError, Tangent, Variant, ride, tangent};
 use crate::tyre::Tyre;
 
 /// Where metrics of a model are measured.
@@ -124,19 +124,23 @@ impl<'a> Ground<'a> {
         self.readings = readings;
     }
 
-    /// The readings of a metric: on each course, where it is ridden.
+    /// The readings of a metric: where it is ridden, on each course, or where it is of an impact, on each with an obstacle.
     pub fn readings_of(&self, metric: usize) -> Vec<Reading> {
-        if self.metrics[metric].what.is_ridden() {
-            let courses = 0..self.courses.len();
-            courses
-                .map(|course| Reading {
-                    metric,
-                    course: Some(course),
-                })
-                .collect()
-        } else {
-            vec![Reading { metric, course: None }]
+        let of_impact = matches!(
+            self.metrics[metric].what,
+            What::Ride(_, Measure::Peak | Measure::AfterShake)
+        );
+        if !self.metrics[metric].what.is_ridden() {
+            return vec![Reading { metric, course: None }];
         }
+        let courses = self.courses.iter().enumerate();
+        let fitting = courses.filter(|(_, course)| course.obstacle || !of_impact);
+        fitting
+            .map(|(place, _)| Reading {
+                metric,
+                course: Some(place),
+            })
+            .collect()
     }
 
     /// The value of each reading.
@@ -189,10 +193,12 @@ impl<'a> Ground<'a> {
             course: course.name.clone(),
             reason,
         };
-        let (signals, slopes) = self.ride(values, course, directions).map_err(failed)?;
-        let impact = self
-            .wheel
-            .and_then(|wheel| Impact::of(&signals[wheel], course.sample_rate));
+        let Tangent { signals, slopes } = self.ride(values, course, directions).map_err(failed)?;
+        let impact = match self.wheel {
+            _ if !course.obstacle => Some(Impact::none(course.samples)),
+            Some(wheel) => Impact::of(&signals[wheel], course.sample_rate),
+            None => None,
+        };
         let impact = impact.ok_or_else(|| MetricError::NoImpact {
             course: course.name.clone(),
         })?;
@@ -205,12 +211,7 @@ impl<'a> Ground<'a> {
     }
 
     /// The signals of a ride and, for each direction, their derivatives: outputs, then the force of the tyre.
-    fn ride(
-        &self,
-        values: &Values,
-        course: &Course,
-        directions: &[Vec<f64>],
-    ) -> Result<(Vec<Vec<f64>>, Vec<Vec<Vec<f64>>>), SimulateError> {
+    fn ride(&self, values: &Values, course: &Course, directions: &[Vec<f64>]) -> Result<Tangent, SimulateError> {
         let (tyre, load) = self.tyre.expect("what is ridden has a tyre");
         // All other outputs are rates of states, which a ride need not ask for.
         let unasked = self.model.added().filter(|added| !self.reads(*added));
@@ -226,24 +227,21 @@ impl<'a> Ground<'a> {
             variant: Variant::Complete,
         };
         let (drive, settings) = (course.drive(), Settings::default());
-        let (mut signals, mut slopes) = if directions.is_empty() {
+        let mut found = if directions.is_empty() {
             let ride = ride(&car, &drive, &settings)?;
             let [vertical, _] = ride.force;
-            (
-                ride.outputs.into_iter().chain([vertical]).collect::<Vec<_>>(),
-                Vec::new(),
-            )
+            Tangent {
+                signals: ride.outputs.into_iter().chain([vertical]).collect(),
+                slopes: Vec::new(),
+            }
         } else {
-            let tangent = tangent(&car, &drive, &settings, directions)?;
-            (tangent.signals, tangent.slopes)
+            tangent(&car, &drive, &settings, directions)?
         };
         if let Some(added) = unasked {
-            slopes
-                .iter_mut()
-                .chain([&mut signals])
-                .for_each(|own| own.insert(added, Vec::new()));
+            let all = found.slopes.iter_mut().chain([&mut found.signals]);
+            all.for_each(|own| own.insert(added, Vec::new()));
         }
-        Ok((signals, slopes))
+        Ok(found)
     }
 
     /// What each mass does on a course.

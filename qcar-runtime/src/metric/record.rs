@@ -33,6 +33,17 @@ impl Impact {
     }
 }
 
+impl Impact {
+    /// All of a record of so many samples, that has no impact.
+    pub fn none(samples: usize) -> Self {
+        Self {
+            onset: 0,
+            end: samples,
+            last: samples,
+        }
+    }
+}
+
 /// A record as a measure looks at it: filtered, and cut.
 pub(super) struct Seen {
     measure: Measure,

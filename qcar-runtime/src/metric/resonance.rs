@@ -2,10 +2,11 @@
 
 use nalgebra::Complex;
 
-use crate::model::{About, Channel, Model};
+use crate::model::{Channel, Model};
 use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::ratio::between;
+use crate::response::signal::driver;
 
 /// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
 pub(super) struct Resonance {
@@ -21,27 +22,9 @@ const LINES: usize = 300;
 const CLOSER: usize = 9;
 const LOOKS: usize = 8;
 
-/// The excitation that drives a channel: that which it is a ratio to, else the road along the same axis, else whatever
-/// acts there.
-fn excitation(about: &About, channel: &Channel) -> Option<usize> {
-    let below = &channel.denominator;
-    let along = || {
-        about
-            .excitations
-            .iter()
-            .enumerate()
-            .filter(|(_, own)| own.axis == below.axis)
-    };
-    let named = along().find(|(_, own)| own.name == below.location);
-    let found = named
-        .or_else(|| along().find(|(_, own)| own.road))
-        .or_else(|| along().next());
-    found.map(|(place, _)| place)
-}
-
 /// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
 pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
-    let excitation = excitation(model.about(), channel)?;
+    let excitation = driver(model.about(), channel)?;
     let ratio = |frequency: &[f64], jacobian: bool| {
         let mut response = Response::new(model, excitation, frequency);
         if jacobian {
@@ -71,10 +54,21 @@ pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: 
     }
     // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
     let step = 1e-4 * at;
-    let near = ratio(&[at - step, at, at + step], true)?;
-    let size: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
-    let bend = (size[0] - 2.0 * size[1] + size[2]) / (step * step);
+    let sizes = |at: f64| {
+        let near = ratio(&[at - step, at, at + step], true)?;
+        let sizes: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
+        let bend = (sizes[0] - 2.0 * sizes[1] + sizes[2]) / (step * step);
+        Some((near, sizes, bend))
+    };
+    let (_, size, bend) = sizes(at)?;
     let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
+    // What is left of the way to the peak would be seen in the derivative.
+    let at = if is_inside {
+        at - (size[2] - size[0]) / (2.0 * step) / bend
+    } else {
+        at
+    };
+    let (near, size, bend) = sizes(at)?;
     let slope = |slopes: &[Complex<f64>]| {
         let by = |line: usize| (near.value[line].conj() * slopes[line]).re / size[line];
         let shift = if is_inside {

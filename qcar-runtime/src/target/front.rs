@@ -75,14 +75,7 @@ pub fn front(
     told: Told<'_>,
 ) -> Front {
     let mut random = SplitMix(settings.seed);
-    let places = |design: &Vec<f64>| {
-        task.knobs
-            .iter()
-            .zip(design)
-            .map(|(knob, value)| knob.place(*value))
-            .collect()
-    };
-    let mut points: Vec<Vec<f64>> = known.iter().map(places).collect();
+    let mut points: Vec<Vec<f64>> = known.iter().map(|design| task.places(design)).collect();
     points.extend(random.hypercube(settings.population, task.knobs.len()));
     let mut members = evaluated(task, aims, points);
     let mut count = settings.population + known.len();
@@ -121,12 +114,7 @@ fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: Vec<Vec<f64>>) ->
         Some(Member {
             aims: aims.iter().map(aim).collect(),
             broken: task.broken(&excess, 0.0),
-            places: task
-                .knobs
-                .iter()
-                .zip(&design)
-                .map(|(knob, value)| knob.place(*value))
-                .collect(),
+            places: task.places(&design),
             values,
             rank: 0,
             room: 0.0,

@@ -120,12 +120,7 @@ fn price(task: &Task<'_>) -> f64 {
 
 fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
     let price = price(task);
-    let today: Vec<f64> = task
-        .knobs
-        .iter()
-        .zip(task.today())
-        .map(|(knob, value)| knob.place(value))
-        .collect();
+    let today = task.places(&task.today());
     let points = SplitMix(seed).hypercube(LOOKS, task.knobs.len());
     let looked = points
         .into_par_iter()
@@ -250,14 +245,7 @@ fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -
 
 /// Goes to designs that can be had: rounds, tries the neighbours of each knob, and lets the others follow.
 fn had(task: &Task<'_>, from: State) -> State {
-    let rounded = |places: &[f64]| -> Vec<f64> {
-        let design = task.had(&task.design(places));
-        task.knobs
-            .iter()
-            .zip(design)
-            .map(|(knob, value)| knob.place(value))
-            .collect()
-    };
+    let rounded = |places: &[f64]| task.places(&task.had(&task.design(places)));
     let follow = |state: State| {
         let free: Vec<bool> = task.knobs.iter().map(|knob| knob.step.is_none()).collect();
         if free.contains(&true) {

@@ -141,14 +141,7 @@ fn confirmed(
 fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: usize) -> Option<Vec<f64>> {
     let all = vec![[0.0, 1.0]; task.knobs.len()];
     let mut drawn = draw(task, &all, 2 * samples, random);
-    let places = |design: &Vec<f64>| {
-        task.knobs
-            .iter()
-            .zip(design)
-            .map(|(knob, value)| knob.place(*value))
-            .collect()
-    };
-    drawn.extend(known.iter().map(|design| drawn_at(task, places(design))));
+    drawn.extend(known.iter().map(|design| drawn_at(task, task.places(design))));
     let inside = |own: &Drawn| {
         let excess = own.excess.as_ref().expect("a good design has results");
         excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)

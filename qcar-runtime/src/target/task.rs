@@ -153,6 +153,15 @@ impl Task<'_> {
             .collect()
     }
 
+    /// The places of a design's knobs in their ranges.
+    pub fn places(&self, design: &[f64]) -> Vec<f64> {
+        self.knobs
+            .iter()
+            .zip(design)
+            .map(|(knob, value)| knob.place(*value))
+            .collect()
+    }
+
     /// The nearest design that can be had.
     pub fn had(&self, design: &[f64]) -> Vec<f64> {
         self.knobs

@@ -2,7 +2,7 @@
 
 use qcar_runtime::campaign::RoleNames;
 use qcar_runtime::error::{InputError, Problem};
-use qcar_runtime::metric::{Ground, Metric};
+use qcar_runtime::metric::{Course, Ground, Metric};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::Roles;
@@ -18,6 +18,27 @@ pub(crate) fn fits(pattern: &str, name: &str) -> bool {
         }
         None => pattern == name,
     }
+}
+
+/// Leaves the courses that names mean; all where there are no names.
+///
+/// # Errors
+/// Every name that no course has.
+pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(), InputError> {
+    let known: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
+    let lost = names.iter().filter(|name| !known.iter().any(|own| fits(name, own)));
+    let expected = format!("one of {}", known.join(", "));
+    let problem = |name: &String| {
+        flag(
+            "--runs",
+            format!("`{name}`"),
+            &expected,
+            "correct the name or remove it",
+        )
+    };
+    let problems = lost.map(problem).collect();
+    courses.retain(|course| names.is_empty() || names.iter().any(|name| fits(name, &course.name)));
+    InputError::unless_empty(problems, Some(()))
 }
 
 /// The metrics that names mean, in the order of the names; a name may hold a `*`.

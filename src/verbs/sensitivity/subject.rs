@@ -2,10 +2,12 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::str::FromStr;
 
-use qcar_runtime::campaign::{Campaign, Role, RoleNames, Test};
+use qcar_runtime::campaign::{Campaign, Declared, Role, RoleNames, Test};
 use qcar_runtime::metric::{Course, Ground};
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::road::Class;
 use qcar_runtime::simulate::{Cleat, tyre_of};
 use qcar_runtime::tyre::Tyre;
 
@@ -40,6 +42,37 @@ pub(crate) struct Errors {
     pub correlations: BTreeMap<(String, String), f64>,
 }
 
+/// A random road of ISO 8608 and the speed at which it is driven over.
+#[derive(Clone, Debug)]
+pub(crate) struct RandomRoad(Course);
+
+/// The classes, in their order.
+const CLASSES: [(&str, Class); 8] = [
+    ("A", Class::A),
+    ("B", Class::B),
+    ("C", Class::C),
+    ("D", Class::D),
+    ("E", Class::E),
+    ("F", Class::F),
+    ("G", Class::G),
+    ("H", Class::H),
+];
+
+impl FromStr for RandomRoad {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected a class of ISO 8608 and a speed, such as C@60km/h, found `{text}`");
+        let (class, speed) = text.split_once('@').ok_or_else(expected)?;
+        let class = CLASSES.iter().find(|(name, _)| *name == class.trim());
+        let speed = Declared::quantity(speed).filter(|(speed, unit)| unit.is_like("m/s") && *speed > 0.0);
+        let ((_, class), (speed, _)) = class.zip(speed).ok_or_else(expected)?;
+        Course::random(*class, speed)
+            .map(RandomRoad)
+            .map_err(|error| error.to_string())
+    }
+}
+
 /// What a user gives beside the subject.
 pub(crate) struct Beneath<'a> {
     /// Start values, facts of the vehicle and cleat runs.
@@ -48,6 +81,8 @@ pub(crate) struct Beneath<'a> {
     pub params: Option<&'a Path>,
     /// And above those.
     pub set: &'a [Setting],
+    /// Random roads beside the cleats.
+    pub roads: &'a [RandomRoad],
 }
 
 impl Subject {
@@ -56,6 +91,14 @@ impl Subject {
     /// # Errors
     /// What cannot be read, compiled, resolved or fitted, and an argument that is nothing of that.
     pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
+        let mut subject = Self::over_cleats(text, beneath)?;
+        if subject.tyre.is_some() {
+            subject.courses.extend(beneath.roads.iter().map(|road| road.0.clone()));
+        }
+        Ok(subject)
+    }
+
+    fn over_cleats(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
         let path = Path::new(text);
         let answer = answer(path);
         if path.join("campaign.toml").is_file() && !catalogue::is_shipped(text) {

@@ -10,6 +10,7 @@ use toml::Spanned;
 
 use crate::catalogue;
 use crate::files::read_text;
+use crate::verbs::sensitivity::subject::RandomRoad;
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -21,7 +22,9 @@ pub(super) struct File {
     pub campaign: Option<PathBuf>,
     /// Values above those.
     pub params: Option<PathBuf>,
-    /// At most one of each in a target's run list.
+    /// Random roads beside the cleats.
+    #[serde(default)]
+    pub roads: Vec<Spanned<String>>,
     #[serde(default, rename = "target")]
     pub targets: Vec<Target>,
     #[serde(default, rename = "parameter")]
@@ -165,7 +168,14 @@ impl Read {
                 let start = error.span().map_or(0, |span| span.start);
                 let remedy = "docs/targets.md describes every key";
                 let found = error.message().lines().collect::<Vec<_>>().join(" ");
-                Err(Problem::new(path, place(&text, start, ""), found, "a file of targets", remedy).into())
+                Err(Problem::new(
+                    path,
+                    Place::in_text(&text, start, ""),
+                    found,
+                    "a file of targets",
+                    remedy,
+                )
+                .into())
             }
         }
     }
@@ -174,7 +184,7 @@ impl Read {
     pub fn problem<T>(&self, at: &Spanned<T>, key: &str, found: &str, expected: &str, remedy: &str) -> Problem {
         Problem::new(
             &self.path,
-            place(&self.text, at.span().start, key),
+            Place::in_text(&self.text, at.span().start, key),
             found,
             expected,
             remedy,
@@ -192,20 +202,28 @@ impl Read {
         }
     }
 
+    /// The random roads.
+    ///
+    /// # Errors
+    /// Every one that is none.
+    pub fn roads(&self) -> Result<Vec<RandomRoad>, InputError> {
+        let (mut roads, mut problems) = (Vec::new(), Vec::new());
+        for own in &self.file.roads {
+            match own.get_ref().parse() {
+                Ok(road) => roads.push(road),
+                Err(_) => {
+                    let (found, expected) = (format!("`{}`", own.get_ref()), "a class of ISO 8608 and a speed");
+                    problems.push(self.problem(own, "roads", &found, expected, "write it as \"C@60km/h\""));
+                }
+            }
+        }
+        InputError::unless_empty(problems, Some(roads))
+    }
+
     /// A path as the file means it: relative to its folder.
     pub fn beside(&self, path: &Path) -> PathBuf {
         self.path.parent().unwrap_or(Path::new("")).join(path)
     }
-}
-
-fn place(text: &str, offset: usize, key: &str) -> Place {
-    let before = &text[..offset.min(text.len())];
-    let start = before.rfind('\n').map_or(0, |at| at + 1);
-    Place::Key(
-        before.matches('\n').count() + 1,
-        before[start..].chars().count() + 1,
-        key.into(),
-    )
 }
 
 #[cfg(test)]
