@@ -191,7 +191,7 @@ fn tolerances(subject: &Subject, arguments: &Arguments) -> Result<BTreeMap<Strin
                 let size = (own.part.0 * subject.values.as_slice()[place]).abs();
                 tolerances.insert(own.name.clone(), size);
             }
-            Err(problem) => problems.push(problem),
+            Err(error) => problems.extend(error.problems),
         }
     }
     InputError::unless_empty(problems, Some(tolerances))

@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use crate::model::{Channel, Model};
 use crate::response::Response;
 use crate::response::parameters::Values;
-use crate::response::ratio::between;
+use crate::response::ratio::{Ratio, between};
 use crate::response::signal::driver;
 
 /// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
@@ -20,7 +20,7 @@ const BAND: [f64; 2] = [0.5, 50.0];
 const LINES: usize = 300;
 /// Lines of each further look between the neighbours of the largest, and how many looks there are.
 const CLOSER: usize = 9;
-const LOOKS: usize = 8;
+const LOOKS: usize = 4;
 
 /// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
 pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
@@ -45,30 +45,24 @@ pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: 
         lines = CLOSER;
     }
     let at = (band[0] * band[1]).sqrt();
-    if !wanted {
-        let value = ratio(&[at], false)?.value[0].norm();
-        return Some(Resonance {
-            value: [value, at],
-            slopes: Vec::new(),
-        });
-    }
     // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
     let step = 1e-4 * at;
-    let sizes = |at: f64| {
-        let near = ratio(&[at - step, at, at + step], true)?;
-        let sizes: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
-        let bend = (sizes[0] - 2.0 * sizes[1] + sizes[2]) / (step * step);
-        Some((near, sizes, bend))
+    let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
+    let shape = |near: &Ratio| {
+        let [left, middle, right] = [0, 1, 2].map(|line| near.value[line].norm());
+        [
+            (right - left) / (2.0 * step),
+            (left - 2.0 * middle + right) / (step * step),
+        ]
     };
-    let (_, size, bend) = sizes(at)?;
+    let [rise, bend] = shape(&near(at, false)?);
     let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
-    // What is left of the way to the peak would be seen in the derivative.
-    let at = if is_inside {
-        at - (size[2] - size[0]) / (2.0 * step) / bend
-    } else {
-        at
-    };
-    let (near, size, bend) = sizes(at)?;
+    // Magnitudes about the peak are alike to rounding long before frequencies are: the rest of the way is that to the
+    // root of the derivative.
+    let at = if is_inside { at - rise / bend } else { at };
+    let near = near(at, wanted)?;
+    let [_, bend] = shape(&near);
+    let size: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
     let slope = |slopes: &[Complex<f64>]| {
         let by = |line: usize| (near.value[line].conj() * slopes[line]).re / size[line];
         let shift = if is_inside {

@@ -138,24 +138,27 @@ pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Re
             flag("--parameters", found, expected, remedy)
         }) {
             Ok(place) => chosen.push(place),
-            Err(problem) => problems.push(problem),
+            Err(error) => problems.extend(error.problems),
         }
     }
     InputError::unless_empty(problems, Some(chosen))
 }
 
 /// A parameter that leads its ties.
+///
+/// # Errors
+/// A name that is no parameter of the model, or of one that takes its value from another.
 pub(crate) fn parameter(
     about: &About,
     values: &Values,
     name: &str,
     problem: impl Fn(&str, &str, &str) -> Problem,
-) -> Result<usize, Problem> {
+) -> Result<usize, InputError> {
     let known = || about.parameters.iter().map(|own| &*own.name);
     let expected = format!("a parameter of model `{}`", about.name);
     let Some(place) = known().position(|own| own == name) else {
         let remedy = spelling::remedy(name, known());
-        return Err(problem(&format!("`{name}`"), &expected, &remedy));
+        return Err(problem(&format!("`{name}`"), &expected, &remedy).into());
     };
     match values.leader(place) {
         leader if leader == place => Ok(place),
@@ -166,7 +169,8 @@ pub(crate) fn parameter(
                 &found,
                 "a parameter with a value of its own",
                 &format!("name `{leader}`, or give `{name}` a value"),
-            ))
+            )
+            .into())
         }
     }
 }

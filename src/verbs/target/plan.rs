@@ -209,7 +209,7 @@ impl<'a> Planner<'a, '_> {
         let read = self.read;
         let problem = |found: &str, expected: &str, remedy: &str| read.problem(name, key, found, expected, remedy);
         let found = chosen::parameter(self.subject.model.about(), self.values(), name.get_ref(), problem);
-        found.map_err(|problem| self.problems.push(problem)).ok()
+        found.map_err(|error| self.problems.extend(error.problems)).ok()
     }
 
     fn knob(&mut self, own: &file::Parameter, place: usize) -> Option<(Knob, String)> {
