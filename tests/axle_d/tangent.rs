@@ -104,11 +104,13 @@ fn difference(k: usize, drive: &Drive<'_>) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// Places of the parameters that have values of their own.
+/// Places of the parameters that a designer moves. Facts of the vehicle are those of its tyre, too, and move with it alone.
 fn leaders() -> Vec<usize> {
-    let parameters = cleat::parameters();
+    let (parameters, about) = (cleat::parameters(), AxleD.about());
     let all = 0..parameters.as_slice().len();
-    all.filter(|&k| parameters.leader(k) == k).collect()
+    let own = all.filter(|&k| parameters.leader(k) == k && !about.parameters[k].known);
+    own.filter(|&k| !about.parameters[k].name.starts_with("static"))
+        .collect()
 }
 
 fn along_each(drive: &Drive<'_>, tolerance: f64) -> Tangent {
@@ -147,12 +149,11 @@ fn sensitivities_are_the_limit_of_differences() {
     assert!(worst.0 < 1e-6, "{worst:?}");
 }
 
-/// Where the tyre leaves the ground and comes back, its force goes as the root of time: no difference of rides is exact there,
-/// the less the more a parameter moves that moment.
+/// A higher cleat throws the wheel further, and bends the force of the tyre more.
 #[test]
-fn a_tyre_that_leaves_the_ground_does_not_spoil_them() {
+fn a_hard_impact_does_not_spoil_them() {
     let worst = worst(0.03);
-    assert!(worst.0 < 5e-4, "{worst:?}");
+    assert!(worst.0 < 5e-6, "{worst:?}");
 }
 
 /// What metrics are derived with: an error of this part of the signal for a parameter that is moved by all of itself.

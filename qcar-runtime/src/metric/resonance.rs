@@ -20,7 +20,7 @@ const BAND: [f64; 2] = [0.5, 50.0];
 const LINES: usize = 300;
 /// Lines of each further look between the neighbours of the largest, and how many looks there are.
 const CLOSER: usize = 9;
-const LOOKS: usize = 4;
+const LOOKS: usize = 6;
 
 /// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
 pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
