@@ -40,7 +40,7 @@ const PRINTS: &[&str] = &[
     "simulate models/campaigns/axle_a_rig",
     "simulate models/campaigns/silverbox",
     "sensitivity models/campaigns/axle_a_rig --sobol 200",
-    "sensitivity axle_a --list",
+    "sensitivity models/campaigns/axle_a_rig --list",
     "target models/targets/axle_a.toml",
     "compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig",
     "score models/campaigns/axle_a_rig",
