@@ -3,12 +3,12 @@
 //! A [`Metric`] is spelled the same wherever it is asked for: `body_x.peak`, `wheel_z.vdv`, `tyre.dynamic_load`,
 //! `suspension.travel`, `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] measures them of a model.
 
+// A model that tells of the travel of its suspension.
+mod watched;
 // Which there are.
 mod name;
 // What one says of a record.
 mod record;
-// A model that tells of the travel of its suspension.
-mod watched;
 // Vibrations and their derivatives.
 mod vibration;
 // Peaks of transmissibilities and theirs.
