@@ -33,22 +33,20 @@ fn open() -> Vec<usize> {
         .collect()
 }
 
-/// By how much each parameter is moved: half of that error of a difference which falls with it is that which grows.
-const PART: f64 = 2e-3;
-
-fn differences(ground: &Ground<'_>, values: &Values, parameter: usize) -> Vec<f64> {
+/// By fourth order, with each parameter moved by a part of itself.
+fn differences(ground: &Ground<'_>, values: &Values, parameter: usize, part: f64) -> Vec<f64> {
     let moved = |times: f64| {
         let mut moved = values.clone();
-        moved.set(parameter, values.as_slice()[parameter] * (1.0 + times * PART));
+        moved.set(parameter, values.as_slice()[parameter] * (1.0 + times * part));
         ground.measure(&moved).expect("it is measured")
     };
     let [up, down, far_up, far_down] = [1.0, -1.0, 2.0, -2.0].map(moved);
     (0..up.len())
-        .map(|at| (8.0 * (up[at] - down[at]) - (far_up[at] - far_down[at])) / (12.0 * PART))
+        .map(|at| (8.0 * (up[at] - down[at]) - (far_up[at] - far_down[at])) / (12.0 * part))
         .collect()
 }
 
-fn hold(chosen: fn(What) -> bool, tolerance: f64) {
+fn hold(chosen: fn(What) -> bool, part: f64, tolerance: f64) {
     let values = cleat::parameters();
     let mut ground = ground(&values);
     let metrics = 0..ground.metrics().len();
@@ -61,7 +59,7 @@ fn hold(chosen: fn(What) -> bool, tolerance: f64) {
     assert!(parameters.len() > 15 && !ground.readings().is_empty());
     let found = elasticities(&ground, &values, &parameters).expect("they are measured");
     for (k, &parameter) in parameters.iter().enumerate() {
-        for (at, difference) in differences(&ground, &values, parameter).into_iter().enumerate() {
+        for (at, difference) in differences(&ground, &values, parameter, part).into_iter().enumerate() {
             let (found, exact) = (found.elasticities[at][k], difference / found.values[at]);
             let name = &ground.metrics()[ground.readings()[at].metric].name;
             assert!(
@@ -73,16 +71,18 @@ fn hold(chosen: fn(What) -> bool, tolerance: f64) {
     }
 }
 
+/// Eigenvalues and magnitudes have some twelve digits, of which the difference leaves eight; a frequency of a peak is known
+/// less well.
 #[test]
 fn derivatives_of_vibrations_and_resonances_are_limits_of_differences() {
-    hold(|what| !what.is_ridden(), 1e-6);
+    hold(|what| !what.is_ridden(), 2e-4, 1e-5);
 }
 
 /// Differences of rides at the usual tolerance have an error of their own: 3e-4 of a peak over a step of 2e-3, were it random
 /// from ride to ride. It is not, and a tenth of it is left.
 #[test]
 fn derivatives_of_ridden_metrics_are_limits_of_differences() {
-    hold(What::is_ridden, 0.015);
+    hold(What::is_ridden, 2e-3, 0.015);
 }
 
 #[test]

@@ -46,7 +46,7 @@ pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: 
     }
     let at = (band[0] * band[1]).sqrt();
     // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
-    let step = 1e-4 * at;
+    let step = 3e-5 * at;
     let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
     let shape = |near: &Ratio| {
         let [left, middle, right] = [0, 1, 2].map(|line| near.value[line].norm());
