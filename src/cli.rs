@@ -7,7 +7,7 @@ use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, explore, export, fit, frf, import, inspect, kc, matrices,
-    new, patch, score, show, simulate, study,
+    new, patch, score, sensitivity, show, simulate, study, target,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -50,6 +50,8 @@ enum Verb {
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
     Explore(explore::Arguments),
+    Sensitivity(sensitivity::Arguments),
+    Target(target::Arguments),
     Discover(discover::Arguments),
     Study(study::Arguments),
     Compare(compare::Arguments),
@@ -80,6 +82,8 @@ impl Cli {
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Explore(arguments) => explore::run(&arguments),
+            Verb::Sensitivity(arguments) => sensitivity::run(&arguments),
+            Verb::Target(arguments) => target::run(&arguments),
             Verb::Discover(arguments) => discover::run(&arguments),
             Verb::Study(arguments) => study::run(&arguments),
             Verb::Compare(arguments) => compare::run(&arguments),

@@ -63,7 +63,7 @@ const COLUMNS: usize = 3;
 /// Space for the title above the panels and for the legend below them.
 const MARGIN: f64 = 26.0;
 
-const CSS: &str = "\
+pub(crate) const CSS: &str = "\
 svg{background:#fff}text{font:12px sans-serif;fill:#222}.title{font-weight:bold}\
 .grid{stroke:#ddd;stroke-width:1}.frame{fill:none;stroke:#888}\
 .curve{fill:none;stroke-width:1.6;stroke-linejoin:round}\
@@ -264,7 +264,7 @@ fn ticks(from: f64, to: f64) -> Vec<f64> {
     (first..=last).map(|n| n as f64 * step).collect()
 }
 
-fn text(out: &mut String, x: f64, y: f64, anchor: &str, class: &str, content: &str) {
+pub(crate) fn text(out: &mut String, x: f64, y: f64, anchor: &str, class: &str, content: &str) {
     let class = if class.is_empty() {
         String::new()
     } else {
@@ -277,7 +277,7 @@ fn text(out: &mut String, x: f64, y: f64, anchor: &str, class: &str, content: &s
     );
 }
 
-fn escaped(text: &str) -> String {
+pub(crate) fn escaped(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }
 

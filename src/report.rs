@@ -77,6 +77,18 @@ const COMPARISON: [&str; 10] = [
     include_str!("report/js/compare/comparison.js"),
 ];
 
+/// The sections of targets; the last one starts.
+const TARGETS: [&str; 8] = [
+    include_str!("report/js/target/wanted.js"),
+    include_str!("report/js/target/intervals.js"),
+    include_str!("report/js/target/dots.js"),
+    include_str!("report/js/target/front.js"),
+    include_str!("report/js/target/cuts.js"),
+    include_str!("report/js/target/tornado.js"),
+    include_str!("report/js/target/rides.js"),
+    include_str!("report/js/target/target.js"),
+];
+
 /// What a page reports.
 #[derive(Clone, Copy)]
 pub enum Report {
@@ -84,6 +96,8 @@ pub enum Report {
     Study,
     /// Two sides.
     Comparison,
+    /// What an axle must be.
+    Targets,
 }
 
 impl Report {
@@ -91,6 +105,7 @@ impl Report {
         match self {
             Report::Study => &STUDY,
             Report::Comparison => &COMPARISON,
+            Report::Targets => &TARGETS,
         }
     }
 }
@@ -146,7 +161,7 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let pages = [Report::Study, Report::Comparison]
+        let pages = [Report::Study, Report::Comparison, Report::Targets]
             .map(|report| page(report, "t", &0))
             .concat();
         for loader in [

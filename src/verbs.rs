@@ -42,6 +42,10 @@ pub mod score;
 pub mod simulate;
 // over cleats with many parameter sets,
 pub mod explore;
+// what its metrics depend on,
+pub mod sensitivity;
+// what it must be for them to be as they are wanted,
+pub mod target;
 // and what it lacks.
 pub mod discover;
 // All of that at once,

@@ -68,6 +68,16 @@ impl fmt::Display for Place {
     }
 }
 
+impl Place {
+    /// A key of a TOML file that begins so many bytes into its text.
+    pub fn in_text(text: &str, offset: usize, key: impl Into<String>) -> Self {
+        let before = &text[..offset.min(text.len())];
+        let line = before.matches('\n').count() + 1;
+        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
+        Place::Key(line, column, key.into())
+    }
+}
+
 impl Problem {
     /// A problem; see the fields of [`Problem`] for how to word it.
     pub fn new(

@@ -13,6 +13,8 @@ pub mod generated;
 pub mod error;
 // What a misspelt name was meant to be.
 pub mod spelling;
+// Random numbers, the same everywhere.
+pub mod random;
 // Files that are read no further than a limit.
 pub mod bounded;
 // How far long work is.
@@ -33,8 +35,6 @@ pub mod modes;
 pub mod least_squares;
 // The rig fit of thesis section 3.5.
 pub mod fit;
-// Random numbers, the same everywhere.
-mod random;
 // The road under a rolling tyre.
 pub mod road;
 // Contact geometry of the tyre.
@@ -47,6 +47,12 @@ pub mod simulate;
 pub mod compare;
 // Thousands of parameter sets, each driven over rides and measured.
 pub mod ensemble;
+// Numbers that say how an axle feels, and their derivatives.
+pub mod metric;
+// What they depend on.
+pub mod sensitivity;
+// What an axle must be for them to be as they are wanted.
+pub mod target;
 // Gradients of K&C curves.
 pub mod kc;
 // Where the measurement disagrees with the model, and what would explain it.

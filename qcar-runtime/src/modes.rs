@@ -40,18 +40,19 @@ const STILL: f64 = 1e-6;
 
 /// The vibrations of a model, lowest frequency first. What decays without vibrating is left out.
 pub fn modes(model: &(impl Model + ?Sized), values: &Values) -> Vec<Mode> {
-    let a = dynamics(model, values);
-    roots(&a).iter().map(|root| mode(model, &a, *root)).collect()
+    let a = dynamics(model, values.as_slice());
+    let roots = vibrations(&a).into_iter();
+    roots.map(|root| mode(model, &a, root)).collect()
 }
 
 /// Frequency (Hz) and damping ratio of each of them, without their shapes.
 pub fn frequencies(model: &(impl Model + ?Sized), values: &Values) -> Vec<(f64, f64)> {
-    let roots = roots(&dynamics(model, values)).into_iter();
+    let roots = vibrations(&dynamics(model, values.as_slice())).into_iter();
     roots.map(|root| (frequency(root), damping(root))).collect()
 }
 
-/// The eigenvalues that vibrate, lowest frequency first.
-fn roots(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
+/// The eigenvalue of each vibration with its imaginary part above zero, lowest frequency first.
+pub(crate) fn vibrations(a: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let vibrates = |root: &Complex<f64>| root.im > 1e-6 * root.norm() && root.norm() > TAU * RIGID;
     // Nothing moves in a model without a mass, and what is not a number has no Schur form to wait for.
     if a.is_empty() || a.iter().any(|value| !value.is_finite()) {
@@ -113,11 +114,11 @@ fn likeness(first: &Mode, second: &Mode) -> f64 {
 }
 
 /// A at rest.
-fn dynamics(model: &(impl Model + ?Sized), values: &Values) -> DMatrix<f64> {
+pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64> {
     let about = model.about();
     let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
     let mut nonzeros = vec![0.0; about.matrices.len()];
-    model.matrices(values.as_slice(), &x, &u, &mut nonzeros);
+    model.matrices(p, &x, &u, &mut nonzeros);
     let mut a = DMatrix::zeros(x.len(), x.len());
     for (entry, &value) in about.matrices.iter().zip(&nonzeros) {
         if entry.matrix == Matrix::A {
@@ -148,7 +149,7 @@ fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> 
 }
 
 /// The vector that `A - λ` takes to the smallest: inverse iteration from a shifted root.
-fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
+pub(crate) fn eigenvector(a: &DMatrix<f64>, root: Complex<f64>) -> DVector<Complex<f64>> {
     const SHIFT: f64 = 1e-9;
     const STEPS: usize = 3;
     let count = a.nrows();

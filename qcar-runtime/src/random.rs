@@ -1,7 +1,8 @@
 //! Random numbers that are the same on every machine, and for any number of threads.
 
 /// SplitMix64 (Steele, Lea and Flood 2014): one multiplication chain a number.
-pub(crate) struct SplitMix(u64);
+#[derive(Clone, Debug)]
+pub struct SplitMix(u64);
 
 impl SplitMix {
     /// The numbers of a seed.
@@ -19,6 +20,27 @@ impl SplitMix {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
+    /// A whole number below `count`, which is at least one.
+    pub fn below(&mut self, count: usize) -> usize {
+        ((self.uniform() * count as f64) as usize).min(count - 1)
+    }
+
+    /// Points of a unit cube, of which each stands alone in its slice along every axis: a Latin hypercube (McKay, Beckman and
+    /// Conover, Technometrics 21, 1979).
+    pub fn hypercube(&mut self, points: usize, axes: usize) -> Vec<Vec<f64>> {
+        let mut all = vec![vec![0.0; axes]; points];
+        for axis in 0..axes {
+            let mut slices: Vec<usize> = (0..points).collect();
+            for last in (1..points).rev() {
+                slices.swap(last, self.below(last + 1));
+            }
+            for (point, slice) in all.iter_mut().zip(slices) {
+                point[axis] = (slice as f64 + self.uniform()) / points as f64;
+            }
+        }
+        all
+    }
+
     /// Sixty-four random bits.
     pub fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -26,5 +48,20 @@ impl SplitMix {
         z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         z ^ (z >> 31)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::SplitMix;
+
+    #[test]
+    fn every_slice_holds_one_point() {
+        let points = SplitMix::new(7).hypercube(50, 3);
+        for axis in 0..3 {
+            let mut slices: Vec<usize> = points.iter().map(|point| (point[axis] * 50.0) as usize).collect();
+            slices.sort_unstable();
+            assert_eq!(slices, (0..50).collect::<Vec<_>>());
+        }
     }
 }

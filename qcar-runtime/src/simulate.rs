@@ -24,6 +24,8 @@ mod shortcut;
 mod recorder;
 // Rides over a road.
 mod ride;
+// How they change with the parameters.
+mod tangent;
 // Those that a campaign has measured.
 mod cleat;
 // Those of the thesis.
@@ -44,3 +46,4 @@ pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};
 pub use standard::Standard;
+pub use tangent::{Tangent, tangent};

@@ -333,10 +333,7 @@ impl Reader<'_> {
     }
 
     fn place(&self, offset: usize, key: &str) -> Place {
-        let before = &self.text[..offset.min(self.text.len())];
-        let line_start = before.rfind('\n').map_or(0, |at| at + 1);
-        let column = before[line_start..].chars().count() + 1;
-        Place::Key(before.matches('\n').count() + 1, column, key.into())
+        Place::in_text(self.text, offset, key)
     }
 }
 

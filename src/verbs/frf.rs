@@ -11,6 +11,7 @@ use qcar_runtime::model::{About, Channel, Input, InputKind, Model, Quantity, Sig
 use qcar_runtime::response::Response;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::{Ratio, between};
+use qcar_runtime::response::signal::driver;
 use serde::Serialize;
 
 use crate::catalogue;
@@ -239,13 +240,8 @@ impl<'a> Excited<'a> {
 /// # Errors
 /// Nothing along that axis.
 pub fn excitation(about: &About, channel: &Channel) -> Result<usize, Failure> {
-    let Signal { location, axis, .. } = &channel.denominator;
-    let along = || about.excitations.iter().enumerate().filter(|(_, of)| of.axis == *axis);
-    let found = along()
-        .find(|(_, of)| of.name == *location)
-        .or_else(|| along().find(|(_, of)| of.road))
-        .or_else(|| along().next());
-    found.map(|(at, _)| at).ok_or_else(|| {
+    driver(about, channel).ok_or_else(|| {
+        let axis = &channel.denominator.axis;
         let found = format!("nothing drives `{}` along {axis}", channel.name);
         let remedy = "add `road pad;` or `force f on …;` to that direction of the model file";
         flag("MODEL", found, "a road, a prescribed motion or a force", remedy).into()

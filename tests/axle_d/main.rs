@@ -5,3 +5,5 @@ mod cleat;
 
 mod cleat_run;
 mod kc_rig;
+mod metrics;
+mod tangent;

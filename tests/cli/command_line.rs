@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 17] = [
+const VERBS: [&str; 19] = [
     "new",
     "import",
     "check",
@@ -19,6 +19,8 @@ const VERBS: [&str; 17] = [
     "fit",
     "kc",
     "simulate",
+    "sensitivity",
+    "target",
     "score",
     "effects",
     "patch",

@@ -47,6 +47,11 @@ fn verbs_print_the_keys_that_are_documented() {
         "compare",
         &result(&format!("compare axle_a axle_a --params {AXLE} --set m_wheel=40")),
     );
+    agree(
+        "sensitivity",
+        &result(&format!("sensitivity axle_a --campaign {AXLE} --metrics body_x.peak")),
+    );
+    agree("target", &result("target models/targets/axle_a.toml"));
     let response = result("frf quarter_car --frequencies 1:2:2");
     agree("frf", &response["channels"]["pad_to_body"]);
 }

@@ -17,6 +17,7 @@ mod readme;
 mod records;
 mod rides;
 mod rigs;
+mod targets;
 mod terminal;
 mod trials;
 mod tutorial;

@@ -325,6 +325,23 @@ fn a_comparison_is_whole_in_a_browser() {
     }
 }
 
+/// What of a report of targets is drawn.
+const TARGETS: [&str; 3] = ["front", "cut", "ride"];
+
+#[test]
+fn targets_are_whole_in_a_browser() {
+    let Some(browser) = browser_or_word() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    qcar(&["target", "models/targets/axle_a.toml"], folder.path());
+    let page = page_in(folder.path());
+    for (width, theme) in PAGES {
+        let found = look(&browser, &page, width, theme);
+        let place = format!("{width} px, {theme}: {found}");
+        check(&found, (width, &place), &TARGETS);
+        assert_eq!(found["sections"].as_array().unwrap().len(), 6, "{place}");
+    }
+}
+
 /// The report of a comparison.
 fn compared(subject: &str) -> String {
     let folder = tempfile::tempdir().unwrap();

@@ -82,10 +82,7 @@ impl Document {
     }
 
     fn place(&self, span: Range<usize>, key: String) -> Place {
-        let before = &self.text[..span.start.min(self.text.len())];
-        let line = before.matches('\n').count() + 1;
-        let column = before.rsplit('\n').next().unwrap_or_default().chars().count() + 1;
-        Place::Key(line, column, key)
+        Place::in_text(&self.text, span.start, key)
     }
 
     fn note(&self, span: Range<usize>, key: String, found: String, expected: String, remedy: String) {

@@ -1,7 +1,7 @@
 //! Where a measured signal is found among the rows of a response.
 
 use crate::error::{Place, Problem};
-use crate::model::{About, Excitation, Quantity, ResponseLayout, Signal, SignalKind};
+use crate::model::{About, Channel, Excitation, Quantity, ResponseLayout, Signal, SignalKind};
 use std::path::Path;
 use thiserror::Error;
 
@@ -95,6 +95,24 @@ impl SignalError {
         };
         Problem::new(file, Place::Name(channel.to_owned()), found, expected, remedy)
     }
+}
+
+/// The excitation that drives a channel: that which it is a ratio to, else the road along the same axis, else whatever
+/// acts there.
+pub fn driver(about: &About, channel: &Channel) -> Option<usize> {
+    let below = &channel.denominator;
+    let along = || {
+        about
+            .excitations
+            .iter()
+            .enumerate()
+            .filter(|(_, own)| own.axis == below.axis)
+    };
+    let named = along().find(|(_, own)| own.name == below.location);
+    let found = named
+        .or_else(|| along().find(|(_, own)| own.road))
+        .or_else(|| along().next());
+    found.map(|(place, _)| place)
 }
 
 /// Finds `signal` in the response to `excitation`.

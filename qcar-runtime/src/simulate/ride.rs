@@ -152,7 +152,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
 const SAMPLES_PER_PATCH: f64 = 4.0;
 
 impl Drive<'_> {
-    fn check(&self, tyre: &Tyre) -> Result<(), SimulateError> {
+    pub(super) fn check(&self, tyre: &Tyre) -> Result<(), SimulateError> {
         let speed = positive("the speed", self.speed, "m/s")?;
         let rate = positive("the sample rate", self.sample_rate, "Hz")?;
         positive("the number of samples", self.samples as f64, "")?;
@@ -172,13 +172,13 @@ impl Drive<'_> {
     }
 
     /// When the whole circle of the tyre stands before the first point of the road, s.
-    fn start(&self, tyre: &Tyre) -> f64 {
+    pub(super) fn start(&self, tyre: &Tyre) -> f64 {
         (self.road.extent()[0] - tyre.radius()) / self.speed
     }
 
     /// When the circle of the tyre may meet ground that is not level any more, s: until then a car at rest rests.
     /// On a road that is level for ever it never does, and nothing is taken for granted.
-    fn reaches(&self, tyre: &Tyre) -> f64 {
+    pub(super) fn reaches(&self, tyre: &Tyre) -> f64 {
         let vertices = self.road.vertices();
         let uneven = vertices.windows(2).find(|pair| pair[0][1] != pair[1][1]);
         // However high the road rises further on, the circle at rest meets it no earlier than at that height.
@@ -191,7 +191,7 @@ impl Drive<'_> {
     ///
     /// A circle feels what is within its static patch, so a quarter of that; a point feels an obstacle only while it is
     /// on it, so that several steps must fall on the shortest.
-    fn longest_step(&self, tyre: &Tyre) -> f64 {
+    pub(super) fn longest_step(&self, tyre: &Tyre) -> f64 {
         let length = match tyre.geometry() {
             Geometry::Point => shortest_obstacle(self.road).min(tyre.patch()),
             Geometry::Area | Geometry::Radial => tyre.patch(),
@@ -201,7 +201,7 @@ impl Drive<'_> {
 }
 
 /// A point contact jumps at a vertical step of the road, and the accelerations with it.
-fn oversampling(tyre: &Tyre) -> usize {
+pub(super) fn oversampling(tyre: &Tyre) -> usize {
     match tyre.geometry() {
         Geometry::Point => AntiAlias::JUMPING,
         Geometry::Area | Geometry::Radial => AntiAlias::CONTINUOUS,

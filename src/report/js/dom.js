@@ -100,3 +100,14 @@ function equationSheet(text) {
 function answer(title, ...lines) {
   return h('div', { class: 'answer' }, h('h3', {}, title), lines);
 }
+
+// A change as a bar to the right of zero, or to its left.
+function changeBar(share, most) {
+  if (share === null || !(most > 0)) return '';
+  const length = (50 * Math.abs(share)) / most;
+  return h(
+    'span',
+    { class: 'delta', 'aria-hidden': 'true' },
+    h('span', { style: `left:${share < 0 ? 50 - length : 50}%;width:${length}%` }),
+  );
+}

@@ -70,14 +70,3 @@ function moveTable(title, rows, known, most) {
 function described({ name, doc }) {
   return [name, h('span', { class: 'doc' }, doc)];
 }
-
-// A change as a bar to the right of zero, or to its left.
-function changeBar(share, most) {
-  if (share === null || !(most > 0)) return '';
-  const length = (50 * Math.abs(share)) / most;
-  return h(
-    'span',
-    { class: 'delta', 'aria-hidden': 'true' },
-    h('span', { style: `left:${share < 0 ? 50 - length : 50}%;width:${length}%` }),
-  );
-}

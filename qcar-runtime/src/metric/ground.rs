@@ -1,0 +1,344 @@
+//! All metrics of a model: driven over courses, excited and left alone.
+
+use std::collections::BTreeSet;
+
+use rayon::prelude::*;
+
+use super::course::Course;
+use super::name::{Measure, Metric, What, metrics};
+use super::record::{Impact, Seen};
+use super::watched::Watched;
+use super::{resonance, vibration};
+use crate::campaign::RoleNames;
+use crate::model::{About, Model, Quantity, Signal, SignalKind};
+use crate::response::parameters::Values;
+use crate::roles::Roles;
+use crate::simulate::{Car, Settings, SimulateError, Tangent, Variant, ride, tangent};
+use crate::tyre::Tyre;
+
+/// Where metrics of a model are measured.
+pub struct Ground<'a> {
+    model: Watched<'a>,
+    /// The tyre and its static load, N; none where nothing rolls.
+    tyre: Option<(Tyre, f64)>,
+    courses: Vec<Course>,
+    metrics: Vec<Metric>,
+    readings: Vec<Reading>,
+    /// Place of the output that feels an obstacle first.
+    wheel: Option<usize>,
+}
+
+/// Accelerations of a ride.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace {
+    /// When the wheel feels the obstacle, s.
+    pub onset: f64,
+    /// Of each mass, m/s².
+    pub accelerations: Vec<(Signal, Vec<f64>)>,
+}
+
+/// One metric on one run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Place of the metric.
+    pub metric: usize,
+    /// Place of the course, for what is ridden.
+    pub course: Option<usize>,
+}
+
+/// Values, and how they change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slopes {
+    /// Of each reading.
+    pub values: Vec<f64>,
+    /// For each reading its derivative along each direction.
+    pub slopes: Vec<Vec<f64>>,
+}
+
+/// Why a design has no value of a metric.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[expect(missing_docs, reason = "the message says it")]
+pub enum MetricError {
+    #[error("run `{course}`: {reason}")]
+    Ride { course: String, reason: SimulateError },
+    #[error(
+        "run `{course}`: the wheel is not thrown up, or the record ends within 0.1 s of it; drive over an obstacle for longer"
+    )]
+    NoImpact { course: String },
+    #[error("`{metric}`: the model has {found} vibrations with these parameters")]
+    NoVibration { metric: String, found: usize },
+    #[error("`{metric}`: nothing drives this channel")]
+    NotDriven { metric: String },
+}
+
+impl<'a> Ground<'a> {
+    /// A ground on which nothing is measured yet; [`Ground::choose`] says what.
+    ///
+    /// `values` tell how many vibrations there are.
+    pub fn new(
+        model: &'a dyn Model,
+        values: &Values,
+        names: &RoleNames,
+        tyre: Option<(Tyre, f64)>,
+        courses: Vec<Course>,
+    ) -> Self {
+        let model = Watched::new(model, names);
+        let vibrations = vibration::of(&model, values.as_slice(), &[]).len();
+        let mut metrics = metrics(model.about(), vibrations);
+        metrics.retain(|metric| tyre.is_some() || !metric.what.is_ridden());
+        let wheel = Roles::of(model.about(), names)
+            .ok()
+            .and_then(|roles| felt_first(model.about(), &roles));
+        Self {
+            model,
+            tyre,
+            courses,
+            metrics,
+            readings: Vec::new(),
+            wheel,
+        }
+    }
+
+    /// All metrics that the model has.
+    pub fn metrics(&self) -> &[Metric] {
+        &self.metrics
+    }
+
+    /// What is driven over.
+    pub fn courses(&self) -> &[Course] {
+        &self.courses
+    }
+
+    /// The model's facts, with the output that was added.
+    pub fn about(&self) -> &About {
+        self.model.about()
+    }
+
+    /// What is measured, in the order of all results.
+    pub fn readings(&self) -> &[Reading] {
+        &self.readings
+    }
+
+    /// Measures these from now on.
+    pub fn choose(&mut self, readings: Vec<Reading>) {
+        self.readings = readings;
+    }
+
+    /// The readings of a metric: where it is ridden, on each course, or where it is of an impact, on each with an obstacle.
+    pub fn readings_of(&self, metric: usize) -> Vec<Reading> {
+        let of_impact = matches!(
+            self.metrics[metric].what,
+            What::Ride(_, Measure::Peak | Measure::AfterShake)
+        );
+        if !self.metrics[metric].what.is_ridden() {
+            return vec![Reading { metric, course: None }];
+        }
+        let courses = self.courses.iter().enumerate();
+        let fitting = courses.filter(|(_, course)| course.obstacle || !of_impact);
+        fitting
+            .map(|(place, _)| Reading {
+                metric,
+                course: Some(place),
+            })
+            .collect()
+    }
+
+    /// The value of each reading.
+    ///
+    /// # Errors
+    /// What cannot be ridden, or is not there with these parameters.
+    pub fn measure(&self, values: &Values) -> Result<Vec<f64>, MetricError> {
+        Ok(self.measure_with(values, &[])?.values)
+    }
+
+    /// The value of each reading, and its derivative along each direction of the parameters, which has an entry for every
+    /// parameter, zero or the same for those that are tied.
+    ///
+    /// # Errors
+    /// As [`Ground::measure`].
+    pub fn measure_with(&self, values: &Values, directions: &[Vec<f64>]) -> Result<Slopes, MetricError> {
+        let courses: BTreeSet<usize> = self.readings.iter().filter_map(|reading| reading.course).collect();
+        let courses: Vec<usize> = courses.into_iter().collect();
+        let ridden = courses
+            .par_iter()
+            .map(|&course| Ok((course, self.drive(values, course, directions)?)));
+        let ridden: Vec<(usize, Signals)> = ridden.collect::<Result<_, MetricError>>()?;
+        let at_rest = AtRest::new(self, values, directions);
+        let mut found = Slopes {
+            values: Vec::new(),
+            slopes: Vec::new(),
+        };
+        for reading in &self.readings {
+            let (value, slopes) = match (self.metrics[reading.metric].what, reading.course) {
+                (What::Ride(signal, measure), Some(course)) => {
+                    let (_, signals) = ridden
+                        .iter()
+                        .find(|(own, _)| *own == course)
+                        .expect("every course is ridden");
+                    let seen = Seen::new(measure, &signals.values[signal], signals.rate, &signals.impact);
+                    let slope = |slopes: &Vec<Vec<f64>>| seen.slope(&slopes[signal], &signals.impact);
+                    (seen.value(), signals.slopes.iter().map(slope).collect())
+                }
+                _ => at_rest.find(self, values, &self.metrics[reading.metric], directions)?,
+            };
+            found.values.push(value);
+            found.slopes.push(slopes);
+        }
+        Ok(found)
+    }
+
+    fn drive(&self, values: &Values, course: usize, directions: &[Vec<f64>]) -> Result<Signals, MetricError> {
+        let course = &self.courses[course];
+        let failed = |reason| MetricError::Ride {
+            course: course.name.clone(),
+            reason,
+        };
+        let Tangent { signals, slopes } = self.ride(values, course, directions).map_err(failed)?;
+        let impact = match self.wheel {
+            _ if !course.obstacle => Some(Impact::none(course.samples)),
+            Some(wheel) => Impact::of(&signals[wheel], course.sample_rate),
+            None => None,
+        };
+        let impact = impact.ok_or_else(|| MetricError::NoImpact {
+            course: course.name.clone(),
+        })?;
+        Ok(Signals {
+            values: signals,
+            slopes,
+            impact,
+            rate: course.sample_rate,
+        })
+    }
+
+    /// The signals of a ride and, for each direction, their derivatives: outputs, then the force of the tyre.
+    fn ride(&self, values: &Values, course: &Course, directions: &[Vec<f64>]) -> Result<Tangent, SimulateError> {
+        let (tyre, load) = self.tyre.expect("what is ridden has a tyre");
+        // All other outputs are rates of states, which a ride need not ask for.
+        let unasked = self.model.added().filter(|added| !self.reads(*added));
+        let car = Car {
+            model: if unasked.is_some() {
+                self.model.inner()
+            } else {
+                &self.model as &dyn Model
+            },
+            parameters: values.as_slice(),
+            tyre,
+            load,
+            variant: Variant::Complete,
+        };
+        let (drive, settings) = (course.drive(), Settings::default());
+        let mut found = if directions.is_empty() {
+            let ride = ride(&car, &drive, &settings)?;
+            let [vertical, _] = ride.force;
+            Tangent {
+                signals: ride.outputs.into_iter().chain([vertical]).collect(),
+                slopes: Vec::new(),
+            }
+        } else {
+            tangent(&car, &drive, &settings, directions)?
+        };
+        if let Some(added) = unasked {
+            let all = found.slopes.iter_mut().chain([&mut found.signals]);
+            all.for_each(|own| own.insert(added, Vec::new()));
+        }
+        Ok(found)
+    }
+
+    /// What each mass does on a course.
+    ///
+    /// # Errors
+    /// As [`Ground::measure`].
+    pub fn trace(&self, values: &Values, course: usize) -> Result<Trace, MetricError> {
+        let signals = self.drive(values, course, &[])?;
+        let outputs = self.about().outputs.iter().zip(signals.values);
+        let accelerations = outputs.filter(|(own, _)| own.signal.kind == SignalKind::Motion(Quantity::Acceleration));
+        Ok(Trace {
+            onset: signals.impact.onset as f64 / signals.rate,
+            accelerations: accelerations
+                .map(|(own, values)| (own.signal.clone(), values))
+                .collect(),
+        })
+    }
+
+    /// True where a reading is of an output.
+    fn reads(&self, output: usize) -> bool {
+        let what = |reading: &Reading| self.metrics[reading.metric].what;
+        self.readings
+            .iter()
+            .any(|own| matches!(what(own), What::Ride(of, _) if of == output))
+    }
+}
+
+/// The output that feels an obstacle first: the acceleration of the wheel, else of the next mass.
+fn felt_first(about: &About, roles: &Roles) -> Option<usize> {
+    let place = |mass: &str| {
+        let signal = Signal {
+            location: mass.to_string().into(),
+            axis: roles.axis.clone().into(),
+            kind: SignalKind::Motion(Quantity::Acceleration),
+        };
+        about.outputs.iter().position(|output| output.signal == signal)
+    };
+    roles.feeling().find_map(place)
+}
+
+/// What a ride gives.
+struct Signals {
+    values: Vec<Vec<f64>>,
+    /// For each direction.
+    slopes: Vec<Vec<Vec<f64>>>,
+    impact: Impact,
+    rate: f64,
+}
+
+/// What is known without a ride.
+struct AtRest {
+    vibrations: Vec<vibration::Vibration>,
+}
+
+impl AtRest {
+    fn new(ground: &Ground<'_>, values: &Values, directions: &[Vec<f64>]) -> Self {
+        let wanted = |reading: &Reading| {
+            let what = ground.metrics[reading.metric].what;
+            matches!(what, What::Frequency(_) | What::Damping(_))
+        };
+        let vibrations = if ground.readings.iter().any(wanted) {
+            vibration::of(&ground.model, values.as_slice(), directions)
+        } else {
+            Vec::new()
+        };
+        Self { vibrations }
+    }
+
+    fn find(
+        &self,
+        ground: &Ground<'_>,
+        values: &Values,
+        metric: &Metric,
+        directions: &[Vec<f64>],
+    ) -> Result<(f64, Vec<f64>), MetricError> {
+        let vibration = |place: usize, which: usize| {
+            let own = self.vibrations.get(place).ok_or_else(|| MetricError::NoVibration {
+                metric: metric.name.clone(),
+                found: self.vibrations.len(),
+            })?;
+            Ok((own.value[which], own.slopes.iter().map(|slope| slope[which]).collect()))
+        };
+        let resonance = |channel: usize, which: usize| {
+            let channel = &ground.about().channels[channel];
+            let own = resonance::of(&ground.model, values, channel, !directions.is_empty());
+            let own = own.ok_or_else(|| MetricError::NotDriven {
+                metric: metric.name.clone(),
+            })?;
+            let along = |direction: &Vec<f64>| own.slopes.iter().map(|(k, slope)| slope[which] * direction[*k]).sum();
+            Ok((own.value[which], directions.iter().map(along).collect()))
+        };
+        match metric.what {
+            What::Frequency(place) => vibration(place, 0),
+            What::Damping(place) => vibration(place, 1),
+            What::Peak(channel) => resonance(channel, 0),
+            What::PeakFrequency(channel) => resonance(channel, 1),
+            What::Ride(..) => unreachable!("a ride has a course"),
+        }
+    }
+}

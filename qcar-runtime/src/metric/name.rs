@@ -1,0 +1,174 @@
+//! Which metrics a model has, and what they are called.
+
+use crate::campaign::RoleNames;
+use crate::compare::Weighting;
+use crate::model::{About, Quantity, SignalKind};
+use crate::roles::Roles;
+
+/// A number that says how an axle feels.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Metric {
+    /// `body_x.peak`.
+    pub name: String,
+    /// SI.
+    pub unit: &'static str,
+    /// What it is, in words.
+    pub doc: String,
+    /// How it is found.
+    pub what: What,
+}
+
+/// What a metric is of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What {
+    /// A record of a ride: the output with this place, or behind the outputs the force of the tyre.
+    Ride(usize, Measure),
+    /// The largest magnitude of the channel with this place.
+    Peak(usize),
+    /// The frequency of that.
+    PeakFrequency(usize),
+    /// Natural frequency of the vibration with this place, lowest first.
+    Frequency(usize),
+    /// Its damping ratio.
+    Damping(usize),
+}
+
+/// What is measured of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// Largest magnitude within the impact.
+    Peak,
+    /// Root mean square after the impact.
+    AfterShake,
+    /// Root mean square of the whole record, weighted as ISO 2631-1 has it.
+    WeightedRms(Weighting),
+    /// Vibration dose value of the whole record, weighted alike.
+    Dose(Weighting),
+    /// Root mean square of what differs from the first sample, from the onset on.
+    Variation,
+    /// Largest magnitude of that.
+    Excursion,
+}
+
+impl What {
+    /// True where the metric has a value for each run.
+    pub fn is_ridden(self) -> bool {
+        matches!(self, What::Ride(..))
+    }
+}
+
+/// All metrics of a model: those of rides where it has a tyre to roll on.
+///
+/// Outputs have the places that they have in a model that is [watched](super::Ground); `vibrations` is how many modes it has.
+pub fn metrics(about: &About, vibrations: usize) -> Vec<Metric> {
+    let mut all = Vec::new();
+    if let Ok(roles) = Roles::of(about, &RoleNames::default()) {
+        all.extend(of_accelerations(about));
+        let force = about.outputs.len();
+        all.push(Metric {
+            name: "tyre.dynamic_load".into(),
+            unit: "N",
+            doc: "root mean square of the vertical tyre force less its static value, from the onset on".into(),
+            what: What::Ride(force, Measure::Variation),
+        });
+        if let Some(travel) = about
+            .outputs
+            .iter()
+            .position(|output| output.name == super::watched::TRAVEL)
+        {
+            all.push(Metric {
+                name: "suspension.travel".into(),
+                unit: "m",
+                doc: format!("largest change of the height of `{}` over the body", roles.wheel),
+                what: What::Ride(travel, Measure::Excursion),
+            });
+        }
+    }
+    all.extend(of_channels(about));
+    all.extend((0..vibrations).flat_map(of_vibration));
+    all
+}
+
+fn of_accelerations(about: &About) -> impl Iterator<Item = Metric> {
+    let outputs = about.outputs.iter().enumerate();
+    let accelerations = outputs.filter(|(_, own)| own.signal.kind == SignalKind::Motion(Quantity::Acceleration));
+    accelerations.flat_map(|(place, output)| {
+        let (location, axis) = (&output.signal.location, &output.signal.axis);
+        let (weighting, called) = if *axis == "z" {
+            (Weighting::Wk, "Wk")
+        } else {
+            (Weighting::Wd, "Wd")
+        };
+        let metric = |suffix: &str, unit, doc: String, measure| Metric {
+            name: format!("{location}_{axis}.{suffix}"),
+            unit,
+            doc: format!("{doc} of the acceleration of `{location}` along {axis}"),
+            what: What::Ride(place, measure),
+        };
+        let weighted = |what: &str| format!("{what}, weighted by {called} of ISO 2631-1,");
+        [
+            metric(
+                "peak",
+                "m/s^2",
+                "largest magnitude within the impact".into(),
+                Measure::Peak,
+            ),
+            metric(
+                "after_shake",
+                "m/s^2",
+                "root mean square after the impact".into(),
+                Measure::AfterShake,
+            ),
+            metric(
+                "weighted_rms",
+                "m/s^2",
+                weighted("root mean square"),
+                Measure::WeightedRms(weighting),
+            ),
+            metric(
+                "vdv",
+                "m/s^1.75",
+                weighted("vibration dose value"),
+                Measure::Dose(weighting),
+            ),
+        ]
+    })
+}
+
+fn of_channels(about: &About) -> impl Iterator<Item = Metric> {
+    about.channels.iter().enumerate().flat_map(|(place, channel)| {
+        let metric = |suffix: &str, unit, doc: &str, what| Metric {
+            name: format!("{}.{suffix}", channel.name),
+            unit,
+            doc: format!("{doc} of the channel `{}`", channel.name),
+            what,
+        };
+        [
+            metric("peak", "1", "largest magnitude", What::Peak(place)),
+            metric(
+                "peak_frequency",
+                "Hz",
+                "frequency of the largest magnitude",
+                What::PeakFrequency(place),
+            ),
+        ]
+    })
+}
+
+fn of_vibration(place: usize) -> [Metric; 2] {
+    let number = place + 1;
+    [
+        Metric {
+            name: format!("mode.{number}.frequency"),
+            unit: "Hz",
+            doc: format!("natural frequency of vibration {number}, lowest first"),
+            what: What::Frequency(place),
+        },
+        Metric {
+            name: format!("mode.{number}.damping"),
+            unit: "1",
+            doc: format!("damping ratio of vibration {number}"),
+            what: What::Damping(place),
+        },
+    ]
+}

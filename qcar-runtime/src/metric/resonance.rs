@@ -1,0 +1,88 @@
+//! The largest magnitude of a channel over frequency, where it stands, and how both change.
+
+use nalgebra::Complex;
+
+use crate::model::{Channel, Model};
+use crate::response::Response;
+use crate::response::parameters::Values;
+use crate::response::ratio::{Ratio, between};
+use crate::response::signal::driver;
+
+/// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
+pub(super) struct Resonance {
+    pub value: [f64; 2],
+    pub slopes: Vec<(usize, [f64; 2])>,
+}
+
+/// Where peaks are looked for, Hz: what a body and its wheel do.
+const BAND: [f64; 2] = [0.5, 50.0];
+/// Lines of the first look: closer than the width of a peak of 1 % damping.
+const LINES: usize = 300;
+/// Lines of each further look between the neighbours of the largest, and how many looks there are.
+const CLOSER: usize = 9;
+const LOOKS: usize = 6;
+
+/// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
+pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
+    let excitation = driver(model.about(), channel)?;
+    let ratio = |frequency: &[f64], jacobian: bool| {
+        let mut response = Response::new(model, excitation, frequency);
+        if jacobian {
+            response.evaluate(values.as_slice());
+        } else {
+            response.evaluate_values(values.as_slice());
+        }
+        between(&response, values, &channel.numerator, &channel.denominator).ok()
+    };
+    let mut band = BAND;
+    let mut lines = LINES;
+    for _ in 0..=LOOKS {
+        let frequency = spaced(band, lines);
+        let value = ratio(&frequency, false)?.value;
+        let largest = value.iter().map(|value| value.norm()).enumerate();
+        let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        band = [frequency[at.saturating_sub(1)], frequency[(at + 1).min(lines - 1)]];
+        lines = CLOSER;
+    }
+    let at = (band[0] * band[1]).sqrt();
+    // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
+    let step = 3e-5 * at;
+    let near = |at: f64, jacobian: bool| ratio(&[at - step, at, at + step], jacobian);
+    let shape = |near: &Ratio| {
+        let [left, middle, right] = [0, 1, 2].map(|line| near.value[line].norm());
+        [
+            (right - left) / (2.0 * step),
+            (left - 2.0 * middle + right) / (step * step),
+        ]
+    };
+    let [rise, bend] = shape(&near(at, false)?);
+    let is_inside = at > BAND[0] * 1.001 && at < BAND[1] / 1.001 && bend < 0.0;
+    // Magnitudes about the peak are alike to rounding long before frequencies are: the rest of the way is that to the
+    // root of the derivative.
+    let at = if is_inside { at - rise / bend } else { at };
+    let near = near(at, wanted)?;
+    let [_, bend] = shape(&near);
+    let size: Vec<f64> = near.value.iter().map(|value| value.norm()).collect();
+    let slope = |slopes: &[Complex<f64>]| {
+        let by = |line: usize| (near.value[line].conj() * slopes[line]).re / size[line];
+        let shift = if is_inside {
+            -(by(2) - by(0)) / (2.0 * step) / bend
+        } else {
+            0.0
+        };
+        [by(1), shift]
+    };
+    Some(Resonance {
+        value: [size[1], at],
+        slopes: near
+            .jacobian
+            .iter()
+            .map(|(parameter, slopes)| (*parameter, slope(slopes)))
+            .collect(),
+    })
+}
+
+fn spaced([from, to]: [f64; 2], lines: usize) -> Vec<f64> {
+    let ratio = (to / from).powf(1.0 / (lines - 1) as f64);
+    (0..lines).map(|line| from * ratio.powi(line as i32)).collect()
+}

@@ -1,0 +1,59 @@
+//! Natural frequencies and damping ratios, with their derivatives.
+
+use nalgebra::{Complex, DMatrix};
+use std::f64::consts::TAU;
+
+use crate::model::{Matrix, Model};
+use crate::modes::{dynamics, eigenvector, vibrations};
+
+/// A vibration: `[frequency in Hz, damping ratio]`, and the same for their derivative along each direction.
+pub(super) struct Vibration {
+    pub value: [f64; 2],
+    pub slopes: Vec<[f64; 2]>,
+}
+
+/// The vibrations of a model, lowest frequency first, and how they change along directions of the parameters.
+///
+/// An eigenvalue moves by `wᵀ dA v / wᵀ v`, with its right and left vectors (Fox and Kapoor, AIAA J. 6, 1968).
+pub(super) fn of(model: &dyn Model, p: &[f64], directions: &[Vec<f64>]) -> Vec<Vibration> {
+    let a = dynamics(model, p);
+    let moved: Vec<DMatrix<f64>> = directions.iter().map(|direction| change(model, p, direction)).collect();
+    let transposed = a.transpose();
+    let vibration = |root: Complex<f64>| {
+        let slopes = if moved.is_empty() {
+            Vec::new()
+        } else {
+            let (right, left) = (eigenvector(&a, root), eigenvector(&transposed, root));
+            let scale = left.dot(&right);
+            let by = |da: &DMatrix<f64>| slope(root, left.dot(&(da.map(Complex::from) * &right)) / scale);
+            moved.iter().map(by).collect()
+        };
+        Vibration {
+            value: [root.norm() / TAU, -root.re / root.norm()],
+            slopes,
+        }
+    };
+    vibrations(&a).into_iter().map(vibration).collect()
+}
+
+/// How frequency and damping ratio change with their eigenvalue.
+fn slope(root: Complex<f64>, moved: Complex<f64>) -> [f64; 2] {
+    let size = root.norm();
+    let grown = (root.conj() * moved).re / size;
+    [grown / TAU, (-moved.re + root.re * grown / size) / size]
+}
+
+/// The derivative of A at rest along a direction.
+fn change(model: &dyn Model, p: &[f64], direction: &[f64]) -> DMatrix<f64> {
+    let about = model.about();
+    let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
+    let mut nonzeros = vec![0.0; about.sensitivities.len()];
+    model.sensitivities(p, &x, &u, &mut nonzeros);
+    let mut change = DMatrix::zeros(x.len(), x.len());
+    for ((entry, parameter), &value) in about.sensitivities.iter().zip(&nonzeros) {
+        if entry.matrix == Matrix::A {
+            change[(usize::from(entry.row), usize::from(entry.column))] += value * direction[usize::from(*parameter)];
+        }
+    }
+    change
+}

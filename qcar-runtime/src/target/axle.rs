@@ -1,0 +1,85 @@
+//! An axle on its ground as designs: knobs move its parameters, readings are its results.
+
+use super::task::Designs;
+use crate::metric::Ground;
+use crate::response::parameters::Values;
+
+/// What a knob does to a parameter: the parameter is the knob times a factor, plus a constant.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Move {
+    /// Place of the knob.
+    pub knob: usize,
+    /// Place of the parameter, which leads its ties.
+    pub parameter: usize,
+    /// How much it moves with the knob.
+    pub factor: f64,
+    /// What is added.
+    pub constant: f64,
+}
+
+/// An axle whose parameters are moved.
+pub struct Axle<'a> {
+    /// What is measured.
+    pub ground: &'a Ground<'a>,
+    /// What does not move.
+    pub values: Values,
+    /// What does.
+    pub moves: Vec<Move>,
+    /// How many there are.
+    pub knobs: usize,
+    /// Means of readings, by their places: further results behind the readings.
+    pub means: Vec<Vec<usize>>,
+}
+
+impl Axle<'_> {
+    /// The parameters of a design.
+    pub fn values_of(&self, design: &[f64]) -> Values {
+        let mut values = self.values.clone();
+        for own in &self.moves {
+            values.set(own.parameter, own.factor * design[own.knob] + own.constant);
+        }
+        values
+    }
+
+    /// What a knob moves, for each parameter.
+    fn direction(&self, knob: usize, size: f64) -> Vec<f64> {
+        let mut direction = vec![0.0; self.values.as_slice().len()];
+        for own in self.moves.iter().filter(|own| own.knob == knob) {
+            for (at, moved) in direction.iter_mut().enumerate() {
+                if self.values.leader(at) == own.parameter {
+                    *moved = own.factor * size;
+                }
+            }
+        }
+        direction
+    }
+}
+
+impl Designs for Axle<'_> {
+    fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
+        let mut values = self.ground.measure(&self.values_of(design)).ok()?;
+        let means: Vec<f64> = self.means.iter().map(|of| mean(of, |at| values[at])).collect();
+        values.extend(means);
+        values.iter().all(|value| value.is_finite()).then_some(values)
+    }
+
+    fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>> {
+        // Directions as long as the parameters are what differences along them are made for.
+        let sizes: Vec<f64> = design
+            .iter()
+            .map(|value| if *value == 0.0 { 1.0 } else { *value })
+            .collect();
+        let directions: Vec<Vec<f64>> = (0..self.knobs).map(|knob| self.direction(knob, sizes[knob])).collect();
+        let found = self.ground.measure_with(&self.values_of(design), &directions).ok()?;
+        let by_knob = |slopes: &Vec<f64>| slopes.iter().zip(&sizes).map(|(slope, size)| slope / size).collect();
+        let mut slopes: Vec<Vec<f64>> = found.slopes.iter().map(by_knob).collect();
+        let of_mean = |of: &Vec<usize>| (0..self.knobs).map(|knob| mean(of, |at| slopes[at][knob])).collect();
+        let means: Vec<Vec<f64>> = self.means.iter().map(of_mean).collect();
+        slopes.extend(means);
+        Some(slopes)
+    }
+}
+
+fn mean(of: &[usize], value: impl Fn(usize) -> f64) -> f64 {
+    of.iter().map(|&at| value(at)).sum::<f64>() / of.len() as f64
+}

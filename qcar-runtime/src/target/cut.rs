@@ -1,0 +1,52 @@
+//! What lies around a box: designs in the plane of two knobs, good and bad.
+
+use rayon::prelude::*;
+
+use super::space::Space;
+use super::task::Task;
+use crate::random::SplitMix;
+
+/// Designs over the whole ranges of two knobs, with all others anywhere in the box.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// Places of the knobs.
+    pub knobs: [usize; 2],
+    /// The designs.
+    pub dots: Vec<Dot>,
+}
+
+/// A design in the plane of two knobs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dot {
+    /// Values of both knobs.
+    pub at: [f64; 2],
+    /// The limit or coupling that is exceeded most, by its place; none where all is met.
+    pub broken: Option<usize>,
+}
+
+/// Draws `count` designs.
+pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed: u64) -> Cut {
+    let points = SplitMix::new(seed).hypercube(count, task.knobs.len());
+    let dot = |point: Vec<f64>| {
+        let value = |k: usize| match knobs.contains(&k) {
+            true => task.knobs[k].at(point[k]),
+            false => space.intervals[k][0] + point[k] * (space.intervals[k][1] - space.intervals[k][0]),
+        };
+        let design: Vec<f64> = (0..point.len()).map(value).collect();
+        let excess = task.excesses(&design, &task.designs.values(&design)?);
+        let most = excess
+            .iter()
+            .enumerate()
+            .filter(|(at, _)| task.wish(*at).is_none())
+            .max_by(|a, b| a.1.total_cmp(b.1));
+        let broken = most.filter(|(_, excess)| **excess > 0.0).map(|(at, _)| at);
+        Some(Dot {
+            at: knobs.map(|k| design[k]),
+            broken,
+        })
+    };
+    Cut {
+        knobs,
+        dots: points.into_par_iter().filter_map(dot).collect(),
+    }
+}

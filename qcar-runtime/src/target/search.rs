@@ -1,0 +1,314 @@
+//! The design of least cost that meets all limits, or the one that breaks them least.
+//!
+//! Sequential quadratic programming under an exact penalty in a trust region (Fletcher, "Practical Methods of Optimization",
+//! 2nd ed., section 14.4), from today's design and from the most promising of a Latin hypercube.
+
+use rayon::prelude::*;
+
+use super::quadratic::Quadratic;
+use super::task::Task;
+use crate::progress::Told;
+use crate::random::SplitMix;
+
+/// What a search found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Found {
+    /// A value for each knob.
+    pub design: Vec<f64>,
+    /// Its results.
+    pub values: Vec<f64>,
+    /// What it costs, with what missed wishes do.
+    pub cost: f64,
+    /// By how much each limit and coupling is exceeded, over its size; at most zero where it is met.
+    pub excess: Vec<f64>,
+    /// By how much the cost would fall if a limit were looser by its own size. Where not all is met, of those that stand in
+    /// the way the share of each, from 0 to 1.
+    pub multipliers: Vec<f64>,
+    /// Whether all is met.
+    pub met: bool,
+    /// Designs that were evaluated, and how often derivatives were.
+    pub effort: [usize; 2],
+}
+
+/// Designs that are looked at before the searches begin, and how many searches there are.
+const LOOKS: usize = 120;
+const STARTS: usize = 3;
+const ITERATIONS: usize = 25;
+/// First and smallest size of a step, in parts of the ranges.
+const FIRST: f64 = 0.3;
+const SMALLEST: f64 = 1e-4;
+/// A step is kept that gains so much of what was expected.
+const GAIN: f64 = 0.05;
+/// So much inside its limit a result is aimed at: a search that ends at a limit would be beyond it as often as not.
+const MARGIN: f64 = 1e-4;
+/// What a knob costs at least, for a step to be unique.
+const LEAST_COST: f64 = 1e-4;
+
+/// Searches; `told` hears of its rounds.
+pub fn search(task: &Task<'_>, seed: u64, told: Told<'_>) -> Found {
+    let starts = starts(task, seed);
+    told(0, 2);
+    let ends: Vec<State> = starts.into_par_iter().map(|start| settle(task, start)).collect();
+    told(1, 2);
+    let effort = ends
+        .iter()
+        .fold([LOOKS, 0], |sum, end| [sum[0] + end.effort[0], sum[1] + end.effort[1]]);
+    let mut best = ends
+        .into_iter()
+        .min_by(|a, b| a.rank().total_cmp(&b.rank()))
+        .expect("today is a start");
+    best.effort = effort;
+    if task.knobs.iter().any(|knob| knob.step.is_some()) {
+        best = had(task, best);
+    }
+    told(2, 2);
+    found(task, best)
+}
+
+/// A design on its way.
+#[derive(Clone)]
+struct State {
+    places: Vec<f64>,
+    values: Vec<f64>,
+    /// With that of missed wishes.
+    cost: f64,
+    excess: Vec<f64>,
+    /// By how much all that must hold is broken together.
+    broken: f64,
+    met: bool,
+    multipliers: Vec<f64>,
+    price: f64,
+    effort: [usize; 2],
+}
+
+impl State {
+    fn at(task: &Task<'_>, places: Vec<f64>, price: f64) -> Option<Self> {
+        let design = task.design(&places);
+        let values = task.designs.values(&design)?;
+        let excess = task.excesses(&design, &values);
+        Some(Self {
+            cost: task.cost(&design) + task.missed(&excess),
+            broken: task.broken(&excess, MARGIN),
+            met: task.holds(&excess),
+            multipliers: vec![0.0; excess.len()],
+            places,
+            values,
+            excess,
+            price,
+            effort: [1, 0],
+        })
+    }
+
+    fn merit(&self) -> f64 {
+        self.cost + self.price * self.broken
+    }
+
+    /// What is met comes before what is not, then what costs less.
+    fn rank(&self) -> f64 {
+        if self.met {
+            self.cost
+        } else {
+            1e12 * (1.0 + self.broken)
+        }
+    }
+}
+
+/// The price of breaking a limit by its own size: more than any move could cost.
+fn price(task: &Task<'_>) -> f64 {
+    10.0 * (1.0 + task.knobs.iter().map(|knob| knob.cost).sum::<f64>())
+}
+
+fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
+    let price = price(task);
+    let today = task.places(&task.today());
+    let points = SplitMix::new(seed).hypercube(LOOKS, task.knobs.len());
+    let looked = points
+        .into_par_iter()
+        .filter_map(|places| State::at(task, places, price));
+    let mut looked: Vec<State> = looked.collect();
+    looked.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
+    looked.truncate(STARTS);
+    State::at(task, today, price).into_iter().chain(looked).collect()
+}
+
+/// Goes down to a minimum of the merit, and asks more for broken limits as long as some are.
+fn settle(task: &Task<'_>, mut state: State) -> State {
+    for _ in 0..3 {
+        state = descend(task, state, &vec![true; task.knobs.len()]);
+        if state.met {
+            break;
+        }
+        state.price *= 10.0;
+    }
+    state
+}
+
+fn descend(task: &Task<'_>, mut state: State, free: &[bool]) -> State {
+    let mut radius = FIRST;
+    let mut slopes = None;
+    for _ in 0..ITERATIONS {
+        if slopes.is_none() {
+            state.effort[1] += 1;
+            slopes = slopes_at(task, &state.places);
+        }
+        let Some(rows) = &slopes else { break };
+        let (step, multipliers) = solve(task, &state, rows, radius, free);
+        state.multipliers = multipliers;
+        let length = step.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+        if length < SMALLEST {
+            break;
+        }
+        let expected = state.merit() - expected(task, &state, rows, &step);
+        let places = state
+            .places
+            .iter()
+            .zip(&step)
+            .map(|(place, d)| (place + d).clamp(0.0, 1.0))
+            .collect();
+        let next = State::at(task, places, state.price);
+        state.effort[0] += 1;
+        match next {
+            Some(next) if expected > 0.0 && state.merit() - next.merit() > GAIN * expected => {
+                let gain = (state.merit() - next.merit()) / expected;
+                radius = if gain > 0.5 { (2.0 * radius).min(1.0) } else { radius };
+                let (multipliers, effort) = (state.multipliers, state.effort);
+                state = State {
+                    multipliers,
+                    effort,
+                    ..next
+                };
+                slopes = None;
+            }
+            _ => radius = 0.3 * radius.min(length),
+        }
+        if radius < SMALLEST {
+            break;
+        }
+    }
+    state
+}
+
+/// For each limit and coupling its derivative by the place of each knob.
+fn slopes_at(task: &Task<'_>, places: &[f64]) -> Option<Vec<Vec<f64>>> {
+    let by_knob = task.designs.slopes(&task.design(places))?;
+    let limits = task.limits.iter().map(|limit| {
+        let slopes = by_knob[limit.result].iter().zip(&task.knobs);
+        slopes.map(|(slope, knob)| limit.slope(*slope) * knob.span()).collect()
+    });
+    let couplings = task.couplings.iter().map(|coupling| {
+        let knobs = task.knobs.iter().enumerate();
+        knobs
+            .map(|(k, knob)| coupling.slope(k, &task.knobs) * knob.span())
+            .collect()
+    });
+    Some(limits.chain(couplings).collect())
+}
+
+fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free: &[bool]) -> (Vec<f64>, Vec<f64>) {
+    let knobs = || task.knobs.iter().zip(&state.places).zip(free);
+    let weights: Vec<f64> = task.knobs.iter().map(|knob| knob.cost.max(LEAST_COST)).collect();
+    let wanted = knobs().map(|((knob, place), _)| match knob.cost {
+        0.0 => 0.0,
+        _ => (knob.today - knob.lower) / knob.span() - place,
+    });
+    let radius = |free: bool| if free { radius } else { 0.0 };
+    let excess: Vec<f64> = state.excess.iter().map(|excess| excess + MARGIN).collect();
+    let prices: Vec<f64> = (0..excess.len())
+        .map(|at| task.wish(at).unwrap_or(state.price))
+        .collect();
+    let quadratic = Quadratic {
+        weights: &weights,
+        wanted: &wanted.collect::<Vec<_>>(),
+        low: &knobs()
+            .map(|((_, place), free)| (-place).max(-radius(*free)))
+            .collect::<Vec<_>>(),
+        high: &knobs()
+            .map(|((_, place), free)| (1.0 - place).min(radius(*free)))
+            .collect::<Vec<_>>(),
+        excess: &excess,
+        slopes,
+        prices: &prices,
+    };
+    quadratic.solve()
+}
+
+/// The merit after a step, if all were as linear as it looks.
+fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -> f64 {
+    let places: Vec<f64> = state.places.iter().zip(step).map(|(place, d)| place + d).collect();
+    let after = state.excess.iter().zip(slopes).map(|(excess, slopes)| {
+        let moved: f64 = slopes.iter().zip(step).map(|(slope, d)| slope * d).sum();
+        excess + moved
+    });
+    let after: Vec<f64> = after.collect();
+    task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, MARGIN)
+}
+
+/// Goes to designs that can be had: rounds, tries the neighbours of each knob, and lets the others follow.
+fn had(task: &Task<'_>, from: State) -> State {
+    let rounded = |places: &[f64]| task.places(&task.had(&task.design(places)));
+    let follow = |state: State| {
+        let free: Vec<bool> = task.knobs.iter().map(|knob| knob.step.is_none()).collect();
+        if free.contains(&true) {
+            descend(task, state, &free)
+        } else {
+            state
+        }
+    };
+    let Some(start) = State::at(task, rounded(&from.places), from.price) else {
+        return from;
+    };
+    let multipliers = from.multipliers.clone();
+    let mut best = follow(start);
+    let mut better = true;
+    while better {
+        better = false;
+        for (k, step) in task
+            .knobs
+            .iter()
+            .enumerate()
+            .filter_map(|(k, knob)| Some((k, knob.step? / knob.span())))
+        {
+            for moved in [-step, step] {
+                let mut places = best.places.clone();
+                places[k] += moved;
+                if !(-1e-9..=1.0 + 1e-9).contains(&places[k]) {
+                    continue;
+                }
+                let next = State::at(task, rounded(&places), best.price).map(follow);
+                if let Some(next) = next.filter(|next| next.rank() < best.rank() * (1.0 - 1e-6)) {
+                    (best, better) = (next, true);
+                }
+            }
+        }
+    }
+    State {
+        multipliers,
+        effort: from.effort,
+        ..best
+    }
+}
+
+fn found(task: &Task<'_>, state: State) -> Found {
+    let met = state.met;
+    let total: f64 = state
+        .excess
+        .iter()
+        .zip(&state.multipliers)
+        .filter(|(e, _)| **e > 0.0)
+        .map(|(_, m)| m)
+        .sum();
+    let multiplier = |(excess, own): (&f64, &f64)| match met {
+        true => *own,
+        false if *excess > 0.0 => own / total.max(f64::MIN_POSITIVE),
+        false => 0.0,
+    };
+    Found {
+        design: task.design(&state.places),
+        multipliers: state.excess.iter().zip(&state.multipliers).map(multiplier).collect(),
+        values: state.values,
+        cost: state.cost,
+        excess: state.excess,
+        met,
+        effort: state.effort,
+    }
+}

@@ -1,0 +1,319 @@
+//! The solution space: the largest box of knobs' intervals in which all limits hold with a stated probability.
+//!
+//! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013) 290–307: a box
+//! grows to all sides, designs are drawn in it, and sides are cut off that hold bad ones while as few good ones as possible go
+//! with them; at the end it grows no more. How probable a good design is in the box is then judged by designs that had no part
+//! in finding it.
+
+use rayon::prelude::*;
+
+use super::task::Task;
+use crate::progress::Told;
+use crate::random::SplitMix;
+
+/// What is asked of a box, and how long it is looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Of a good design, for those that are spread evenly over the box.
+    pub probability: f64,
+    /// Designs drawn at a time.
+    pub samples: usize,
+    /// Rounds of growth.
+    pub rounds: usize,
+    /// Of the random numbers.
+    pub seed: u64,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            probability: 0.95,
+            samples: 100,
+            rounds: 50,
+            seed: 1,
+        }
+    }
+}
+
+/// A box of intervals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Space {
+    /// Of each knob.
+    pub intervals: Vec<[f64; 2]>,
+    /// The share of good designs in it, by those that judge it.
+    pub probability: f64,
+    /// With 95 % confidence it is no lower than this.
+    pub at_least: f64,
+    /// The share of designs that meet each limit and, behind them, each coupling.
+    pub each: Vec<f64>,
+    /// The part that it has of all designs in range.
+    pub volume: f64,
+    /// Designs that were evaluated.
+    pub evaluated: usize,
+}
+
+/// Each side grows by this part of the range in the first round; in the last by a tenth of it.
+const GROWTH: f64 = 0.08;
+/// Good designs from which cuts are tried.
+const ANCHORS: usize = 16;
+/// Rounds in which a box that is good enough grows by so little that it soon is not, at most.
+const FINAL_ROUNDS: usize = 30;
+const FINAL_GROWTH: f64 = 0.004;
+/// All designs that are evaluated are no more than so many times those that judge a box.
+const MOST_JUDGED: usize = 150;
+
+/// A box in places of the knobs.
+type Sides = Vec<[f64; 2]>;
+
+/// A drawn design.
+struct Drawn {
+    places: Vec<f64>,
+    /// Of each limit and coupling; `None` where there are no results.
+    excess: Option<Vec<f64>>,
+    /// All that must hold does.
+    good: bool,
+}
+
+/// The largest box about a good design that was found; none where `known` are not good and no other was met.
+pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told<'_>) -> Option<Space> {
+    let mut random = SplitMix::new(settings.seed);
+    let start = start(task, known, &mut random, settings.samples)?;
+    let mut sides: Sides = start.iter().map(|place| [*place; 2]).collect();
+    let mut evaluated = 2 * settings.samples;
+    let rounds = settings.rounds + FINAL_ROUNDS;
+    for round in 0..settings.rounds {
+        told(round, rounds);
+        let growth = GROWTH * (1.0 - 0.9 * round as f64 / settings.rounds as f64);
+        let before = sides.clone();
+        grow(&mut sides, growth);
+        let drawn = draw(task, &sides, settings.samples, &mut random);
+        evaluated += drawn.len();
+        sides = trimmed(&sides, &drawn).unwrap_or(before);
+    }
+    // So many good ones in a row show the probability at 95 % confidence; twice that leaves room for bad ones.
+    let judges = settings
+        .samples
+        .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
+    let mut best = None;
+    for round in 0..FINAL_ROUNDS {
+        told(settings.rounds + round, rounds);
+        let drawn = draw(task, &sides, judges, &mut random);
+        evaluated += drawn.len();
+        if judged(task, &sides, &drawn, evaluated).at_least >= settings.probability {
+            best = Some(sides.clone());
+            grow(&mut sides, FINAL_GROWTH);
+        } else if best.is_some() {
+            break;
+        } else {
+            sides = trimmed(&sides, &drawn).unwrap_or_else(|| shrunk(&sides));
+        }
+    }
+    told(rounds, rounds);
+    Some(confirmed(
+        task,
+        best.unwrap_or(sides),
+        (settings.probability, judges),
+        evaluated,
+        &mut random,
+    ))
+}
+
+/// A box as designs judge it that had no part in finding it; where they find too many bad ones, one that is a little smaller.
+fn confirmed(
+    task: &Task<'_>,
+    mut sides: Sides,
+    (probability, judges): (f64, usize),
+    mut evaluated: usize,
+    random: &mut SplitMix,
+) -> Space {
+    loop {
+        let drawn = draw(task, &sides, judges, random);
+        evaluated += drawn.len();
+        let judged = judged(task, &sides, &drawn, evaluated);
+        if judged.at_least >= probability || evaluated > MOST_JUDGED * judges {
+            return judged;
+        }
+        sides = shrunk(&sides);
+    }
+}
+
+/// The good design that is furthest inside all limits.
+fn start(task: &Task<'_>, known: &[Vec<f64>], random: &mut SplitMix, samples: usize) -> Option<Vec<f64>> {
+    let all = vec![[0.0, 1.0]; task.knobs.len()];
+    let mut drawn = draw(task, &all, 2 * samples, random);
+    drawn.extend(known.iter().map(|design| drawn_at(task, task.places(design))));
+    let inside = |own: &Drawn| {
+        let excess = own.excess.as_ref().expect("a good design has results");
+        excess.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    };
+    let good = drawn.into_iter().filter(|own| own.good);
+    good.min_by(|a, b| inside(a).total_cmp(&inside(b)))
+        .map(|own| own.places)
+}
+
+fn grow(sides: &mut Sides, by: f64) {
+    for side in sides {
+        *side = [(side[0] - by).max(0.0), (side[1] + by).min(1.0)];
+    }
+}
+
+fn shrunk(sides: &Sides) -> Sides {
+    let shrink = |[low, high]: &[f64; 2]| [low + 0.01 * (high - low), high - 0.01 * (high - low)];
+    sides.iter().map(shrink).collect()
+}
+
+fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
+    let inside = |point: Vec<f64>| {
+        point
+            .iter()
+            .zip(sides)
+            .map(|(u, [low, high])| low + u * (high - low))
+            .collect()
+    };
+    let points = random.hypercube(count, sides.len());
+    points
+        .into_par_iter()
+        .map(|point| drawn_at(task, inside(point)))
+        .collect()
+}
+
+fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {
+    let design = task.design(&places);
+    let excess = task
+        .designs
+        .values(&design)
+        .map(|values| task.excesses(&design, &values));
+    let good = excess.as_ref().is_some_and(|excess| task.holds(excess));
+    Drawn { places, excess, good }
+}
+
+/// The box without the bad designs: of those about some good ones the one with most good designs and most volume. None where
+/// all are bad.
+fn trimmed(sides: &Sides, drawn: &[Drawn]) -> Option<Sides> {
+    let (good, bad): (Vec<&Drawn>, Vec<&Drawn>) = drawn.iter().partition(|own| own.good);
+    if bad.is_empty() {
+        return Some(sides.clone());
+    }
+    let stride = good.len().div_ceil(ANCHORS).max(1);
+    let boxes = good
+        .iter()
+        .step_by(stride)
+        .map(|anchor| without(sides, &anchor.places, &good, &bad));
+    boxes.max_by(|a, b| log_volume(a).total_cmp(&log_volume(b)))
+}
+
+/// The box about an anchor with each bad design cut off, along the knob that costs the fewest good designs, then the least
+/// volume.
+fn without(sides: &Sides, anchor: &[f64], good: &[&Drawn], bad: &[&Drawn]) -> Sides {
+    let mut sides = sides.clone();
+    let mut order: Vec<&&Drawn> = bad.iter().collect();
+    let distance = |own: &Drawn| own.places.iter().zip(anchor).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+    order.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
+    for bad in order {
+        if !holds(&sides, &bad.places) {
+            continue;
+        }
+        let kept: Vec<&&Drawn> = good.iter().filter(|own| holds(&sides, &own.places)).collect();
+        let cuts = (0..sides.len()).filter(|&k| bad.places[k] != anchor[k]).map(|k| {
+            let at = cut_at(&kept, bad.places[k], anchor[k], k);
+            let is_lost = |own: &&&&Drawn| (own.places[k] - at) * (anchor[k] - at) < 0.0;
+            let lost = kept.iter().filter(is_lost).count();
+            let [low, high] = sides[k];
+            let left = if anchor[k] < at { at - low } else { high - at };
+            (lost, -left / (high - low), k, at)
+        });
+        let best = cuts.min_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        if let Some((_, _, k, at)) = best {
+            sides[k][usize::from(anchor[k] < at)] = at;
+        }
+    }
+    sides
+}
+
+/// Where a side is cut between a bad design and the good ones on the anchor's side of it: halfway to the nearest.
+fn cut_at(good: &[&&Drawn], bad: f64, anchor: f64, knob: usize) -> f64 {
+    let inside = good
+        .iter()
+        .map(|own| own.places[knob])
+        .filter(|place| (place - bad) * (anchor - bad) > 0.0);
+    let nearest = inside
+        .chain([anchor])
+        .min_by(|a, b| (a - bad).abs().total_cmp(&(b - bad).abs()));
+    0.5 * (bad + nearest.unwrap_or(anchor))
+}
+
+fn holds(sides: &Sides, places: &[f64]) -> bool {
+    sides
+        .iter()
+        .zip(places)
+        .all(|([low, high], place)| low <= place && place <= high)
+}
+
+fn log_volume(sides: &Sides) -> f64 {
+    sides.iter().map(|[low, high]| (high - low).max(1e-12).ln()).sum()
+}
+
+fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> Space {
+    let count = drawn.len();
+    let good = drawn.iter().filter(|own| own.good).count();
+    let met = |at: usize| {
+        drawn
+            .iter()
+            .filter(|own| own.excess.as_ref().is_some_and(|excess| excess[at] <= 0.0))
+            .count()
+    };
+    let each = 0..task.limits.len() + task.couplings.len();
+    Space {
+        intervals: task
+            .knobs
+            .iter()
+            .zip(sides)
+            .map(|(knob, side)| side.map(|place| knob.at(place)))
+            .collect(),
+        probability: good as f64 / count as f64,
+        at_least: lower_bound(good, count),
+        each: each.map(|at| met(at) as f64 / count as f64).collect(),
+        volume: log_volume(sides).exp(),
+        evaluated,
+    }
+}
+
+/// The probability at which so many or more good ones of all are found once in twenty times (Clopper and Pearson, Biometrika
+/// 26, 1934).
+fn lower_bound(good: usize, count: usize) -> f64 {
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if tail(good, count, middle) < 0.05 {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    low
+}
+
+/// How probable at least `good` of `count` are.
+fn tail(good: usize, count: usize, p: f64) -> f64 {
+    let term = |k: usize| log_choose(count, k) + k as f64 * p.ln() + (count - k) as f64 * (-p).ln_1p();
+    (good..=count).map(|k| term(k).exp()).sum::<f64>().min(1.0)
+}
+
+fn log_choose(n: usize, k: usize) -> f64 {
+    (1..=k.min(n - k)).map(|i| ((n + 1 - i) as f64 / i as f64).ln()).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::lower_bound;
+
+    /// Where none is bad, p^n = 0.05.
+    #[test]
+    fn bounds_are_those_of_the_closed_form_where_all_are_good() {
+        for count in [20, 59, 300] {
+            let exact = 0.05_f64.powf(1.0 / count as f64);
+            assert!((lower_bound(count, count) - exact).abs() < 1e-9);
+        }
+        assert_eq!(lower_bound(0, 10), 0.0);
+    }
+}

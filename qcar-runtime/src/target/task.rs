@@ -1,0 +1,232 @@
+//! What is wanted of results, and what may move for it.
+
+/// Results of designs; a design has a value for each knob.
+pub trait Designs: Sync {
+    /// The results of a design; none where it has none.
+    fn values(&self, design: &[f64]) -> Option<Vec<f64>>;
+
+    /// For each result its derivative by each knob.
+    fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>>;
+}
+
+/// What may move.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knob {
+    /// As messages call it.
+    pub name: String,
+    /// Lower end of its range.
+    pub lower: f64,
+    /// Upper end, above the lower one.
+    pub upper: f64,
+    /// Where it is now.
+    pub today: f64,
+    /// Between two values that can be had, counted from the lower end; `None` where all can.
+    pub step: Option<f64>,
+    /// Of a move over the whole range; it grows with the square of the move.
+    pub cost: f64,
+}
+
+/// Up to where a result is good.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Limit {
+    /// Place of the result.
+    pub result: usize,
+    /// Which side of the value is good.
+    pub sense: Sense,
+    /// In the unit of the result.
+    pub value: f64,
+    /// What it costs to miss it by its own size, of a wish; `None` for what must hold.
+    pub wish: Option<f64>,
+}
+
+/// Which side of a limit is good.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sense {
+    /// Below.
+    AtMost,
+    /// Above.
+    AtLeast,
+}
+
+/// A sum of knobs that must not exceed a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Coupling {
+    /// Of each knob.
+    pub factors: Vec<f64>,
+    /// The most.
+    pub most: f64,
+}
+
+/// All of it.
+pub struct Task<'a> {
+    /// What gives results.
+    pub designs: &'a dyn Designs,
+    /// What may move.
+    pub knobs: Vec<Knob>,
+    /// What is wanted.
+    pub limits: Vec<Limit>,
+    /// What must hold between knobs.
+    pub couplings: Vec<Coupling>,
+}
+
+impl Limit {
+    /// By how much a result is beyond the limit, over the size of the limit; at most zero where it is met.
+    pub fn excess(&self, value: f64) -> f64 {
+        self.sign() * (value - self.value) / self.size()
+    }
+
+    /// The derivative of that.
+    pub fn slope(&self, slope: f64) -> f64 {
+        self.sign() * slope / self.size()
+    }
+
+    fn sign(&self) -> f64 {
+        match self.sense {
+            Sense::AtMost => 1.0,
+            Sense::AtLeast => -1.0,
+        }
+    }
+
+    fn size(&self) -> f64 {
+        if self.value == 0.0 { 1.0 } else { self.value.abs() }
+    }
+}
+
+impl Knob {
+    /// A value by its place in the range, 0 to 1.
+    pub fn at(&self, place: f64) -> f64 {
+        self.lower + place * self.span()
+    }
+
+    /// The place of a value in the range.
+    pub fn place(&self, value: f64) -> f64 {
+        ((value - self.lower) / self.span()).clamp(0.0, 1.0)
+    }
+
+    /// Length of the range.
+    pub fn span(&self) -> f64 {
+        self.upper - self.lower
+    }
+
+    /// The nearest value that can be had.
+    pub fn had(&self, value: f64) -> f64 {
+        let last = |step: f64| (self.span() / step + 1e-9).floor();
+        let nearest = |step: f64| self.lower + step * ((value - self.lower) / step).round().clamp(0.0, last(step));
+        self.step.map_or(value, nearest)
+    }
+}
+
+impl Coupling {
+    /// By how much a design is beyond it, over the size of what is added up.
+    pub fn excess(&self, design: &[f64], knobs: &[Knob]) -> f64 {
+        let sum: f64 = self
+            .factors
+            .iter()
+            .zip(design)
+            .map(|(factor, value)| factor * value)
+            .sum();
+        (sum - self.most) / self.size(knobs)
+    }
+
+    /// The derivative of that by a knob.
+    pub fn slope(&self, knob: usize, knobs: &[Knob]) -> f64 {
+        self.factors[knob] / self.size(knobs)
+    }
+
+    fn size(&self, knobs: &[Knob]) -> f64 {
+        let terms = self
+            .factors
+            .iter()
+            .zip(knobs)
+            .map(|(factor, knob)| (factor * knob.upper).abs().max((factor * knob.lower).abs()));
+        terms.fold(f64::MIN_POSITIVE, f64::max)
+    }
+}
+
+impl Task<'_> {
+    /// A design by the places of its knobs.
+    pub fn design(&self, places: &[f64]) -> Vec<f64> {
+        self.knobs
+            .iter()
+            .zip(places)
+            .map(|(knob, place)| knob.at(*place))
+            .collect()
+    }
+
+    /// The places of a design's knobs in their ranges.
+    pub fn places(&self, design: &[f64]) -> Vec<f64> {
+        self.knobs
+            .iter()
+            .zip(design)
+            .map(|(knob, value)| knob.place(*value))
+            .collect()
+    }
+
+    /// The nearest design that can be had.
+    pub fn had(&self, design: &[f64]) -> Vec<f64> {
+        self.knobs
+            .iter()
+            .zip(design)
+            .map(|(knob, value)| knob.had(*value))
+            .collect()
+    }
+
+    /// Where the knobs are now, as far as their ranges allow.
+    pub fn today(&self) -> Vec<f64> {
+        self.knobs
+            .iter()
+            .map(|knob| knob.today.clamp(knob.lower, knob.upper))
+            .collect()
+    }
+
+    /// What a design costs.
+    pub fn cost(&self, design: &[f64]) -> f64 {
+        let moves = self.knobs.iter().zip(design);
+        moves
+            .map(|(knob, value)| knob.cost * ((value - knob.today) / knob.span()).powi(2))
+            .sum()
+    }
+
+    /// By how much a design with these results is beyond each limit and, behind them, each coupling.
+    pub fn excesses(&self, design: &[f64], values: &[f64]) -> Vec<f64> {
+        let limits = self.limits.iter().map(|limit| limit.excess(values[limit.result]));
+        limits
+            .chain(
+                self.couplings
+                    .iter()
+                    .map(|coupling| coupling.excess(design, &self.knobs)),
+            )
+            .collect()
+    }
+
+    /// True where all that must hold does.
+    pub fn holds(&self, excess: &[f64]) -> bool {
+        self.broken(excess, 0.0) == 0.0
+    }
+
+    /// The sum by which all that must hold is exceeded, or nearer to it than a margin.
+    pub fn broken(&self, excess: &[f64], margin: f64) -> f64 {
+        let hard = excess.iter().enumerate().filter(|(at, _)| self.wish(*at).is_none());
+        hard.map(|(_, excess)| (excess + margin).max(0.0)).sum()
+    }
+
+    /// What missed wishes cost.
+    pub fn missed(&self, excess: &[f64]) -> f64 {
+        let wishes = excess
+            .iter()
+            .enumerate()
+            .filter_map(|(at, excess)| Some(self.wish(at)? * excess.max(0.0)));
+        wishes.sum()
+    }
+
+    /// What it costs to miss a limit or coupling by its own size; `None` where it must hold.
+    pub fn wish(&self, at: usize) -> Option<f64> {
+        self.limits.get(at).and_then(|limit| limit.wish)
+    }
+
+    /// True where all that must hold does; false, too, where a design has no results.
+    pub fn is_good(&self, design: &[f64]) -> bool {
+        let values = self.designs.values(design);
+        values.is_some_and(|values| self.holds(&self.excesses(design, &values)))
+    }
+}

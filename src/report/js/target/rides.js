@@ -1,0 +1,45 @@
+// Today's axle and the design over each cleat.
+
+function rides(data) {
+  if (!data.rides.length) return null;
+  const shown = picker('rides', {
+    label: 'Run',
+    options: data.rides.map((own) => [own.run, runName(own.run)]),
+    first: data.rides[Math.floor(data.rides.length / 2)].run,
+    show: (name, place, text) =>
+      ridePlots(
+        data.rides.find((own) => own.run === name),
+        place,
+        text,
+      ),
+  });
+  const element = section(
+    'cleat',
+    'Over the cleat',
+    h('p', {}, 'Accelerations of ', key('before', 'today'), ' and ', key('after', 'the design'), '.', zoomHint()),
+    shown.control,
+    shown.place,
+  );
+  return { element, draw: shown.draw };
+}
+
+function ridePlots(ride, place, title) {
+  const columns = ride.traces.map((trace) => traceColumn(trace, 'ride', title));
+  place.replaceChildren(h('div', { class: 'columns two' }, columns));
+  return ride.traces.map((trace, at) =>
+    plot(columns[at].querySelector('.canvas'), {
+      x: TIME,
+      y: ACCELERATION,
+      at: ride.time,
+      sync: 'rides',
+      from: RIDE_VIEW,
+      curves: [
+        { role: 'before', label: 'today', values: trace.today },
+        { role: 'after', label: 'design', values: trace.design },
+      ],
+    }),
+  );
+}
+
+// s; the impact and the first of its after-shake.
+const RIDE_VIEW = [-0.05, 0.6];

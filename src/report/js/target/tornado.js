@@ -1,0 +1,24 @@
+// What moves the metrics of the targets: percent for one percent of a parameter, at the design.
+
+function tornado(data) {
+  if (!data.sensitivity.length) return null;
+  const one = ({ metric, elasticities }) => {
+    const sorted = Object.entries(elasticities).sort((a, b) => Math.abs(b[1]) - Math.abs(a[1]));
+    const most = Math.abs(sorted[0][1]);
+    const rows = sorted.map(([name, value]) => [name, number(value, 2), changeBar(value, most)]);
+    const columns = [
+      ['parameter', 'text'],
+      ['%', 'number'],
+      ['', 'text'],
+    ];
+    return table(metric, columns, rows);
+  };
+  return {
+    element: section(
+      'sensitivity',
+      'What moves them',
+      h('p', {}, 'Percent of a metric for one percent of a parameter at the design, mean over the runs.'),
+      h('div', { class: 'columns' }, data.sensitivity.map(one)),
+    ),
+  };
+}

@@ -1,0 +1,56 @@
+// The targets, met or missed, and by how much.
+
+function wanted(data) {
+  const missed = data.targets.filter((own) => !own.met && own.wish === null);
+  const lead = data.met
+    ? `All targets are met, at a cost of ${number(data.cost)}.`
+    : `No design was found that meets all targets: the best misses ${missed.length} of ${data.targets.length}.`;
+  const columns = [
+    ['target', 'text'],
+    ['run', 'text'],
+    ['limit', 'number'],
+    ['today', 'number'],
+    ['design', 'number'],
+    ['', 'text'],
+    ['beyond the limit', 'number'],
+    ['multiplier', 'number'],
+    ...(data.space ? [['met in space', 'number']] : []),
+  ];
+  const row = (own) => {
+    const cells = [
+      own.metric,
+      own.run ? runName(own.run) : '',
+      `${own.sense === 'at_most' ? '≤' : '≥'} ${quantity(own.limit, own.unit)}`,
+      h('span', { class: 'before' }, quantity(own.today, own.unit)),
+      h('span', { class: 'after' }, quantity(own.design, own.unit)),
+      judgedWord(own),
+      signed(own.excess),
+      number(own.multiplier, 2),
+      ...(data.space ? [percent(own.in_space, 3)] : []),
+    ];
+    return cells;
+  };
+  const element = section(
+    'targets',
+    'Targets',
+    h('p', { class: 'lead' }, lead),
+    h(
+      'p',
+      {},
+      'Of ',
+      key('before', 'today'),
+      ' and ',
+      key('after', 'the design'),
+      data.met
+        ? '. A multiplier is what the cost would fall by if the limit were looser by its own size.'
+        : '. A multiplier is the share that a target has in what stands in the way.',
+    ),
+    table('Targets', columns, data.targets.map(row)),
+  );
+  return { element };
+}
+
+function judgedWord(own) {
+  if (own.met) return 'met';
+  return own.wish === null ? h('strong', {}, 'missed') : 'wish missed';
+}

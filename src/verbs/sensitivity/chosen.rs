@@ -1,0 +1,176 @@
+//! Metrics and parameters by name.
+
+use qcar_runtime::campaign::RoleNames;
+use qcar_runtime::error::{InputError, Problem};
+use qcar_runtime::metric::{Course, Ground, Metric};
+use qcar_runtime::model::About;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::roles::Roles;
+use qcar_runtime::spelling::{self, nearest};
+
+use crate::failure::flag;
+
+/// What stands before and behind a `*` in a name.
+pub(crate) fn fits(pattern: &str, name: &str) -> bool {
+    match pattern.split_once('*') {
+        Some((before, behind)) => {
+            name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
+        }
+        None => pattern == name,
+    }
+}
+
+/// Leaves the courses that names mean; all where there are no names.
+///
+/// # Errors
+/// Every name that no course has.
+pub(crate) fn keep_runs(courses: &mut Vec<Course>, names: &[String]) -> Result<(), InputError> {
+    let known: Vec<&str> = courses.iter().map(|course| course.name.as_str()).collect();
+    let lost = names.iter().filter(|name| !known.iter().any(|own| fits(name, own)));
+    let expected = format!("one of {}", known.join(", "));
+    let problem = |name: &String| {
+        flag(
+            "--runs",
+            format!("`{name}`"),
+            &expected,
+            "correct the name or remove it",
+        )
+    };
+    let problems = lost.map(problem).collect();
+    courses.retain(|course| names.is_empty() || names.iter().any(|name| fits(name, &course.name)));
+    InputError::unless_empty(problems, Some(()))
+}
+
+/// The metrics that names mean, in the order of the names; a name may hold a `*`.
+///
+/// # Errors
+/// Every name that the model has nothing for.
+pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize>, InputError> {
+    let (mut chosen, mut problems) = (Vec::new(), Vec::new());
+    for name in names {
+        let found: Vec<usize> = places(ground.metrics(), name).collect();
+        if found.is_empty() {
+            problems.push(unknown(ground, name, |found, expected, remedy| {
+                flag("--metrics", found, expected, remedy)
+            }));
+        }
+        chosen.extend(found);
+    }
+    let mut once: Vec<usize> = Vec::new();
+    chosen.into_iter().for_each(|metric| {
+        if !once.contains(&metric) {
+            once.push(metric)
+        }
+    });
+    InputError::unless_empty(problems, Some(once))
+}
+
+fn places<'a>(metrics: &'a [Metric], pattern: &'a str) -> impl Iterator<Item = usize> + 'a {
+    let all = metrics.iter().enumerate();
+    all.filter(move |(_, metric)| fits(pattern, &metric.name))
+        .map(|(place, _)| place)
+}
+
+/// What to say of a name that is no metric of the model.
+pub(crate) fn unknown(ground: &Ground<'_>, name: &str, problem: impl Fn(&str, &str, &str) -> Problem) -> Problem {
+    let expected = format!("a metric of model `{}`", ground.about().name);
+    let known = || ground.metrics().iter().map(|metric| &*metric.name);
+    let ridden = [
+        ".peak",
+        ".after_shake",
+        ".weighted_rms",
+        ".vdv",
+        ".dynamic_load",
+        ".travel",
+    ];
+    let remedy = if ground.courses().is_empty()
+        && ridden.iter().any(|suffix| name.ends_with(suffix))
+        && nearest(name, known()).is_none()
+    {
+        "rides need r_tire, static_tire_def and static_tire_load: give a campaign, or parameter values with [vehicle]"
+            .into()
+    } else {
+        match nearest(name, known()) {
+            Some(nearest) => format!("did you mean `{nearest}`? `qcar sensitivity MODEL --list` prints all of them"),
+            None => "`qcar sensitivity MODEL --list` prints all of them".into(),
+        }
+    };
+    problem(&format!("`{name}`"), &expected, &remedy)
+}
+
+/// What is looked at where nobody chooses: what wheel and body feel, the tyre's load, the travel, and the vibrations.
+pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
+    let roles = Roles::of(ground.about(), names).ok();
+    let body = roles.as_ref().and_then(|roles| Some(roles.on_rig().ok()?.body));
+    let ends: Vec<String> = roles.map(|roles| roles.wheel).into_iter().chain(body).collect();
+    let is_end = |place: &str| {
+        place
+            .rsplit_once('_')
+            .is_some_and(|(mass, _)| ends.iter().any(|end| end == mass))
+    };
+    let wanted = |metric: &Metric| match metric.name.rsplit_once('.') {
+        Some((place, "peak" | "after_shake" | "vdv")) => metric.what.is_ridden() && is_end(place),
+        Some((_, "weighted_rms" | "peak_frequency")) => false,
+        _ => true,
+    };
+    let all = ground.metrics().iter().enumerate();
+    all.filter(|(_, metric)| wanted(metric))
+        .map(|(place, _)| place)
+        .collect()
+}
+
+/// Parameters by name, each that leads its ties; where there are no names, all that the model does not call known.
+///
+/// # Errors
+/// Every name that is no parameter of the model, or that takes its value from another.
+pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Result<Vec<usize>, InputError> {
+    if names.is_empty() {
+        let all = about.parameters.iter().enumerate();
+        let open = all.filter(|(place, own)| !own.known && values.leader(*place) == *place);
+        return Ok(open
+            .filter(|(place, _)| values.as_slice()[*place] != 0.0)
+            .map(|(place, _)| place)
+            .collect());
+    }
+    let (mut chosen, mut problems) = (Vec::new(), Vec::new());
+    for name in names {
+        match parameter(about, values, name, |found, expected, remedy| {
+            flag("--parameters", found, expected, remedy)
+        }) {
+            Ok(place) => chosen.push(place),
+            Err(error) => problems.extend(error.problems),
+        }
+    }
+    InputError::unless_empty(problems, Some(chosen))
+}
+
+/// A parameter that leads its ties.
+///
+/// # Errors
+/// A name that is no parameter of the model, or of one that takes its value from another.
+pub(crate) fn parameter(
+    about: &About,
+    values: &Values,
+    name: &str,
+    problem: impl Fn(&str, &str, &str) -> Problem,
+) -> Result<usize, InputError> {
+    let known = || about.parameters.iter().map(|own| &*own.name);
+    let expected = format!("a parameter of model `{}`", about.name);
+    let Some(place) = known().position(|own| own == name) else {
+        let remedy = spelling::remedy(name, known());
+        return Err(problem(&format!("`{name}`"), &expected, &remedy).into());
+    };
+    match values.leader(place) {
+        leader if leader == place => Ok(place),
+        leader => {
+            let leader = &about.parameters[leader].name;
+            let found = format!("`{name}`, which takes the value of `{leader}`");
+            Err(problem(
+                &found,
+                "a parameter with a value of its own",
+                &format!("name `{leader}`, or give `{name}` a value"),
+            )
+            .into())
+        }
+    }
+}

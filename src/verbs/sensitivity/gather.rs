@@ -1,0 +1,269 @@
+//! Sensitivities as the verb prints them: each metric over all of its runs.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use qcar_runtime::metric::{Ground, MetricError, Reading};
+use qcar_runtime::progress::Told;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::sensitivity::{Doubt, Elasticities, Index, Indices, Interval, Plan, elasticities, indices};
+use serde::Serialize;
+
+use super::subject::Subject;
+use crate::json::Ordered;
+
+/// What is nearer to zero is what rounding has left of it.
+const ROUNDING: f64 = 1e-9;
+
+/// All that is known.
+#[derive(Serialize)]
+pub(crate) struct Sensitivity {
+    pub subject: String,
+    pub model: String,
+    /// Names of the runs that ridden metrics are a mean of.
+    pub runs: Vec<String>,
+    pub parameters: Vec<Parameter>,
+    pub metrics: Vec<MetricResult>,
+    /// Of the Sobol indices, where they were asked for.
+    pub global: Option<Global>,
+}
+
+/// A parameter that was moved.
+#[derive(Serialize)]
+pub(crate) struct Parameter {
+    pub name: String,
+    pub unit: String,
+    pub value: f64,
+    /// Standard error, where a fit knows it.
+    pub stderr: Option<f64>,
+    /// Tolerance of the part, where the user gives it.
+    pub tolerance: Option<f64>,
+}
+
+/// A metric; all that is said of it is said of the mean of its relative values over the runs.
+#[derive(Serialize)]
+pub(crate) struct MetricResult {
+    pub name: String,
+    pub unit: &'static str,
+    pub doc: String,
+    /// Mean over the runs.
+    pub value: f64,
+    /// By run.
+    pub values: Ordered<f64>,
+    /// By parameter: percent of the metric for one percent of the parameter.
+    pub elasticities: Ordered<f64>,
+    /// The same by run and parameter.
+    pub by_run: Ordered<Vec<f64>>,
+    /// How sure it is, where anything is known of the parameters' errors.
+    pub doubt: Option<Doubted>,
+    /// By parameter.
+    pub sobol: Option<Ordered<Index>>,
+    /// Mean and standard deviation over the designs of the indices.
+    pub spread: Option<[f64; 2]>,
+}
+
+/// How sure a metric is.
+#[derive(Serialize)]
+pub(crate) struct Doubted {
+    /// Standard deviation.
+    pub deviation: f64,
+    /// 95 % of a normal distribution.
+    pub interval: [f64; 2],
+    /// What each parameter contributes to the variance.
+    pub shares: Ordered<f64>,
+}
+
+/// How the indices were found.
+#[derive(Serialize)]
+pub(crate) struct Global {
+    /// Parameters lie within so much of their value.
+    pub spread: f64,
+    pub designs: usize,
+    /// Base designs that could not be ridden, and were left out.
+    pub failed: usize,
+}
+
+/// What is looked at, and how.
+pub(crate) struct Asked<'a> {
+    pub metrics: &'a [usize],
+    /// Places of parameters.
+    pub parameters: &'a [usize],
+    /// By name, in the unit of the parameter.
+    pub tolerances: &'a BTreeMap<String, f64>,
+    /// Designs of the indices, and how far their parameters spread.
+    pub global: Option<(Plan, f64)>,
+}
+
+/// Looks.
+///
+/// # Errors
+/// What cannot be measured.
+pub(crate) fn gather(
+    subject: &Subject,
+    ground: &mut Ground<'_>,
+    asked: &Asked<'_>,
+    told: Told<'_>,
+) -> Result<Sensitivity, MetricError> {
+    let groups: Vec<Vec<Reading>> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
+    let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
+    ground.choose(groups.concat());
+    let local = elasticities(ground, &subject.values, asked.parameters)?;
+    let about = ground.about();
+    let names: Vec<String> = asked
+        .parameters
+        .iter()
+        .map(|&k| about.parameters[k].name.to_string())
+        .collect();
+    let doubt = doubt(subject, asked, &names);
+    let mut first = 0;
+    let mut metric = |(&metric, &size): (&usize, &usize)| {
+        let range = first..first + size;
+        first = range.end;
+        result(ground, &local, (metric, range), &names, doubt.as_ref())
+    };
+    let metrics = asked.metrics.iter().zip(&sizes).map(&mut metric).collect();
+    let mut found = Sensitivity {
+        subject: subject.name.clone(),
+        model: about.name.to_string(),
+        runs: ground.courses().iter().map(|course| course.name.clone()).collect(),
+        parameters: parameters(subject, asked, &names, ground),
+        metrics,
+        global: None,
+    };
+    if let Some((plan, spread)) = asked.global {
+        let relative = |values: &Values| Some(means(&ground.measure(values).ok()?, &local.values, &sizes));
+        let own = drawn(subject, asked, (plan, spread), told, relative);
+        add(&mut found, &own, spread);
+    }
+    Ok(found)
+}
+
+/// A metric over the readings in a range of places.
+fn result(
+    ground: &Ground<'_>,
+    local: &Elasticities,
+    (metric, range): (usize, Range<usize>),
+    names: &[String],
+    doubt: Option<&Doubt>,
+) -> MetricResult {
+    let own = &ground.metrics()[metric];
+    let run = |at: usize| {
+        let course = ground.readings()[at].course;
+        course.map_or("at rest".into(), |run| ground.courses()[run].name.clone())
+    };
+    let mean = |of: &dyn Fn(usize) -> f64| range.clone().map(of).sum::<f64>() / range.len() as f64;
+    let by_parameter =
+        |of: &dyn Fn(usize, usize) -> f64| (0..names.len()).map(|k| mean(&|at| of(at, k))).collect::<Vec<_>>();
+    let value = mean(&|at| local.values[at]);
+    let relative = by_parameter(&|at, k| local.slopes[at][k] / local.values[at]);
+    let elastic = by_parameter(&|at, k| local.elasticities[at][k])
+        .into_iter()
+        .map(rounded);
+    MetricResult {
+        name: own.name.clone(),
+        unit: own.unit,
+        doc: own.doc.clone(),
+        value,
+        values: range.clone().map(|at| (run(at), local.values[at])).collect(),
+        elasticities: names.iter().cloned().zip(elastic).collect(),
+        by_run: range
+            .clone()
+            .map(|at| (run(at), local.elasticities[at].clone()))
+            .collect(),
+        doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&relative))),
+        sobol: None,
+        spread: None,
+    }
+}
+
+/// The value, or zero where rounding has left nothing else.
+pub(crate) fn rounded(value: f64) -> f64 {
+    if value.abs() < ROUNDING { 0.0 } else { value }
+}
+
+fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &Ground<'_>) -> Vec<Parameter> {
+    let own = |(&k, name): (&usize, &String)| Parameter {
+        name: name.clone(),
+        unit: ground.about().parameters[k].unit.to_string(),
+        value: subject.values.as_slice()[k],
+        stderr: subject.errors.deviations.get(name).copied(),
+        tolerance: asked.tolerances.get(name).copied(),
+    };
+    asked.parameters.iter().zip(names).map(own).collect()
+}
+
+/// What is not known of the parameters; none where nothing is said of it.
+fn doubt(subject: &Subject, asked: &Asked<'_>, names: &[String]) -> Option<Doubt> {
+    let of = |known: &BTreeMap<String, f64>| -> Vec<f64> {
+        names
+            .iter()
+            .map(|name| known.get(name).copied().unwrap_or(0.0))
+            .collect()
+    };
+    let (errors, tolerances) = (of(&subject.errors.deviations), of(asked.tolerances));
+    if errors.iter().chain(&tolerances).all(|own| *own == 0.0) {
+        return None;
+    }
+    let mut doubt = Doubt::none(names.len());
+    let correlation = |i: usize, j: usize| {
+        let pair = (names[i].clone(), names[j].clone());
+        subject.errors.correlations.get(&pair).copied().unwrap_or(0.0)
+    };
+    doubt.add_errors(&errors, correlation);
+    doubt.add_tolerances(&tolerances);
+    Some(doubt)
+}
+
+/// Of a metric with a value, from what is not known of it relative to that.
+fn doubted(value: f64, names: &[String], relative: &Interval) -> Doubted {
+    /// Of a normal distribution, 95 % lie within so many standard deviations.
+    const NORMAL: f64 = 1.96;
+    let deviation = (relative.deviation * value).abs();
+    Doubted {
+        deviation,
+        interval: [value - NORMAL * deviation, value + NORMAL * deviation],
+        shares: names.iter().cloned().zip(relative.shares.iter().copied()).collect(),
+    }
+}
+
+/// Indices of what `relative` gives, for parameters that lie within `spread` of their values.
+fn drawn(
+    subject: &Subject,
+    asked: &Asked<'_>,
+    (plan, spread): (Plan, f64),
+    told: Told<'_>,
+    relative: impl Fn(&Values) -> Option<Vec<f64>> + Sync + Send,
+) -> Indices {
+    indices(asked.parameters.len(), plan, told, |u| {
+        let mut values = subject.values.clone();
+        for (&parameter, u) in asked.parameters.iter().zip(u) {
+            let own = subject.values.as_slice()[parameter];
+            values.set(parameter, own * (1.0 + spread * (2.0 * u - 1.0)));
+        }
+        relative(&values)
+    })
+}
+
+fn add(to: &mut Sensitivity, own: &Indices, spread: f64) {
+    for ((metric, of), moments) in to.metrics.iter_mut().zip(&own.of).zip(&own.moments) {
+        let names = to.parameters.iter().map(|parameter| parameter.name.clone());
+        metric.sobol = Some(names.zip(of.iter().copied()).collect());
+        metric.spread = Some(moments.map(|moment| moment * metric.value));
+    }
+    to.global = Some(Global {
+        spread,
+        designs: own.designs,
+        failed: own.failed,
+    });
+}
+
+/// The mean over its runs of each metric, relative to today.
+fn means(values: &[f64], today: &[f64], sizes: &[usize]) -> Vec<f64> {
+    let mut first = 0;
+    let mean = |&size: &usize| {
+        let range = first..first + size;
+        first = range.end;
+        range.map(|at| values[at] / today[at]).sum::<f64>() / size as f64
+    };
+    sizes.iter().map(mean).collect()
+}

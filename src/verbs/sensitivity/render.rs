@@ -1,0 +1,133 @@
+//! Sensitivities as text and CSV.
+
+use std::fmt::Write;
+
+use super::gather::{MetricResult, Sensitivity};
+use crate::table::{Table, number};
+use crate::units;
+
+/// For people.
+pub(super) fn text(of: &Sensitivity) -> String {
+    let mut out = format!("{}: {}\n", of.subject, runs(of));
+    out += "Percent of a metric for one percent of a parameter, the most important first.\n\n";
+    out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));
+    out += "\n";
+    out += &values(of).text();
+    if let Some(global) = &of.global {
+        let _ = write!(
+            out,
+            "\nShare of the variance in percent, alone / with others, over ± {} % of each parameter ({} designs",
+            number(100.0 * global.spread, 3),
+            global.designs
+        );
+        let _ = writeln!(out, "{}).\n", failed(global.failed));
+        let share = |metric: &MetricResult, k: usize| match &metric.sobol {
+            Some(sobol) => format!("{:.0} / {:.0}", 100.0 * sobol.0[k].1.first, 100.0 * sobol.0[k].1.total),
+            None => "-".into(),
+        };
+        out += &tables(of, share);
+    }
+    out
+}
+
+fn failed(count: usize) -> String {
+    match count {
+        0 => String::new(),
+        count => format!(", {count} of the base designs could not be ridden and are left out"),
+    }
+}
+
+fn runs(of: &Sensitivity) -> String {
+    match of.runs.len() {
+        0 => format!("{}, without rides", of.model),
+        1 => format!("{} over 1 run", of.model),
+        count => format!("{}, ridden metrics are means over {count} runs", of.model),
+    }
+}
+
+/// Metrics beside each other.
+const ACROSS: usize = 8;
+
+/// Parameters down, metrics across, in as many tables as these take.
+fn tables(of: &Sensitivity, cell: impl Fn(&MetricResult, usize) -> String) -> String {
+    let order = by_weight(of);
+    let table = |metrics: &[MetricResult]| {
+        let names = metrics.iter().map(|metric| metric.name.clone());
+        let mut table = Table::with_headings(std::iter::once("parameter".into()).chain(names).collect());
+        for &k in &order {
+            let cells = metrics.iter().map(|metric| cell(metric, k));
+            table.row(std::iter::once(of.parameters[k].name.clone()).chain(cells).collect());
+        }
+        table.text()
+    };
+    of.metrics.chunks(ACROSS).map(table).collect::<Vec<_>>().join("\n")
+}
+
+/// Places of the parameters, that which moves any metric most first.
+pub(super) fn by_weight(of: &Sensitivity) -> Vec<usize> {
+    let weight = |k: usize| {
+        of.metrics
+            .iter()
+            .map(|metric| metric.elasticities.0[k].1.abs())
+            .fold(0.0, f64::max)
+    };
+    let mut order: Vec<usize> = (0..of.parameters.len()).collect();
+    order.sort_by(|a, b| weight(*b).total_cmp(&weight(*a)));
+    order
+}
+
+fn values(of: &Sensitivity) -> Table {
+    let mut table = Table::new(["metric", "value", "unit", "± (95 %)", "most of that by"]);
+    for metric in &of.metrics {
+        let shown = |value: f64| number(units::value(value, metric.unit), 4);
+        let doubt = metric.doubt.as_ref();
+        table.row(vec![
+            metric.name.clone(),
+            shown(metric.value),
+            units::name(metric.unit).into(),
+            doubt.map_or("-".into(), |doubt| shown(doubt.interval[1] - metric.value)),
+            doubt.map_or("-".into(), |doubt| largest(&doubt.shares.0)),
+        ]);
+    }
+    table
+}
+
+/// The two parameters with the largest shares.
+fn largest(shares: &[(String, f64)]) -> String {
+    let mut order: Vec<&(String, f64)> = shares.iter().filter(|(_, share)| *share > 0.005).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let words = order
+        .iter()
+        .take(2)
+        .map(|(name, share)| format!("{name} {:.0} %", 100.0 * share));
+    words.collect::<Vec<_>>().join(", ")
+}
+
+/// A row for each metric and parameter.
+pub(super) fn csv(of: &Sensitivity) -> String {
+    let mut out = String::from(
+        "metric,metric_unit,metric_value,parameter,parameter_unit,parameter_value,elasticity,share_of_doubt,sobol_first,sobol_total\n",
+    );
+    for metric in &of.metrics {
+        for (k, parameter) in of.parameters.iter().enumerate() {
+            let share = metric.doubt.as_ref().map(|doubt| doubt.shares.0[k].1);
+            let sobol = metric.sobol.as_ref().map(|sobol| sobol.0[k].1);
+            let optional = |value: Option<f64>| value.map_or(String::new(), |value| value.to_string());
+            let _ = writeln!(
+                out,
+                "{},{},{},{},{},{},{},{},{},{}",
+                metric.name,
+                units::name(metric.unit),
+                units::value(metric.value, metric.unit),
+                parameter.name,
+                units::name(&parameter.unit),
+                units::value(parameter.value, &parameter.unit),
+                metric.elasticities.0[k].1,
+                optional(share),
+                optional(sobol.map(|sobol| sobol.first)),
+                optional(sobol.map(|sobol| sobol.total)),
+            );
+        }
+    }
+    out
+}

@@ -1,0 +1,288 @@
+//! The axle whose metrics are asked for: a model with values, what it rolls on, and how sure its values are.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use qcar_runtime::campaign::{Campaign, Declared, Role, RoleNames, Test};
+use qcar_runtime::metric::{Course, Ground};
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::road::Class;
+use qcar_runtime::simulate::{Cleat, tyre_of};
+use qcar_runtime::tyre::Tyre;
+
+use crate::catalogue::{self, Loaded};
+use crate::failure::{Failure, flag};
+use crate::parameters::{self, Beside, Setting};
+use crate::verbs::fit::{self, Choices};
+
+/// A model with values on its tyre.
+pub(crate) struct Subject {
+    /// As the user has named it.
+    pub name: String,
+    /// As it runs.
+    pub model: Loaded,
+    /// Of all parameters.
+    pub values: Values,
+    /// Masses that a campaign names.
+    pub roles: RoleNames,
+    /// The tyre and its load, N, where facts of a vehicle say them.
+    pub tyre: Option<(Tyre, f64)>,
+    /// The cleat runs of the campaign, else the standard ones.
+    pub courses: Vec<Course>,
+    /// How sure the values are.
+    pub errors: Errors,
+}
+
+/// Standard errors of parameters, by name.
+#[derive(Default)]
+pub(crate) struct Errors {
+    pub deviations: BTreeMap<String, f64>,
+    /// Of pairs in both orders.
+    pub correlations: BTreeMap<(String, String), f64>,
+}
+
+/// A random road of ISO 8608 and the speed at which it is driven over.
+#[derive(Clone, Debug)]
+pub(crate) struct RandomRoad(Course);
+
+/// The classes, in their order.
+const CLASSES: [(&str, Class); 8] = [
+    ("A", Class::A),
+    ("B", Class::B),
+    ("C", Class::C),
+    ("D", Class::D),
+    ("E", Class::E),
+    ("F", Class::F),
+    ("G", Class::G),
+    ("H", Class::H),
+];
+
+impl FromStr for RandomRoad {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected a class of ISO 8608 and a speed, such as C@60km/h, found `{text}`");
+        let (class, speed) = text.split_once('@').ok_or_else(expected)?;
+        let class = CLASSES.iter().find(|(name, _)| *name == class.trim());
+        let speed = Declared::quantity(speed).filter(|(speed, unit)| unit.is_like("m/s") && *speed > 0.0);
+        let ((_, class), (speed, _)) = class.zip(speed).ok_or_else(expected)?;
+        Course::random(*class, speed)
+            .map(RandomRoad)
+            .map_err(|error| error.to_string())
+    }
+}
+
+/// What a user gives beside the subject.
+pub(crate) struct Beneath<'a> {
+    /// Start values, facts of the vehicle and cleat runs.
+    pub campaign: Option<&'a Path>,
+    /// Values above those.
+    pub params: Option<&'a Path>,
+    /// And above those.
+    pub set: &'a [Setting],
+    /// Random roads beside the cleats.
+    pub roads: &'a [RandomRoad],
+}
+
+impl Subject {
+    /// A model by name or path, a campaign's folder, or what a fit has written.
+    ///
+    /// # Errors
+    /// What cannot be read, compiled, resolved or fitted, and an argument that is nothing of that.
+    pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
+        let mut subject = Self::over_cleats(text, beneath)?;
+        if subject.tyre.is_some() {
+            subject.courses.extend(beneath.roads.iter().map(|road| road.0.clone()));
+        }
+        Ok(subject)
+    }
+
+    fn over_cleats(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
+        let path = Path::new(text);
+        let answer = answer(path);
+        if path.join("campaign.toml").is_file() && !catalogue::is_shipped(text) {
+            of_campaign(path, beneath)
+        } else if let Some(answer) = answer {
+            of_answer(text, &answer, beneath)
+        } else if path.is_dir() && !catalogue::is_shipped(text) {
+            let found = format!("`{text}`, a folder without campaign.toml or fit.json");
+            let expected = "a model, a campaign's folder, or the folder of a fit's results";
+            Err(flag(
+                "SUBJECT",
+                found,
+                expected,
+                "name a folder that has one of them, or a model",
+            )
+            .into())
+        } else {
+            of_model(text, text, &[], Errors::default(), beneath)
+        }
+    }
+
+    /// Where its metrics are measured.
+    pub fn ground(&self) -> Ground<'_> {
+        Ground::new(&*self.model, &self.values, &self.roles, self.tyre, self.courses.clone())
+    }
+}
+
+/// The `fit.json` that a path means.
+fn answer(path: &Path) -> Option<PathBuf> {
+    let inside = path.join("fit.json");
+    let own = path.extension().is_some_and(|ending| ending == "json") && path.is_file();
+    inside.is_file().then_some(inside).or(own.then(|| path.into()))
+}
+
+fn of_answer(text: &str, answer: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure> {
+    let beside = Beside::read(answer)?;
+    let Some(model) = beside.model else {
+        let expected = "the model that was fitted";
+        return Err(flag(
+            "SUBJECT",
+            format!("`{text}`, which names no model"),
+            expected,
+            "give the model and --params",
+        )
+        .into());
+    };
+    let errors = Errors {
+        deviations: beside.errors,
+        ..Errors::default()
+    };
+    of_model(text, &model, &[answer.to_path_buf()], errors, beneath)
+}
+
+fn of_model(
+    name: &str,
+    model: &str,
+    own: &[PathBuf],
+    mut errors: Errors,
+    beneath: &Beneath<'_>,
+) -> Result<Subject, Failure> {
+    let model = catalogue::load(model)?;
+    let folder = beneath.campaign.map(|folder| folder.join("campaign.toml"));
+    let files: Vec<PathBuf> = folder
+        .into_iter()
+        .chain(own.to_vec())
+        .chain(beneath.params.map(PathBuf::from))
+        .collect();
+    let campaign = beneath.campaign.map(Campaign::open).transpose()?;
+    let values = resolved(&model, &files, campaign.as_ref(), beneath.set)?;
+    let mut facts = BTreeMap::new();
+    for file in &files {
+        let beside = Beside::read(file)?;
+        facts.extend(beside.vehicle);
+        errors.deviations.extend(beside.errors);
+    }
+    finish(name, model, values, facts, campaign, errors)
+}
+
+/// Values of a model from files of which one may be a campaign of another model: of its values, those that the model has.
+fn resolved(
+    model: &Loaded,
+    files: &[PathBuf],
+    campaign: Option<&Campaign>,
+    set: &[Setting],
+) -> Result<Values, Failure> {
+    let paths = files.iter().map(PathBuf::as_path);
+    let own = campaign
+        .map(|campaign| catalogue::of_campaign(campaign, None))
+        .transpose()?;
+    let other = own.filter(|own| own.about().name != model.about().name);
+    Ok(match other {
+        Some(other) => {
+            let [values, _] = parameters::resolve_both([model.about(), other.about()], paths, set)?;
+            values
+        }
+        None => parameters::resolve(model.about(), paths, set)?,
+    })
+}
+
+/// A campaign: its model fitted to its rig runs, unless the user has values; where it has none, with its start values.
+fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure> {
+    if beneath.campaign.is_some() {
+        let remedy = "leave --campaign out, or name its model as SUBJECT";
+        return Err(flag("--campaign", "a second campaign", "one campaign", remedy).into());
+    }
+    let campaign = Campaign::open(folder)?;
+    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
+    let is_fitted = campaign
+        .runs
+        .iter()
+        .any(|run| run.role == Role::Fit && is_rig(&run.test));
+    if beneath.params.is_some() || !beneath.set.is_empty() || !is_fitted {
+        let model = catalogue::named_by(&campaign, None)?;
+        let beneath = Beneath {
+            campaign: Some(folder),
+            ..*beneath
+        };
+        return of_model(&folder.display().to_string(), &model, &[], Errors::default(), &beneath);
+    }
+    let fitted = fit::fit(folder, &Choices::of_model(None))?;
+    let own = fitted.fit.parameters.iter();
+    let pairs = fitted.fit.all_correlations.iter();
+    let errors = Errors {
+        deviations: own.filter_map(|own| Some((own.name.clone(), own.stderr?))).collect(),
+        correlations: pairs
+            .flat_map(|pair| {
+                let (a, b) = pair.between.clone();
+                [((a.clone(), b.clone()), pair.value), ((b, a), pair.value)]
+            })
+            .collect(),
+    };
+    let (values, facts) = (fitted.values(), campaign.vehicle.iter().cloned().collect());
+    finish(
+        &folder.display().to_string(),
+        fitted.model,
+        values,
+        facts,
+        Some(campaign),
+        errors,
+    )
+}
+
+fn finish(
+    name: &str,
+    model: Loaded,
+    values: Values,
+    facts: BTreeMap<String, f64>,
+    campaign: Option<Campaign>,
+    errors: Errors,
+) -> Result<Subject, Failure> {
+    model.check_inertias(values.as_slice())?;
+    let named = model.about().parameters.iter().zip(values.as_slice());
+    let own: BTreeMap<&str, f64> = named.map(|(own, value)| (&*own.name, *value)).collect();
+    let fact = |name: &str| facts.get(name).or_else(|| own.get(name)).copied();
+    // Without any of these facts nothing rolls; with some of them, the others were forgotten.
+    let tyre = match (fact("r_tire"), fact("static_tire_def")) {
+        (None, _) | (_, None) => None,
+        _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),
+    };
+    let courses = match &tyre {
+        Some(_) => courses(campaign.as_ref())?,
+        None => Vec::new(),
+    };
+    Ok(Subject {
+        name: name.into(),
+        model,
+        values,
+        roles: campaign.map_or_else(RoleNames::default, |campaign| campaign.roles),
+        tyre,
+        courses,
+        errors,
+    })
+}
+
+/// The cleat runs of a campaign, else those of the thesis.
+fn courses(campaign: Option<&Campaign>) -> Result<Vec<Course>, Failure> {
+    let mut courses = Vec::new();
+    if let Some(campaign) = campaign {
+        for run in &campaign.runs {
+            courses.extend(Cleat::read(campaign, run)?.as_ref().map(Course::measured));
+        }
+    }
+    if courses.is_empty() {
+        courses = Course::standard().expect("the standard cleats are roads");
+    }
+    Ok(courses)
+}

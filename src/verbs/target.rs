@@ -1,0 +1,102 @@
+//! `qcar target`: what an axle must be to meet targets.
+
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use qcar_runtime::metric::Ground;
+
+use crate::failure::Failure;
+use crate::files::{folder_for_results, put};
+use crate::json;
+use crate::parameters::Setting;
+use crate::report::{Report, page};
+use crate::terminal::prose;
+use crate::verbs::Format;
+use crate::verbs::sensitivity::subject::{Beneath, Subject};
+
+// What is wanted.
+mod file;
+// As a task.
+mod plan;
+// What it gives.
+mod gather;
+// As text and as values for other verbs.
+mod render;
+// As a workbook.
+mod workbook;
+// As a page.
+mod contents;
+
+use contents::Contents;
+use file::Read;
+use gather::Answer;
+use plan::Plan;
+
+/// Find what an axle must be to meet targets: the cheapest design, the front between metrics, and the box of good designs
+///
+/// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names), and parameters that
+/// may move, with ranges, steps, costs and couplings; docs/targets.md describes it.
+/// The exit status is 1 where no design was found that meets all targets.
+#[derive(Args)]
+#[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out results")]
+pub struct Arguments {
+    /// File with targets and parameters
+    targets: PathBuf,
+    /// A value that differs from those of the files; may be repeated
+    #[arg(long, value_name = "NAME=VALUE")]
+    set: Vec<Setting>,
+    /// Of the random numbers
+    #[arg(long, value_name = "SEED", default_value_t = 1)]
+    seed: u64,
+    /// Write report.html, target.json, results.xlsx and parameters.toml with the design into this folder
+    #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
+    out: Option<PathBuf>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let read = Read::of(&arguments.targets)?;
+    let campaign = read.file.campaign.as_ref().map(|path| read.beside(path));
+    let params = read.file.params.as_ref().map(|path| read.beside(path));
+    let roads = read.roads()?;
+    let beneath = Beneath {
+        campaign: campaign.as_deref(),
+        params: params.as_deref(),
+        set: &arguments.set,
+        roads: &roads,
+    };
+    let subject = Subject::of(&read.subject(), &beneath)?;
+    let mut ground = subject.ground();
+    let plan = Plan::of(&read, &subject, &mut ground)?;
+    let wanted = [read.file.front.is_some(), read.file.space.is_some()];
+    let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted);
+    if let Some(folder) = &arguments.out {
+        write(&answer, &plan, &subject, &ground, folder)?;
+    }
+    let result = match arguments.format {
+        Format::Text => prose(&render::text(&answer)),
+        Format::Json => json::line(&answer),
+    };
+    if answer.met {
+        Ok(result)
+    } else {
+        Err(Failure::Finding(result))
+    }
+}
+
+fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, folder: &Path) -> Result<(), Failure> {
+    let design = gather::design(plan, answer, subject);
+    let contents = Contents::of(answer, ground, &subject.values, &design);
+    put(folder, "target.json", &json::line(answer))?;
+    put(
+        folder,
+        "parameters.toml",
+        &render::parameter_file(ground.about(), &design),
+    )?;
+    workbook::write(answer, folder)?;
+    let title = format!("{}: targets", answer.model);
+    Ok(put(folder, "report.html", &page(Report::Targets, &title, &contents))?)
+}

@@ -1,0 +1,340 @@
+//! What a task gives: a design, a front and a box.
+
+use qcar_runtime::metric::Ground;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::target::{
+    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, search, space,
+};
+use serde::Serialize;
+
+use super::plan::Plan;
+use crate::json::Ordered;
+use crate::progress::while_counting;
+use crate::verbs::sensitivity::gather::rounded;
+use crate::verbs::sensitivity::subject::Subject;
+
+/// All that was found.
+#[derive(Serialize)]
+pub(super) struct Answer {
+    pub subject: String,
+    pub model: String,
+    /// Whether the design meets all that must hold.
+    pub met: bool,
+    /// What the design costs.
+    pub cost: f64,
+    pub parameters: Vec<Parameter>,
+    pub targets: Vec<Target>,
+    /// By metric of the targets.
+    pub sensitivity: Vec<Sensitivity>,
+    pub front: Option<FrontAnswer>,
+    pub space: Option<SpaceAnswer>,
+}
+
+/// A parameter that may move.
+#[derive(Serialize)]
+pub(super) struct Parameter {
+    pub name: String,
+    pub unit: String,
+    pub range: [f64; 2],
+    pub today: f64,
+    /// In the design that was found.
+    pub design: f64,
+    /// In the solution space.
+    pub interval: Option<[f64; 2]>,
+    /// Whether the design stands at an end of the range.
+    pub at_bound: Option<&'static str>,
+}
+
+/// A target on a run.
+#[derive(Serialize)]
+pub(super) struct Target {
+    pub metric: String,
+    pub run: Option<String>,
+    pub unit: String,
+    /// `at_most` or `at_least`.
+    pub sense: &'static str,
+    pub limit: f64,
+    /// What it costs to miss it by its own size, of a wish.
+    pub wish: Option<f64>,
+    pub today: f64,
+    pub design: f64,
+    pub met: bool,
+    /// By how much the design is beyond it, over the limit; below zero inside.
+    pub excess: f64,
+    /// By how much the cost falls for a limit that is looser by its own size; where not all is met, how much of what stands
+    /// in the way it is.
+    pub multiplier: f64,
+    /// Share of the designs in the solution space that meet it.
+    pub in_space: Option<f64>,
+}
+
+/// What a metric depends on at the design, mean over the targets that name it.
+#[derive(Serialize)]
+pub(super) struct Sensitivity {
+    pub metric: String,
+    /// By parameter: percent of the metric for one percent of it.
+    pub elasticities: Ordered<f64>,
+}
+
+/// The front.
+#[derive(Serialize)]
+pub(super) struct FrontAnswer {
+    pub metrics: Vec<FrontMetric>,
+    pub points: Vec<FrontPoint>,
+    pub evaluated: usize,
+}
+
+/// A metric of the front, mean over the runs.
+#[derive(Serialize)]
+pub(super) struct FrontMetric {
+    pub name: String,
+    pub unit: String,
+    /// `smallest` or `largest`.
+    pub best: &'static str,
+    pub today: f64,
+    pub design: f64,
+}
+
+/// A design of the front.
+#[derive(Serialize)]
+pub(super) struct FrontPoint {
+    pub values: Vec<f64>,
+    pub cost: f64,
+    pub parameters: Ordered<f64>,
+}
+
+/// The box.
+#[derive(Serialize)]
+pub(super) struct SpaceAnswer {
+    /// That was asked for.
+    pub wanted: f64,
+    /// Share of good designs among those that judged it.
+    pub probability: f64,
+    /// At 95 % confidence no lower than this.
+    pub at_least: f64,
+    /// The part of all designs in range that it has.
+    pub volume: f64,
+    pub evaluated: usize,
+    pub cuts: Vec<CutAnswer>,
+}
+
+/// A plane of two parameters.
+#[derive(Serialize)]
+pub(super) struct CutAnswer {
+    pub parameters: [String; 2],
+    /// Values of both, and the target that is exceeded most.
+    pub dots: Vec<(f64, f64, Option<String>)>,
+}
+
+/// Designs that are drawn in a plane.
+const DOTS: usize = 250;
+
+/// Looks for a design and, where asked, for a front and a box.
+pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: u64, wanted: [bool; 2]) -> Answer {
+    let axle = Axle {
+        ground,
+        values: subject.values.clone(),
+        moves: plan.moves.clone(),
+        knobs: plan.knobs.len(),
+        means: plan.means.clone(),
+    };
+    let task = Task {
+        designs: &axle,
+        knobs: plan.knobs.clone(),
+        limits: plan.limits.clone(),
+        couplings: plan.couplings.clone(),
+    };
+    let found = while_counting("the design of least cost: step".into(), |told| {
+        search(&task, seed, told)
+    });
+    let known = [found.design.clone()];
+    let front = wanted[0].then(|| {
+        let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
+        let settings = FrontSettings {
+            seed,
+            generations: plan.generations,
+            ..FrontSettings::default()
+        };
+        while_counting("the front: generation".into(), |told| {
+            front(&task, &aims, &known, settings, told)
+        })
+    });
+    let space = if wanted[1] && found.met {
+        let settings = SpaceSettings {
+            probability: plan.probability,
+            seed,
+            ..SpaceSettings::default()
+        };
+        while_counting("the solution space: round".into(), |told| {
+            space(&task, &known, settings, told)
+        })
+    } else {
+        None
+    };
+    let cuts = space.as_ref().map_or(Vec::new(), |space| {
+        plan.cuts
+            .iter()
+            .map(|&knobs| cut(&task, space, knobs, DOTS, seed))
+            .collect()
+    });
+    Answer {
+        subject: subject.name.clone(),
+        model: subject.model.about().name.to_string(),
+        met: found.met,
+        cost: found.cost,
+        parameters: parameters(plan, &found, space.as_ref()),
+        targets: targets(plan, &task, &found, space.as_ref()),
+        sensitivity: sensitivity(plan, &axle, &found),
+        front: front.map(|front| front_answer(plan, &found, front)),
+        space: space.map(|space| space_answer(plan, &space, cuts)),
+    }
+}
+
+fn parameters(plan: &Plan, found: &Found, space: Option<&Space>) -> Vec<Parameter> {
+    let all = plan.knobs.iter().zip(&plan.units).zip(&found.design).enumerate();
+    all.map(|(k, ((knob, unit), &design))| Parameter {
+        name: knob.name.clone(),
+        unit: unit.clone(),
+        range: [knob.lower, knob.upper],
+        today: knob.today,
+        design,
+        interval: space.map(|space| space.intervals[k]),
+        at_bound: match knob.place(design) {
+            place if place < 1e-3 => Some("lower"),
+            place if place > 1.0 - 1e-3 => Some("upper"),
+            _ => None,
+        },
+    })
+    .collect()
+}
+
+fn sensitivity(plan: &Plan, axle: &Axle<'_>, found: &Found) -> Vec<Sensitivity> {
+    let Some(slopes) = axle.slopes(&found.design) else {
+        return Vec::new();
+    };
+    let mut metrics: Vec<&str> = Vec::new();
+    for wanted in &plan.wanted[..plan.limits.len()] {
+        if !metrics.contains(&&*wanted.metric) {
+            metrics.push(&wanted.metric);
+        }
+    }
+    let of = |metric: &&str| {
+        let own = plan
+            .limits
+            .iter()
+            .zip(&plan.wanted)
+            .filter(|(_, wanted)| wanted.metric == **metric);
+        let results: Vec<usize> = own.map(|(limit, _)| limit.result).collect();
+        let elasticity = |k: usize| {
+            let all = results
+                .iter()
+                .map(|&at| slopes[at][k] * found.design[k] / found.values[at]);
+            rounded(all.sum::<f64>() / results.len() as f64)
+        };
+        let names = plan.knobs.iter().map(|knob| knob.name.clone()).enumerate();
+        Sensitivity {
+            metric: metric.to_string(),
+            elasticities: names.map(|(k, name)| (name, elasticity(k))).collect(),
+        }
+    };
+    metrics.iter().map(of).collect()
+}
+
+/// The values of the design.
+pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Values {
+    let mut values = subject.values.clone();
+    for own in &plan.moves {
+        values.set(
+            own.parameter,
+            own.factor * answer.parameters[own.knob].design + own.constant,
+        );
+    }
+    values
+}
+
+fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -> Vec<Target> {
+    let today: Vec<f64> = plan.knobs.iter().map(|knob| knob.today).collect();
+    let sum = |coupling: usize, design: &[f64]| {
+        let factors = &plan.couplings[coupling].factors;
+        factors
+            .iter()
+            .zip(design)
+            .map(|(factor, value)| factor * value)
+            .sum::<f64>()
+    };
+    let target = |at: usize| {
+        let wanted = &plan.wanted[at];
+        let (sense, limit, values) = match plan.limits.get(at) {
+            Some(own) => (own.sense, own.value, [plan.today[own.result], found.values[own.result]]),
+            None => {
+                let coupling = at - plan.limits.len();
+                let values = [sum(coupling, &today), sum(coupling, &found.design)];
+                (Sense::AtMost, plan.couplings[coupling].most, values)
+            }
+        };
+        Target {
+            metric: wanted.metric.clone(),
+            run: wanted.run.clone(),
+            unit: wanted.unit.clone(),
+            sense: if sense == Sense::AtMost { "at_most" } else { "at_least" },
+            limit,
+            wish: task.wish(at),
+            today: values[0],
+            design: values[1],
+            met: found.excess[at] <= 0.0,
+            excess: found.excess[at],
+            multiplier: found.multipliers[at],
+            in_space: space.map(|space| space.each[at]),
+        }
+    };
+    (0..plan.wanted.len()).map(target).collect()
+}
+
+fn front_answer(plan: &Plan, found: &Found, front: Front) -> FrontAnswer {
+    let metric = |aim: &super::plan::Aim| FrontMetric {
+        name: aim.metric.clone(),
+        unit: aim.unit.clone(),
+        best: if aim.sense == Sense::AtMost {
+            "smallest"
+        } else {
+            "largest"
+        },
+        today: plan.today[aim.result],
+        design: found.values[aim.result],
+    };
+    let names = || plan.knobs.iter().map(|knob| knob.name.clone());
+    let point = |own: qcar_runtime::target::Point| FrontPoint {
+        values: plan.aims.iter().map(|aim| own.values[aim.result]).collect(),
+        cost: own.cost,
+        parameters: names().zip(own.design).collect(),
+    };
+    FrontAnswer {
+        metrics: plan.aims.iter().map(metric).collect(),
+        points: front.points.into_iter().map(point).collect(),
+        evaluated: front.evaluated,
+    }
+}
+
+fn space_answer(plan: &Plan, space: &Space, cuts: Vec<Cut>) -> SpaceAnswer {
+    let words = |at: usize| {
+        let own = &plan.wanted[at];
+        own.run
+            .as_ref()
+            .map_or(own.metric.clone(), |run| format!("{} on {run}", own.metric))
+    };
+    let dot = |dot: Dot| (dot.at[0], dot.at[1], dot.broken.map(words));
+    SpaceAnswer {
+        wanted: plan.probability,
+        probability: space.probability,
+        at_least: space.at_least,
+        volume: space.volume,
+        evaluated: space.evaluated,
+        cuts: cuts
+            .into_iter()
+            .map(|cut| CutAnswer {
+                parameters: cut.knobs.map(|knob| plan.knobs[knob].name.clone()),
+                dots: cut.dots.into_iter().map(dot).collect(),
+            })
+            .collect(),
+    }
+}

@@ -1,0 +1,178 @@
+//! An answer as text.
+
+use std::fmt::Write;
+
+use qcar_runtime::model::About;
+use qcar_runtime::response::parameters::Values;
+
+use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
+use crate::table::{Table, number, or_dash};
+use crate::units;
+
+/// For people.
+pub(super) fn text(of: &Answer) -> String {
+    let mut out = format!("{} ({})\n\n", of.subject, of.model);
+    out += &verdict(of);
+    out += "\n";
+    out += &targets(of).text();
+    out += "\n";
+    out += &parameters(of).text();
+    if let Some(space) = &of.space {
+        out += &space_words(space);
+    } else if !of.met {
+        out += "\nNo solution space: no design is good.\n";
+    }
+    if let Some(front) = &of.front {
+        out += &front_words(of, front);
+    }
+    out
+}
+
+fn verdict(of: &Answer) -> String {
+    if of.met {
+        return format!("All targets are met at a cost of {}.\n", number(of.cost, 3));
+    }
+    let mut missed: Vec<&Target> = of.targets.iter().filter(|own| !own.met && own.wish.is_none()).collect();
+    missed.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
+    let words = missed.iter().take(3).map(|own| {
+        let run = own.run.as_ref().map_or(String::new(), |run| format!(" on {run}"));
+        format!("{}{run}, missed by {} %", own.metric, number(100.0 * own.excess, 2))
+    });
+    let bounds = of
+        .parameters
+        .iter()
+        .filter_map(|own| Some(format!("{} ({})", own.name, own.at_bound?)));
+    let bounds: Vec<String> = bounds.collect();
+    let mut out = format!(
+        "No design was found that meets all targets; the best misses {} of {}. In the way: {}.\n",
+        missed.len(),
+        of.targets.len(),
+        words.collect::<Vec<_>>().join("; ")
+    );
+    if !bounds.is_empty() {
+        let _ = writeln!(out, "At the end of their range: {}.", bounds.join(", "));
+    }
+    out
+}
+
+fn targets(of: &Answer) -> Table {
+    let mut table = Table::new([
+        "target",
+        "run",
+        "limit",
+        "unit",
+        "today",
+        "design",
+        "met",
+        "multiplier",
+        "in space %",
+    ]);
+    for own in &of.targets {
+        let shown = |value: f64| number(units::value(value, &own.unit), 4);
+        let sign = if own.sense == "at_most" { "≤" } else { "≥" };
+        let met = match (own.met, own.wish) {
+            (true, _) => "yes",
+            (false, None) => "no",
+            (false, Some(_)) => "wish missed",
+        };
+        table.row(vec![
+            own.metric.clone(),
+            own.run.clone().unwrap_or_default(),
+            format!("{sign} {}", shown(own.limit)),
+            units::name(&own.unit).into(),
+            shown(own.today),
+            shown(own.design),
+            met.into(),
+            number(own.multiplier, 2),
+            or_dash(own.in_space.map(|share| 100.0 * share), 3),
+        ]);
+    }
+    table
+}
+
+fn parameters(of: &Answer) -> Table {
+    let mut table = Table::new([
+        "parameter",
+        "unit",
+        "range",
+        "today",
+        "design",
+        "change %",
+        "solution space",
+    ]);
+    for own in &of.parameters {
+        let shown = |value: f64| number(units::value(value, &own.unit), 4);
+        let span = |[low, high]: [f64; 2]| format!("{} … {}", shown(low), shown(high));
+        table.row(vec![
+            own.name.clone(),
+            units::name(&own.unit).into(),
+            span(own.range),
+            shown(own.today),
+            shown(own.design),
+            number(100.0 * (own.design / own.today - 1.0), 3),
+            own.interval.map_or("-".into(), span),
+        ]);
+    }
+    table
+}
+
+fn space_words(of: &SpaceAnswer) -> String {
+    let percent = |part: f64| number(100.0 * part, 3);
+    let judged = format!(
+        "\nIn the solution space {} % of the designs meet all targets, with 95 % confidence at least {} %; {} % were wanted. It \
+         has {} % of all designs in range ({} designs evaluated).\n",
+        percent(of.probability),
+        percent(of.at_least),
+        percent(of.wanted),
+        percent(of.volume),
+        of.evaluated
+    );
+    let short = "It falls short of what was wanted: loosen targets or narrow ranges.\n";
+    judged + if of.at_least < of.wanted { short } else { "" }
+}
+
+/// Rows of the front that are printed.
+const ROWS: usize = 12;
+
+fn front_words(of: &Answer, front: &FrontAnswer) -> String {
+    if front.points.is_empty() {
+        return "\nNo front: no design that meets all targets was found.\n".into();
+    }
+    let headings = front
+        .metrics
+        .iter()
+        .map(|metric| units::heading(&metric.name, &metric.unit));
+    let names = of.parameters.iter().map(|own| units::heading(&own.name, &own.unit));
+    let mut table = Table::with_headings(headings.chain(names).chain(["cost".into()]).collect());
+    let every = front.points.len().div_ceil(ROWS).max(1);
+    for point in front.points.iter().step_by(every) {
+        let values = point
+            .values
+            .iter()
+            .zip(&front.metrics)
+            .map(|(value, metric)| number(units::value(*value, &metric.unit), 4));
+        let own = point
+            .parameters
+            .0
+            .iter()
+            .zip(&of.parameters)
+            .map(|((_, value), own)| number(units::value(*value, &own.unit), 4));
+        table.row(values.chain(own).chain([number(point.cost, 3)]).collect());
+    }
+    let count = front.points.len();
+    format!(
+        "\nFront of {count} designs, of which none is better in every metric (means over the runs):\n\n{}",
+        table.text()
+    )
+}
+
+/// A parameter file as `--params` takes it.
+pub(super) fn parameter_file(about: &About, design: &Values) -> String {
+    let mut out = format!("# {} as its targets want it\n\n[parameters]\n", about.name);
+    for (place, (own, value)) in about.parameters.iter().zip(design.as_slice()).enumerate() {
+        if design.leader(place) == place {
+            let _ = writeln!(out, "{} = {value:?} # {}", own.name, own.unit);
+        }
+    }
+    out
+}

@@ -1,0 +1,172 @@
+//! Derivatives of a ride, against rides whose parameters are moved.
+
+use models::axle_d::AxleD;
+use qcar_runtime::model::{About, Contact, Model};
+use qcar_runtime::sensitivity::direction;
+use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent};
+
+use crate::cleat;
+
+/// Axle D that does not say that it is linear, so that its rides are stepped by the general method throughout: that
+/// ends its steps where the force of the tyre bends, and has no polynomials between them.
+struct General(About);
+
+impl General {
+    fn new() -> Self {
+        General(About {
+            linear: false,
+            ..AxleD.about().clone()
+        })
+    }
+}
+
+impl Model for General {
+    fn about(&self) -> &About {
+        &self.0
+    }
+
+    fn prepare(&self, p: &[f64], constants: &mut [f64]) {
+        AxleD.prepare(p, constants);
+    }
+
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {
+        AxleD.derivative(constants, x, u, dx);
+    }
+
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]) {
+        AxleD.outputs(constants, x, u, y);
+    }
+
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        AxleD.matrices(p, x, u, nonzeros);
+    }
+
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        AxleD.sensitivities(p, x, u, nonzeros);
+    }
+
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        AxleD.parameter_jacobian(p, x, u, nonzeros);
+    }
+
+    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
+        AxleD.contact_force(constants, x, s, v)
+    }
+
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
+        AxleD.rolling_derivative(constants, x, u, contact, dx);
+    }
+
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
+        AxleD.rolling_outputs(constants, x, u, contact, y);
+    }
+}
+
+fn settings(tolerance: f64) -> Settings {
+    Settings {
+        method: Method::Adaptive(tolerance),
+        ..Settings::default()
+    }
+}
+
+/// So exact that a difference of two rides still has eight digits.
+const EXACT: f64 = 1e-12;
+
+/// The signals of a ride with parameter `k` moved by a part of itself, in the order of a [`Tangent`].
+fn moved(k: usize, part: f64, drive: &Drive<'_>) -> Vec<Vec<f64>> {
+    let mut parameters = cleat::parameters();
+    let value = parameters.as_slice()[k];
+    parameters.set(k, value * (1.0 + part));
+    let (own, model) = (cleat::car(&parameters), General::new());
+    let car = Car {
+        model: &model,
+        parameters: own.parameters,
+        tyre: own.tyre,
+        load: own.load,
+        variant: own.variant,
+    };
+    let ride = ride(&car, drive, &settings(EXACT)).expect("it rides");
+    let [vertical, _] = ride.force;
+    ride.outputs.into_iter().chain([vertical]).collect()
+}
+
+/// The derivative by that part, by differences of fourth order.
+fn difference(k: usize, drive: &Drive<'_>) -> Vec<Vec<f64>> {
+    const PART: f64 = 1e-3;
+    let rides = [1.0, -1.0, 2.0, -2.0].map(|times| moved(k, times * PART, drive));
+    let signals = 0..rides[0].len();
+    let at = |signal: usize, i: usize| {
+        let [up, down, far_up, far_down] = rides.each_ref().map(|ride| ride[signal][i]);
+        (8.0 * (up - down) - (far_up - far_down)) / (12.0 * PART)
+    };
+    signals
+        .map(|signal| (0..rides[0][signal].len()).map(|i| at(signal, i)).collect())
+        .collect()
+}
+
+/// Places of the parameters that a designer moves. Facts of the vehicle are those of its tyre, too, and move with it alone.
+fn leaders() -> Vec<usize> {
+    let (parameters, about) = (cleat::parameters(), AxleD.about());
+    let all = 0..parameters.as_slice().len();
+    let own = all.filter(|&k| parameters.leader(k) == k && !about.parameters[k].known);
+    own.filter(|&k| !about.parameters[k].name.starts_with("static"))
+        .collect()
+}
+
+fn along_each(drive: &Drive<'_>, tolerance: f64) -> Tangent {
+    let parameters = cleat::parameters();
+    let directions: Vec<_> = leaders().into_iter().map(|k| direction(&parameters, k)).collect();
+    tangent(&cleat::car(&parameters), drive, &settings(tolerance), &directions).expect("it rides")
+}
+
+/// The root mean square of a difference, over that of a signal.
+fn error(found: &[f64], exact: &[f64], signal: &[f64]) -> f64 {
+    let square = |values: &mut dyn Iterator<Item = f64>| values.map(|value| value * value).sum::<f64>();
+    let off = square(&mut found.iter().zip(exact).map(|(found, exact)| found - exact));
+    (off / square(&mut signal.iter().map(|value| value - signal[0]))).sqrt()
+}
+
+/// The largest error over all signals and parameters, with those that it is of.
+fn worst(height: f64) -> (f64, usize, String) {
+    let road = cleat::cleat(height);
+    let drive = cleat::drive(&road, 30.0 / 3.6);
+    let tangent = along_each(&drive, EXACT);
+    let mut worst = (0.0, 0, String::new());
+    for (k, slopes) in leaders().into_iter().zip(&tangent.slopes) {
+        for (signal, (slope, difference)) in slopes.iter().zip(difference(k, &drive)).enumerate() {
+            let error = error(slope, &difference, &tangent.signals[signal]);
+            if error > worst.0 {
+                worst = (error, signal, AxleD.about().parameters[k].name.to_string());
+            }
+        }
+    }
+    worst
+}
+
+#[test]
+fn sensitivities_are_the_limit_of_differences() {
+    let worst = worst(0.01);
+    assert!(worst.0 < 1e-6, "{worst:?}");
+}
+
+/// A higher cleat throws the wheel further, and bends the force of the tyre more.
+#[test]
+fn a_hard_impact_does_not_spoil_them() {
+    let worst = worst(0.03);
+    assert!(worst.0 < 5e-6, "{worst:?}");
+}
+
+/// What metrics are derived with: an error of this part of the signal for a parameter that is moved by all of itself.
+#[test]
+fn the_usual_tolerance_is_enough_for_a_sensitivity() {
+    let road = cleat::cleat(0.02);
+    let drive = cleat::drive(&road, 20.0 / 3.6);
+    let (usual, exact) = (along_each(&drive, 1e-6), along_each(&drive, EXACT));
+    let mut worst: f64 = 0.0;
+    for (found, slopes) in usual.slopes.iter().zip(&exact.slopes) {
+        for (signal, (found, slope)) in found.iter().zip(slopes).enumerate() {
+            worst = worst.max(error(found, slope, &exact.signals[signal]));
+        }
+    }
+    assert!(worst < 2e-3, "{worst:e}");
+}
