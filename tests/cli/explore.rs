@@ -238,10 +238,7 @@ fn wishes_are_read_with_care() {
     );
     let other = run_line(folder.path(), &format!("{CAR} --count 2 --out sets.txt"));
     refused(&other, &["sets.txt", ".parquet"]);
-    let nowhere = run_line(
-        folder.path(),
-        &format!("{CAR} --count 2 --out models/nowhere.csv/sets.csv"),
-    );
+    let nowhere = run_line(folder.path(), &format!("{CAR} --count 2 --out nowhere/yet/sets.csv"));
     assert_eq!(nowhere.status, 0, "folders are made: {}", nowhere.stderr);
 }
 
