@@ -60,7 +60,7 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
+    /// Write parameters.toml, fit.json and, of a linear model, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print

@@ -13,7 +13,7 @@ use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior::{Explanation, Setting};
 use qcar_runtime::discover::select::{self, Alone, Minimum};
 use qcar_runtime::error::InputError;
-use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
+use qcar_runtime::fit::report::{Bound, Correlation, NoError, ParameterFit};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
@@ -146,6 +146,7 @@ struct Fitted<'a> {
     campaign: &'a str,
     model: &'a str,
     parameters: Ordered<&'a ParameterFit>,
+    all_correlations: Vec<Correlation>,
     gap: Of<Option<f64>>,
     left: Vec<Left>,
     stopped: &'a str,
@@ -187,6 +188,7 @@ impl Nonlinear {
             campaign: &self.campaign.name,
             model: &self.model,
             parameters: named.collect(),
+            all_correlations: self.correlations(),
             gap: Of {
                 fit: finite(self.found.explanation.gap.fit),
                 held_out: finite(self.found.explanation.gap.held_out),
@@ -209,6 +211,24 @@ impl Nonlinear {
             log_odds: of.log_odds,
             parameters: fitted.filter_map(value).collect(),
         }
+    }
+
+    /// Of every two parameters that the runs see.
+    fn correlations(&self) -> Vec<Correlation> {
+        let refit = &self.found.explanation.refit;
+        let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
+        let seen = |k: &usize| self.parameters[refit.free[*k].parameter].stderr.is_some();
+        let between = |a: usize, b: usize| {
+            let of = &refit.covariance;
+            let value = of[(a, b)] / (of[(a, a)] * of[(b, b)]).sqrt();
+            let between = (name(a), name(b));
+            value.is_finite().then_some(Correlation { between, value })
+        };
+        let pairs = (0..refit.free.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        pairs
+            .filter(|(a, b)| seen(a) && seen(b))
+            .filter_map(|(a, b)| between(a, b))
+            .collect()
     }
 
     fn left(&self) -> Vec<Left> {
