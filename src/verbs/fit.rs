@@ -28,8 +28,6 @@ use crate::progress::while_counting;
 use crate::terminal::prose;
 use crate::verbs::Format;
 
-// A model whose laws are nonlinear.
-mod nonlinear;
 // What K&C curves say beside it.
 mod clamped;
 // What is odd, but no error.
@@ -40,6 +38,8 @@ pub(crate) mod render;
 pub(crate) mod files;
 // The result as a workbook.
 pub(crate) mod workbook;
+// All of that of a nonlinear model.
+mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
