@@ -45,6 +45,8 @@ pub mod completion;
 pub mod scales;
 // Models with effects in them.
 pub mod workshop;
+// What a model leaves of each sensor, in percent.
+mod left;
 // Dense and named matrices.
 pub mod state_space;
 // Models for other tools.

@@ -7,16 +7,32 @@ use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
 use qcar_dsl::difference::difference;
 use qcar_dsl::patch::{self, NewParameter, Patch, Patched, Signal};
-use qcar_runtime::campaign::Axis;
+use qcar_runtime::campaign::{Axis, Campaign, Parameter};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::noise::Form;
+use qcar_runtime::discover::posterior::{Given, Setting};
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
 
 use crate::effects::Catalogue;
 use crate::evaluated::Evaluated;
+use crate::failure::Failure;
 use crate::scales::scales;
+use crate::{catalogue, effects};
+
+/// Parameters with their ranges as a search takes them.
+pub fn given(parameters: &[Parameter], campaign: &Campaign) -> Setting {
+    let given = parameters.iter().map(|p| Given {
+        range: p.range.filter(|_| p.fit),
+        name: p.name.clone(),
+        value: p.value,
+    });
+    Setting {
+        given: given.collect(),
+        vehicle: campaign.vehicle.iter().cloned().collect(),
+    }
+}
 
 /// A model on the bench, and the catalogue beside it.
 #[derive(Clone)]
@@ -36,6 +52,23 @@ impl Bench {
             catalogue,
             values,
         }
+    }
+
+    /// The model of a campaign, or another, beside the shipped catalogue.
+    ///
+    /// # Errors
+    /// A model that cannot be read, or that the compiler refuses.
+    pub fn of_campaign(campaign: &Campaign, model: Option<&str>) -> Result<Self, Failure> {
+        let compiled = catalogue::compiled_of_campaign(campaign, model)?;
+        let vehicle = campaign.vehicle.iter().cloned();
+        let values: BTreeMap<String, f64> = vehicle
+            .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
+            .collect();
+        Ok(Bench::new(
+            compiled.model,
+            Arc::new(effects::catalogue()?),
+            Arc::new(values),
+        ))
     }
 
     /// The same with what the ranges of effects are measured by in a campaign.

@@ -2,17 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, OnceLock};
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
-use qcar_runtime::campaign::{Campaign, Parameter};
+use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::numbers::Numbers;
-use qcar_runtime::discover::posterior::{Given, Setting};
+use qcar_runtime::discover::posterior::Setting;
 use qcar_runtime::discover::{Evidence, Sweeps, select};
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::About;
@@ -25,13 +25,10 @@ use crate::parameters::{bound, check_campaign, own};
 use crate::progress::Showing;
 use crate::terminal::prose;
 use crate::verbs::{Format, kc};
-use crate::workshop::Bench;
-use crate::{catalogue, effects};
+use crate::workshop::{Bench, given};
 
 // Where something would explain the gap.
 pub(crate) mod places;
-// What a model leaves of each sensor.
-pub(crate) mod left;
 // The law that was learned where no effect explains the gap.
 pub(crate) mod law;
 // One of the findings in words.
@@ -183,7 +180,7 @@ pub(crate) fn answer(
     numbers: Numbers,
 ) -> Result<Answer, Failure> {
     let begun = Instant::now();
-    let bench = bench(campaign, model)?;
+    let bench = Bench::of_campaign(campaign, model)?;
     check_campaign(bench.model().about(), campaign)?;
     if kc::has_curves(campaign) {
         // A curve in a wrong unit would be evidence of an effect that is not there.
@@ -237,20 +234,6 @@ fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     })
 }
 
-/// The campaign's model beside the catalogue.
-pub(crate) fn bench(campaign: &Campaign, model: Option<&str>) -> Result<Bench, Failure> {
-    let compiled = catalogue::compiled_of_campaign(campaign, model)?;
-    let vehicle = campaign.vehicle.iter().cloned();
-    let values: BTreeMap<String, f64> = vehicle
-        .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
-        .collect();
-    Ok(Bench::new(
-        compiled.model,
-        Arc::new(effects::catalogue()?),
-        Arc::new(values),
-    ))
-}
-
 /// What the campaign gives, and what the model has beside that and may be estimated: an effect that is in it already.
 ///
 /// # Errors
@@ -259,20 +242,7 @@ fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     let mut parameters = campaign.parameters.clone();
     parameters.extend(own(about, campaign));
     bound(&mut parameters, about, campaign)?;
-    Ok(of_parameters(&parameters, campaign))
-}
-
-/// Parameters with their ranges as a search takes them.
-pub(crate) fn of_parameters(parameters: &[Parameter], campaign: &Campaign) -> Setting {
-    let given = parameters.iter().map(|p| Given {
-        range: p.range.filter(|_| p.fit),
-        name: p.name.clone(),
-        value: p.value,
-    });
-    Setting {
-        given: given.collect(),
-        vehicle: campaign.vehicle.iter().cloned().collect(),
-    }
+    Ok(given(&parameters, campaign))
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

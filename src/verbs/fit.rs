@@ -28,8 +28,6 @@ use crate::progress::while_counting;
 use crate::terminal::prose;
 use crate::verbs::Format;
 
-// A model whose laws are nonlinear.
-mod nonlinear;
 // What K&C curves say beside it.
 mod clamped;
 // What is odd, but no error.
@@ -40,6 +38,8 @@ pub(crate) mod render;
 pub(crate) mod files;
 // The result as a workbook.
 pub(crate) mod workbook;
+// All of that of a nonlinear model.
+mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -60,7 +60,7 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
+    /// Write parameters.toml, fit.json and, of a linear model, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// How to print

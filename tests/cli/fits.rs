@@ -84,7 +84,10 @@ fn a_nonlinear_model_is_fitted_to_its_truth() {
         );
         assert!(error < 0.1 * truth, "{name}: {value} ± {error}");
     }
-    assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
+    assert_eq!(
+        fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"],
+        "undetermined"
+    );
     assert!(fit["gap"]["held_out"].as_f64() < Some(1.5), "{}", fit["gap"]);
 }
 

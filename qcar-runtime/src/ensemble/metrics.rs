@@ -37,7 +37,7 @@ impl Metric {
 /// What a number is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column {
-    /// Such as `peak_body_z`.
+    /// Such as `body_z.peak`.
     pub name: String,
     /// SI.
     pub unit: String,
@@ -70,8 +70,10 @@ pub enum MetricsError {
     NoAcceleration { model: String },
 }
 
-/// Lowest and highest frequency at which transmissibilities are looked at, Hz, and the number of lines between them.
-const BAND: (f64, f64, usize) = (0.5, 30.0, 300);
+/// Where peaks of a channel are looked for, Hz: what a body and its wheel do.
+pub(crate) const BAND: [f64; 2] = [0.5, 50.0];
+/// Lines there: closer than the width of a peak of 1 % damping.
+pub(crate) const LINES: usize = 340;
 
 /// Everything that is measured, in the order of its columns.
 pub struct Metrics<'a, M: ?Sized> {
@@ -140,7 +142,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
                 Metric::Dose => ("vdv", "m/s^1.75"),
                 Metric::Transmissibility | Metric::Modes => return Vec::new(),
             };
-            let column = |own: &Acceleration| column(format!("{what}_{}", own.name), unit);
+            let column = |own: &Acceleration| column(format!("{}.{what}", own.name), unit);
             self.accelerations.iter().map(column).collect()
         };
         self.chosen.iter().flat_map(of).collect()
@@ -242,8 +244,8 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
 impl Ratio {
     fn columns(&self) -> [Column; 2] {
         [
-            column(format!("transmissibility_{}", self.name), &self.unit),
-            column(format!("frequency_{}", self.name), "Hz"),
+            column(format!("{}.peak", self.name), &self.unit),
+            column(format!("{}.peak_frequency", self.name), "Hz"),
         ]
     }
 }
@@ -255,8 +257,8 @@ fn column(name: String, unit: &str) -> Column {
 
 fn of_mode(number: usize) -> [Column; 2] {
     [
-        column(format!("mode_{number}_frequency"), "Hz"),
-        column(format!("mode_{number}_damping"), "1"),
+        column(format!("mode.{number}.frequency"), "Hz"),
+        column(format!("mode.{number}.damping"), "1"),
     ]
 }
 
@@ -269,7 +271,7 @@ fn most_modes(about: &About) -> usize {
 
 /// The frequencies of the band, Hz, at equal ratios.
 fn lines() -> Vec<f64> {
-    let (from, to, lines) = BAND;
+    let ([from, to], lines) = (BAND, LINES);
     let at = |line: usize| from * f64::powf(to / from, line as f64 / (lines - 1) as f64);
     (0..lines).map(at).collect()
 }

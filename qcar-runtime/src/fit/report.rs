@@ -100,6 +100,8 @@ pub enum NoError {
     Tied,
     /// It was to be fitted, but no fitted channel depends on it; it keeps its start value.
     NotSeen,
+    /// The runs say nothing of it within its range.
+    Undetermined,
     /// It rests on a bound, where its error is not symmetric.
     AtBound,
     /// The channels see it only together with others.
@@ -118,6 +120,7 @@ impl NoError {
             Self::Known => "known, not fitted".to_owned(),
             Self::Tied => "takes the value of another parameter".to_owned(),
             Self::NotSeen => "no fitted channel depends on it: left at its start value".to_owned(),
+            Self::Undetermined => "the runs say nothing of it within its range".to_owned(),
             Self::AtBound => "at its bound".to_owned(),
             Self::OnlyTogether { with } => format!("seen only in combination with {}", with.join(", ")),
             Self::NotConverged => "the search did not end at a minimum".to_owned(),

@@ -2,6 +2,7 @@
 
 use nalgebra::Complex;
 
+use crate::ensemble::{BAND, LINES};
 use crate::model::{Channel, Model};
 use crate::response::Response;
 use crate::response::parameters::Values;
@@ -14,10 +15,6 @@ pub(super) struct Resonance {
     pub slopes: Vec<(usize, [f64; 2])>,
 }
 
-/// Where peaks are looked for, Hz: what a body and its wheel do.
-const BAND: [f64; 2] = [0.5, 50.0];
-/// Lines of the first look: closer than the width of a peak of 1 % damping.
-const LINES: usize = 300;
 /// Lines of each further look between the neighbours of the largest, and how many looks there are.
 const CLOSER: usize = 9;
 const LOOKS: usize = 6;

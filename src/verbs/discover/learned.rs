@@ -9,8 +9,8 @@ use serde::Serialize;
 use super::Answer;
 use super::finding::described;
 use super::law::Law;
-use super::left::BeforeAfter;
 use crate::json::Ordered;
+use crate::left::BeforeAfter;
 
 /// Laws that close the gap where no effect of the catalogue does.
 #[derive(Serialize)]

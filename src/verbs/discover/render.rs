@@ -13,10 +13,10 @@ use serde::Serialize;
 use super::Answer;
 use super::finding::described;
 use super::learned;
-use super::left::{BeforeAfter, Left, channel, left};
 use super::places::{self, Missing};
 use crate::effects;
 use crate::json::{self, Ordered};
+use crate::left::{BeforeAfter, Left, channel, left};
 use crate::table::{Table, number, or_dash};
 use crate::units;
 

@@ -13,7 +13,7 @@ use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior::{Explanation, Setting};
 use qcar_runtime::discover::select::{self, Alone, Minimum};
 use qcar_runtime::error::InputError;
-use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
+use qcar_runtime::fit::report::{Bound, Correlation, NoError, ParameterFit};
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 use serde::Serialize;
@@ -22,11 +22,15 @@ use super::{Arguments, Choices, files, plan, render};
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::json::{self, Ordered};
+use crate::left;
 use crate::progress::Showing;
 use crate::table::{Table, number};
 use crate::terminal::prose;
 use crate::verbs::Format;
-use crate::verbs::discover::{bench, left, of_parameters};
+use crate::workshop::{Bench, given};
+
+/// Residuals of more standard deviations than this are not chance: three of a normal distribution.
+const MUCH: f64 = 3.0;
 
 /// A nonlinear model that was fitted to a campaign.
 struct Nonlinear {
@@ -69,10 +73,10 @@ fn refuse_channels(choices: &Choices) -> Result<(), InputError> {
 
 fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
     let begun = Instant::now();
-    let bench = bench(&campaign, choices.model.as_deref())?;
+    let bench = Bench::of_campaign(&campaign, choices.model.as_deref())?;
     let about = bench.model().about().clone();
     let plan = plan(&campaign, &about, choices)?;
-    let setting = of_parameters(&plan.parameters, &campaign);
+    let setting = given(&plan.parameters, &campaign);
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(&campaign, &about)?;
@@ -117,7 +121,7 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
             _ if leader != place => NoError::Tied,
             (None, _) => NoError::Known,
             (_, Some(_)) => NoError::AtBound,
-            _ => NoError::NotSeen,
+            _ => NoError::Undetermined,
         };
         ParameterFit {
             name: own.name.to_string(),
@@ -146,6 +150,7 @@ struct Fitted<'a> {
     campaign: &'a str,
     model: &'a str,
     parameters: Ordered<&'a ParameterFit>,
+    all_correlations: Vec<Correlation>,
     gap: Of<Option<f64>>,
     left: Vec<Left>,
     stopped: &'a str,
@@ -187,6 +192,7 @@ impl Nonlinear {
             campaign: &self.campaign.name,
             model: &self.model,
             parameters: named.collect(),
+            all_correlations: self.correlations(),
             gap: Of {
                 fit: finite(self.found.explanation.gap.fit),
                 held_out: finite(self.found.explanation.gap.held_out),
@@ -209,6 +215,24 @@ impl Nonlinear {
             log_odds: of.log_odds,
             parameters: fitted.filter_map(value).collect(),
         }
+    }
+
+    /// Of every two parameters that the runs see.
+    fn correlations(&self) -> Vec<Correlation> {
+        let refit = &self.found.explanation.refit;
+        let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
+        let seen = |k: &usize| self.parameters[refit.free[*k].parameter].stderr.is_some();
+        let between = |a: usize, b: usize| {
+            let of = &refit.covariance;
+            let value = of[(a, b)] / (of[(a, a)] * of[(b, b)]).sqrt();
+            let between = (name(a), name(b));
+            value.is_finite().then_some(Correlation { between, value })
+        };
+        let pairs = (0..refit.free.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        pairs
+            .filter(|(a, b)| seen(a) && seen(b))
+            .filter_map(|(a, b)| between(a, b))
+            .collect()
     }
 
     fn left(&self) -> Vec<Left> {
@@ -239,6 +263,10 @@ impl Nonlinear {
             out += &format!(", {} of those held out", number(gap.held_out, 3));
         }
         out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
+        if gap.fit > MUCH {
+            out += "note: the residuals are far above their uncertainty, which the standard errors do not account for: the model \
+                    lacks something (`qcar discover` looks for it)\n";
+        }
         out.extend(self.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
         let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
         for left in self.left() {

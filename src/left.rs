@@ -22,13 +22,13 @@ pub(crate) struct Left {
 
 /// RMS of (measured - modelled) over its uncertainty; `null` where there is no such run.
 #[derive(Serialize)]
-pub(super) struct BeforeAfter {
+pub(crate) struct BeforeAfter {
     before: Option<f64>,
     after: Option<f64>,
 }
 
 impl BeforeAfter {
-    pub(super) fn new(before: f64, after: f64) -> Self {
+    pub(crate) fn new(before: f64, after: f64) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         BeforeAfter {
             before: finite(before),
@@ -93,7 +93,7 @@ fn word(kind: Kind) -> &'static str {
 }
 
 /// The name of a sensor.
-pub(super) fn channel(sensor: &Point) -> String {
+pub(crate) fn channel(sensor: &Point) -> String {
     let axis = format!("{:?}", sensor.axis).to_lowercase();
     format!("{}_{axis}", sensor.location)
 }
