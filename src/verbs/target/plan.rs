@@ -482,6 +482,10 @@ impl<'a> Planner<'a, '_> {
                 }
                 readings.retain(|reading| runs.get_ref().iter().any(|own| named(reading, own)));
             }
+            if readings.is_empty() {
+                self.no_run(target);
+                continue;
+            }
             all.push(Sought { target, readings });
         }
         if read.file.targets.is_empty() {
@@ -489,6 +493,18 @@ impl<'a> Planner<'a, '_> {
             self.wrong(&read.file.subject, "target", "no target", "at least one", remedy);
         }
         all
+    }
+
+    fn no_run(&mut self, target: &file::Target) {
+        let (found, expected) = ("no run", "names of runs");
+        let remedy = "leave the line out for all runs";
+        match &target.runs {
+            Some(runs) => self.wrong(runs, "target.runs", found, expected, remedy),
+            None => {
+                let (expected, remedy) = ("a run that has a value of it", "name another metric");
+                self.wrong(&target.metric, "target.metric", found, expected, remedy);
+            }
+        }
     }
 
     /// The limits of all readings, and what they are.
