@@ -133,6 +133,7 @@ impl Subject {
     /// Where its metrics are measured.
     pub fn ground(&self) -> Ground<'_> {
         Ground::new(&*self.model, &self.values, &self.roles, self.tyre, self.courses.clone())
+            .refusing(|p| self.model.check_inertias(p).err().map(|error| error.to_string()))
     }
 }
 
