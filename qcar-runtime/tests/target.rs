@@ -66,7 +66,7 @@ fn task<'a>(designs: &'a Formula, knobs: Vec<Knob>, limits: Vec<Limit>) -> Task<
 fn the_cheapest_design_stands_on_the_limit_and_its_multiplier_is_the_slope_of_the_cost() {
     let disc = Formula(|x| vec![x[0] * x[0] + x[1] * x[1]]);
     let knobs = vec![knob("x", 0.0, 4.0, 2.0, None), knob("y", 0.0, 4.0, 2.0, None)];
-    let found = search(&task(&disc, knobs, vec![at_most(0, 4.0)]), 1, UNTOLD);
+    let found = search(&task(&disc, knobs, vec![at_most(0, 4.0)]), 1, UNTOLD).unwrap();
     assert!(found.met, "{found:?}");
     for value in &found.design {
         assert!((value - 2.0_f64.sqrt()).abs() < 1e-3, "{found:?}");
@@ -96,7 +96,7 @@ fn couplings_and_steps_hold() {
         factors: vec![-1.0, 1.0],
         most: 0.0,
     }];
-    let found = search(&task, 1, UNTOLD);
+    let found = search(&task, 1, UNTOLD).unwrap();
     // Of all designs that can be had with y ≤ x and x + 2 y ≥ 7.3, by trying them all.
     let all = (0..=10).flat_map(|i| (0..=20).map(move |j| [f64::from(i), 0.5 * f64::from(j)]));
     let good = all.filter(|[x, y]| y <= x && x + 2.0 * y >= 7.3);
@@ -109,7 +109,7 @@ fn what_cannot_be_met_names_what_stands_in_the_way() {
     let contradiction = Formula(|x| vec![x[0], -x[0], x[1]]);
     let knobs = vec![knob("x", 0.0, 1.0, 0.5, None), knob("y", 0.0, 1.0, 0.5, None)];
     let limits = vec![at_most(0, 0.2), at_most(1, -0.8), at_most(2, 0.9)];
-    let found = search(&task(&contradiction, knobs, limits), 1, UNTOLD);
+    let found = search(&task(&contradiction, knobs, limits), 1, UNTOLD).unwrap();
     assert!(!found.met);
     assert!(
         found.multipliers[2] == 0.0 && found.multipliers[0] + found.multipliers[1] > 0.99,

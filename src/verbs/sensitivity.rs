@@ -145,7 +145,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         names => chosen::metrics(&ground, names)?,
     };
     let parameters = chosen::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
-    let tolerances = tolerances(&subject, arguments)?;
+    let tolerances = tolerances(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
         designs: designs as usize,
         seed: arguments.seed,
@@ -181,12 +181,20 @@ fn list(ground: &Ground<'_>) -> String {
 }
 
 /// By name, in the unit of the parameter.
-fn tolerances(subject: &Subject, arguments: &Arguments) -> Result<BTreeMap<String, f64>, InputError> {
+fn tolerances(
+    subject: &Subject,
+    parameters: &[usize],
+    arguments: &Arguments,
+) -> Result<BTreeMap<String, f64>, InputError> {
     let about = subject.model.about();
     let (mut tolerances, mut problems) = (BTreeMap::new(), Vec::new());
     for own in &arguments.tolerance {
         let problem = |found: &str, expected: &str, remedy: &str| flag("--tolerance", found, expected, remedy);
         match chosen::parameter(about, &subject.values, &own.name, problem) {
+            Ok(place) if !parameters.contains(&place) => {
+                let found = format!("`{}`, which is not looked at", own.name);
+                problems.push(problem(&found, "one of the parameters", "name it in --parameters, too"));
+            }
             Ok(place) => {
                 let size = (own.part.0 * subject.values.as_slice()[place]).abs();
                 tolerances.insert(own.name.clone(), size);

@@ -72,7 +72,16 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut ground = subject.ground();
     let plan = Plan::of(&read, &subject, &mut ground)?;
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
-    let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted);
+    let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted).ok_or_else(|| {
+        let (found, expected) = ("no design in range that can be driven", "ranges with designs that can");
+        read.problem(
+            &read.file.subject,
+            "parameter.range",
+            found,
+            expected,
+            "narrow the ranges",
+        )
+    })?;
     if let Some(folder) = &arguments.out {
         write(&answer, &plan, &subject, &ground, folder)?;
     }

@@ -275,6 +275,11 @@ fn what_cannot_be_wanted_is_refused_with_place_and_remedy() {
         &["line 8", "`x`", "cleat/v30_h30.csv.gz"],
     );
     refused(
+        "at_most = \"92 %\"",
+        "at_most = \"92 %\"\nruns = []",
+        &["line 8", "target.runs", "no run", "leave the line out"],
+    );
+    refused(
         "name = \"k_tire\"",
         "name = \"k_tyre\"",
         &["parameter.name", "did you mean `k_tire`?"],
@@ -336,7 +341,37 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
             ],
             "cleat/v30_h30.csv.gz",
         ),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--road",
+                "C@60km/h",
+                "--runs",
+                "iso*",
+                "--metrics",
+                "body_x.peak",
+            ],
+            "a run over an obstacle",
+        ),
+        (
+            &[
+                "sensitivity",
+                "axle_a",
+                "--campaign",
+                "models/campaigns/axle_a_rig",
+                "--parameters",
+                "k_tire",
+                "--tolerance",
+                "k_wheel_x=5%",
+            ],
+            "`k_wheel_x`, which is not looked at",
+        ),
         (&["sensitivity", "axle_a", "--road", "Z@60km/h"], "C@60km/h"),
+        (&["sensitivity", "axle_a", "--road", "C@1e9km/h"], "at most 100 m/s"),
+        (&["sensitivity", "quarter_car", "--road", "C@60km/h"], "static_tire_def"),
         (
             &["sensitivity", "models/campaigns"],
             "without campaign.toml or fit.json",

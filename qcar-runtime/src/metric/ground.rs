@@ -26,7 +26,11 @@ pub struct Ground<'a> {
     readings: Vec<Reading>,
     /// Place of the output that feels an obstacle first.
     wheel: Option<usize>,
+    impossible: Option<Box<Impossible<'a>>>,
 }
+
+/// Why parameters are those of no axle; none where they may be.
+type Impossible<'a> = dyn Fn(&[f64]) -> Option<String> + Send + Sync + 'a;
 
 /// Accelerations of a ride.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,6 +63,8 @@ pub struct Slopes {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum MetricError {
+    #[error("{reason}")]
+    Impossible { reason: String },
     #[error("run `{course}`: {reason}")]
     Ride { course: String, reason: SimulateError },
     #[error(
@@ -96,7 +102,15 @@ impl<'a> Ground<'a> {
             metrics,
             readings: Vec::new(),
             wheel,
+            impossible: None,
         }
+    }
+
+    /// Measures no axle for whose parameters there is a reason that it cannot be.
+    #[must_use]
+    pub fn refusing(mut self, impossible: impl Fn(&[f64]) -> Option<String> + Send + Sync + 'a) -> Self {
+        self.impossible = Some(Box::new(impossible));
+        self
     }
 
     /// All metrics that the model has.
@@ -146,7 +160,7 @@ impl<'a> Ground<'a> {
     /// The value of each reading.
     ///
     /// # Errors
-    /// What cannot be ridden, or is not there with these parameters.
+    /// What cannot be, cannot be ridden, or is not there with these parameters.
     pub fn measure(&self, values: &Values) -> Result<Vec<f64>, MetricError> {
         Ok(self.measure_with(values, &[])?.values)
     }
@@ -157,6 +171,9 @@ impl<'a> Ground<'a> {
     /// # Errors
     /// As [`Ground::measure`].
     pub fn measure_with(&self, values: &Values, directions: &[Vec<f64>]) -> Result<Slopes, MetricError> {
+        if let Some(reason) = self.impossible.as_ref().and_then(|why| why(values.as_slice())) {
+            return Err(MetricError::Impossible { reason });
+        }
         let courses: BTreeSet<usize> = self.readings.iter().filter_map(|reading| reading.course).collect();
         let courses: Vec<usize> = courses.into_iter().collect();
         let ridden = courses

@@ -10,14 +10,20 @@ use qcar_runtime::spelling::{self, nearest};
 
 use crate::failure::flag;
 
-/// What stands before and behind a `*` in a name.
+/// True of a name that a pattern means, in which each `*` stands for any letters.
 pub(crate) fn fits(pattern: &str, name: &str) -> bool {
-    match pattern.split_once('*') {
-        Some((before, behind)) => {
-            name.len() >= before.len() + behind.len() && name.starts_with(before) && name.ends_with(behind)
-        }
-        None => pattern == name,
-    }
+    let Some((before, rest)) = pattern.split_once('*') else {
+        return pattern == name;
+    };
+    let (between, behind) = rest.rsplit_once('*').unwrap_or(("", rest));
+    let inner = name.strip_prefix(before).and_then(|name| name.strip_suffix(behind));
+    let after = |name: &str, piece: &str| name.find(piece).map(|at| at + piece.len());
+    let mut pieces = between.split('*');
+    inner.is_some_and(|inner| {
+        pieces
+            .try_fold(0, |from, piece| Some(from + after(&inner[from..], piece)?))
+            .is_some()
+    })
 }
 
 /// Leaves the courses that names mean; all where there are no names.
@@ -56,13 +62,33 @@ pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize
         }
         chosen.extend(found);
     }
+    let chosen = each_once(chosen);
+    problems.extend(chosen.iter().filter_map(|&metric| unread(ground, metric)));
+    InputError::unless_empty(problems, Some(chosen))
+}
+
+fn each_once(places: Vec<usize>) -> Vec<usize> {
     let mut once: Vec<usize> = Vec::new();
-    chosen.into_iter().for_each(|metric| {
-        if !once.contains(&metric) {
-            once.push(metric)
+    for place in places {
+        if !once.contains(&place) {
+            once.push(place);
         }
-    });
-    InputError::unless_empty(problems, Some(once))
+    }
+    once
+}
+
+/// What to say of a metric that none of the runs has a value of.
+fn unread(ground: &Ground<'_>, metric: usize) -> Option<Problem> {
+    let found = format!("`{}`, on runs without an obstacle", ground.metrics()[metric].name);
+    let remedy = "choose such a run with --runs, or leave the metric out";
+    ground.readings_of(metric).is_empty().then(|| {
+        flag(
+            "--metrics",
+            found,
+            "a run over an obstacle, which throws the wheel up",
+            remedy,
+        )
+    })
 }
 
 fn places<'a>(metrics: &'a [Metric], pattern: &'a str) -> impl Iterator<Item = usize> + 'a {
@@ -114,12 +140,12 @@ pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
         _ => true,
     };
     let all = ground.metrics().iter().enumerate();
-    all.filter(|(_, metric)| wanted(metric))
+    all.filter(|(place, metric)| wanted(metric) && !ground.readings_of(*place).is_empty())
         .map(|(place, _)| place)
         .collect()
 }
 
-/// Parameters by name, each that leads its ties; where there are no names, all that the model does not call known.
+/// Parameters by name, each once and each that leads its ties; where there are no names, all that the model does not call known.
 ///
 /// # Errors
 /// Every name that is no parameter of the model, or that takes its value from another.
@@ -141,7 +167,7 @@ pub(crate) fn parameters(about: &About, values: &Values, names: &[String]) -> Re
             Err(error) => problems.extend(error.problems),
         }
     }
-    InputError::unless_empty(problems, Some(chosen))
+    InputError::unless_empty(problems, Some(each_once(chosen)))
 }
 
 /// A parameter that leads its ties.
@@ -171,6 +197,22 @@ pub(crate) fn parameter(
                 &format!("name `{leader}`, or give `{name}` a value"),
             )
             .into())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fits;
+
+    #[test]
+    fn each_star_stands_for_any_letters() {
+        let name = "cleat/v30_h20.csv.gz";
+        for pattern in ["*", "cleat/*", "*.gz", "c*v30*h20*z", "*h20*", "**v30_*", name] {
+            assert!(fits(pattern, name), "{pattern}");
+        }
+        for pattern in ["", "v30*", "*h20", "*h20*v30*", "cleat/v30_h20.csv.gz*gz", "*x*"] {
+            assert!(!fits(pattern, name), "{pattern}");
         }
     }
 }

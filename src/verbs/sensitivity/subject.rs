@@ -58,6 +58,9 @@ const CLASSES: [(&str, Class); 8] = [
     ("H", Class::H),
 ];
 
+/// Of a random road, m/s: it is as long as what is driven, and faster than any car.
+const FASTEST: f64 = 100.0;
+
 impl FromStr for RandomRoad {
     type Err = String;
 
@@ -67,6 +70,9 @@ impl FromStr for RandomRoad {
         let class = CLASSES.iter().find(|(name, _)| *name == class.trim());
         let speed = Declared::quantity(speed).filter(|(speed, unit)| unit.is_like("m/s") && *speed > 0.0);
         let ((_, class), (speed, _)) = class.zip(speed).ok_or_else(expected)?;
+        if speed > FASTEST {
+            return Err(format!("expected a speed of at most {FASTEST} m/s, found `{text}`"));
+        }
         Course::random(*class, speed)
             .map(RandomRoad)
             .map_err(|error| error.to_string())
@@ -89,12 +95,16 @@ impl Subject {
     /// A model by name or path, a campaign's folder, or what a fit has written.
     ///
     /// # Errors
-    /// What cannot be read, compiled, resolved or fitted, and an argument that is nothing of that.
+    /// What cannot be read, compiled, resolved or fitted, an argument that is nothing of that, and roads without a tyre.
     pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
-        if subject.tyre.is_some() {
-            subject.courses.extend(beneath.roads.iter().map(|road| road.0.clone()));
+        if subject.tyre.is_none() && !beneath.roads.is_empty() {
+            let found = "a random road, and no tyre that could roll over it";
+            let expected = "r_tire, static_tire_def and static_tire_load";
+            let remedy = "give a campaign, or parameter values with [vehicle], or leave the road out";
+            return Err(flag(&subject.name, found, expected, remedy).into());
         }
+        subject.courses.extend(beneath.roads.iter().map(|road| road.0.clone()));
         Ok(subject)
     }
 
@@ -123,6 +133,7 @@ impl Subject {
     /// Where its metrics are measured.
     pub fn ground(&self) -> Ground<'_> {
         Ground::new(&*self.model, &self.values, &self.roles, self.tyre, self.courses.clone())
+            .refusing(|p| self.model.check_inertias(p).err().map(|error| error.to_string()))
     }
 }
 

@@ -212,7 +212,10 @@ impl Read {
             match own.get_ref().parse() {
                 Ok(road) => roads.push(road),
                 Err(_) => {
-                    let (found, expected) = (format!("`{}`", own.get_ref()), "a class of ISO 8608 and a speed");
+                    let (found, expected) = (
+                        format!("`{}`", own.get_ref()),
+                        "a class of ISO 8608 and a speed of at most 100 m/s",
+                    );
                     problems.push(self.problem(own, "roads", &found, expected, "write it as \"C@60km/h\""));
                 }
             }

@@ -129,8 +129,14 @@ pub(super) struct CutAnswer {
 /// Designs that are drawn in a plane.
 const DOTS: usize = 250;
 
-/// Looks for a design and, where asked, for a front and a box.
-pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: u64, wanted: [bool; 2]) -> Answer {
+/// Looks for a design and, where asked, for a front and a box. None where no design can be driven.
+pub(super) fn gather(
+    subject: &Subject,
+    ground: &Ground<'_>,
+    plan: &Plan,
+    seed: u64,
+    wanted: [bool; 2],
+) -> Option<Answer> {
     let axle = Axle {
         ground,
         values: subject.values.clone(),
@@ -146,7 +152,7 @@ pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: 
     };
     let found = while_counting("the design of least cost: step".into(), |told| {
         search(&task, seed, told)
-    });
+    })?;
     let known = [found.design.clone()];
     let front = wanted[0].then(|| {
         let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
@@ -177,7 +183,7 @@ pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: 
             .map(|&knobs| cut(&task, space, knobs, DOTS, seed))
             .collect()
     });
-    Answer {
+    Some(Answer {
         subject: subject.name.clone(),
         model: subject.model.about().name.to_string(),
         met: found.met,
@@ -187,7 +193,7 @@ pub(super) fn gather(subject: &Subject, ground: &Ground<'_>, plan: &Plan, seed: 
         sensitivity: sensitivity(plan, &axle, &found),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
-    }
+    })
 }
 
 fn parameters(plan: &Plan, found: &Found, space: Option<&Space>) -> Vec<Parameter> {

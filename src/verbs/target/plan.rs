@@ -348,10 +348,17 @@ impl<'a> Planner<'a, '_> {
                         continue;
                     }
                     let ratio = self.values().as_slice()[place] / knobs[knob].today;
+                    let factor = own.factor.unwrap_or(ratio);
+                    let leader = (&knobs[knob], moves[knob].parameter);
+                    if let Err((found, expected)) = self.can_follow(place, leader, factor) {
+                        let remedy = "correct the factor, or narrow the range of what it follows";
+                        self.wrong(parameter, "coupling.parameter", &found, &expected, remedy);
+                        continue;
+                    }
                     moves.push(Move {
                         knob,
                         parameter: place,
-                        factor: own.factor.unwrap_or(ratio),
+                        factor,
                         constant: 0.0,
                     });
                 }
@@ -362,6 +369,11 @@ impl<'a> Planner<'a, '_> {
                     at_most: Some(most),
                     factor: None,
                 } => {
+                    if !most.is_finite() || !sum.get_ref().values().all(|factor| factor.is_finite()) {
+                        let (found, expected) = ("a number that is not finite", "finite factors and a finite `at_most`");
+                        self.wrong(sum, "coupling.sum", found, expected, "correct the numbers");
+                        continue;
+                    }
                     let mut factors = vec![0.0; knobs.len()];
                     for (name, factor) in sum.get_ref() {
                         let named = Spanned::new(sum.span(), name.clone());
@@ -390,6 +402,36 @@ impl<'a> Planner<'a, '_> {
             }
         }
         couplings
+    }
+
+    /// Checks a parameter that is a factor times a knob, at both ends of its range; else what was found and expected.
+    fn can_follow(&self, place: usize, (knob, leader): (&Knob, usize), factor: f64) -> Result<(), (String, String)> {
+        let (model, about) = (&self.subject.model, self.subject.model.about());
+        let own = &about.parameters[place];
+        if !factor.is_finite() {
+            return Err((
+                format!("`{}` at {factor} times `{}`", own.name, knob.name),
+                "a finite factor".into(),
+            ));
+        }
+        for end in [knob.lower, knob.upper] {
+            let value = factor * end;
+            let found = format!("`{}` at {value} {} where `{}` is {end}", own.name, own.unit, knob.name);
+            if let Some((least, most)) = own.range.filter(|(least, most)| value < *least || value > *most) {
+                let valid = format!(
+                    "{least} to {most} {}, for which model `{}` is valid",
+                    own.unit, about.name
+                );
+                return Err((found, valid));
+            }
+            let mut moved = self.values().clone();
+            moved.set(leader, end);
+            moved.set(place, value);
+            if let Err(error) = model.check_inertias(moved.as_slice()) {
+                return Err((format!("{found}: {error}"), "masses above zero".into()));
+            }
+        }
+        Ok(())
     }
 
     /// The knob of a parameter that may move.
@@ -482,6 +524,10 @@ impl<'a> Planner<'a, '_> {
                 }
                 readings.retain(|reading| runs.get_ref().iter().any(|own| named(reading, own)));
             }
+            if readings.is_empty() {
+                self.no_run(target);
+                continue;
+            }
             all.push(Sought { target, readings });
         }
         if read.file.targets.is_empty() {
@@ -489,6 +535,18 @@ impl<'a> Planner<'a, '_> {
             self.wrong(&read.file.subject, "target", "no target", "at least one", remedy);
         }
         all
+    }
+
+    fn no_run(&mut self, target: &file::Target) {
+        let (found, expected) = ("no run", "names of runs");
+        let remedy = "leave the line out for all runs";
+        match &target.runs {
+            Some(runs) => self.wrong(runs, "target.runs", found, expected, remedy),
+            None => {
+                let (expected, remedy) = ("a run that has a value of it", "name another metric");
+                self.wrong(&target.metric, "target.metric", found, expected, remedy);
+            }
+        }
     }
 
     /// The limits of all readings, and what they are.

@@ -30,7 +30,13 @@ pub(super) fn text(of: &Answer) -> String {
 
 fn verdict(of: &Answer) -> String {
     if of.met {
-        return format!("All targets are met at a cost of {}.\n", number(of.cost, 3));
+        let has_wishes = of.targets.iter().any(|own| own.wish.is_some());
+        let targets = if has_wishes {
+            "targets that must hold"
+        } else {
+            "targets"
+        };
+        return format!("All {targets} are met at a cost of {}.\n", number(of.cost, 3));
     }
     let mut missed: Vec<&Target> = of.targets.iter().filter(|own| !own.met && own.wish.is_none()).collect();
     missed.sort_by(|a, b| b.multiplier.total_cmp(&a.multiplier));
@@ -71,7 +77,8 @@ fn targets(of: &Answer) -> Table {
         let shown = |value: f64| number(units::value(value, &own.unit), 4);
         let sign = if own.sense == "at_most" { "≤" } else { "≥" };
         let met = match (own.met, own.wish) {
-            (true, _) => "yes",
+            (true, None) => "yes",
+            (true, Some(_)) => "yes (wish)",
             (false, None) => "no",
             (false, Some(_)) => "wish missed",
         };
