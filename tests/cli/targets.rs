@@ -295,6 +295,20 @@ fn what_cannot_be_wanted_is_refused_with_place_and_remedy() {
         &["parameter.range", "for which model `axle_a` is valid"],
     );
     refused(
+        "[front]",
+        "[[coupling]]\nparameter = \"m_wheel\"\nfollows = \"k_tire\"\nfactor = -1.0\n[front]",
+        &[
+            "coupling.parameter",
+            "`m_wheel` at -",
+            "narrow the range of what it follows",
+        ],
+    );
+    refused(
+        "[front]",
+        "[[coupling]]\nsum = { k_tire = nan }\nat_most = 1.0\n[front]",
+        &["coupling.sum", "not finite"],
+    );
+    refused(
         "[\"k_wheel_x\", \"c_wheel_x\"]",
         "[\"k_wheel_x\", \"m_wheel\"]",
         &["space.cuts", "`m_wheel`", "[[parameter]]"],

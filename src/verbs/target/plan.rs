@@ -370,7 +370,8 @@ impl<'a> Planner<'a, '_> {
                     factor: None,
                 } => {
                     if !most.is_finite() || !sum.get_ref().values().all(|factor| factor.is_finite()) {
-                        let (found, expected) = ("a number that is not finite", "finite factors and a finite `at_most`");
+                        let (found, expected) =
+                            ("a number that is not finite", "finite factors and a finite `at_most`");
                         self.wrong(sum, "coupling.sum", found, expected, "correct the numbers");
                         continue;
                     }
