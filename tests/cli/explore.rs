@@ -338,7 +338,7 @@ fn metrics_of_rides_are_those_of_a_comparison() {
         let place = places.iter().position(|own| *own == (height, speed)).unwrap();
         let (mass, axis) = (run["mass"].as_str().unwrap(), run["axis"].as_str().unwrap());
         for what in ["peak", "after_shake"] {
-            let own = column(&table, &format!("{what}_{mass}_{axis} [m/s^2]"))[place];
+            let own = column(&table, &format!("{mass}_{axis}.{what} [m/s^2]"))[place];
             let other = run[what]["a"].as_f64().unwrap();
             assert!(
                 (own - other).abs() <= 1e-9 * other,
