@@ -161,7 +161,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 /// Looks for what the model of the campaign in a folder lacks, and notes what is odd about the campaign.
 ///
 /// # Errors
-/// A campaign that cannot be read, and as [`answer`].
+/// A campaign that cannot be read or says nothing of the model, or a model that the compiler refuses.
 pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers: Numbers) -> Result<Answer, Failure> {
     let campaign = Campaign::open(folder)?;
     let mut answer = answer(&campaign, model, out, numbers)?;
