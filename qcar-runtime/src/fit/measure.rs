@@ -15,7 +15,7 @@ use nalgebra::Complex;
 /// model's force elements (see [`across_links`]). Run by run `told` hears how far it is.
 ///
 /// # Errors
-/// What [`Campaign::history`] and [`transmissibilities`] find wrong with a run, runs that record no excitation of the
+/// What [`Campaign::history`] and the estimator of transmissibilities find wrong with a run, runs that record no excitation of the
 /// model, and wanted channels that were not measured.
 pub fn levels(
     campaign: &Campaign,
