@@ -95,5 +95,5 @@ fn word(kind: Kind) -> &'static str {
 /// The name of a sensor.
 pub(crate) fn channel(sensor: &Point) -> String {
     let axis = format!("{:?}", sensor.axis).to_lowercase();
-    format!("{}_{axis}", sensor.location)
+    format!("{}_{axis}", sensor.place().replace(' ', "_"))
 }

@@ -36,11 +36,7 @@ fn measured_pad() -> (Vec<f64>, f64) {
         .find(|run| matches!(run.test, Test::Sweep(_)))
         .unwrap();
     let history = campaign.history(run).unwrap();
-    let pad = Point {
-        location: "pad".into(),
-        axis: Axis::Z,
-        quantity: Quantity::Acceleration,
-    };
+    let pad = Point::new("pad", Axis::Z, Quantity::Acceleration);
     (signal(&history, &pad).unwrap(), history.sample_rate)
 }
 

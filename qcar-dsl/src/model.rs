@@ -38,7 +38,8 @@ pub struct Model {
     pub gravities: Vec<Gravity>,
     /// In the order of the text.
     pub links: Vec<Link>,
-    /// Declared outputs, in the order of the text; where a model declares none, the acceleration of every mass.
+    /// Declared outputs, in the order of the text; where a model declares none, the acceleration of every
+    /// mass, and of every point that several coordinates move.
     pub outputs: Vec<Output>,
     /// In the order of the text.
     pub channels: Vec<Channel>,

@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 use nalgebra::Complex;
 
-use crate::campaign::{Axis, Channel, History, Quantity, Recording, Test};
+use crate::campaign::{Axis, Channel, History, Quantity, Recording, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::spectrum::{Segments, Trend, Window};
 
@@ -28,7 +28,7 @@ mod band;
 pub use band::logarithmic;
 pub use line::Line;
 
-/// What is measured where: the sensors of all sides together.
+/// What is measured where: the sensors of all sides together, or those at one end alone.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Point {
     /// `pad`, or a mass, link or input of the model.
@@ -37,12 +37,74 @@ pub struct Point {
     pub axis: Axis,
     /// What.
     pub quantity: Quantity,
+    /// At which end of the place; `None` for the mean of all sensors there.
+    pub end: Option<End>,
+}
+
+/// An end of what a place is, such as a sub-frame: it pitches where the two ends move apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum End {
+    Front,
+    Rear,
+}
+
+impl End {
+    /// Where a sensor stands at an end.
+    fn of(side: Side) -> Option<End> {
+        match side {
+            Side::Front => Some(End::Front),
+            Side::Rear => Some(End::Rear),
+            Side::Left | Side::Right | Side::Centre => None,
+        }
+    }
+
+    /// As campaigns write it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            End::Front => "front",
+            End::Rear => "rear",
+        }
+    }
 }
 
 impl Point {
+    /// The mean of all sensors of a place.
+    pub fn new(location: &str, axis: Axis, quantity: Quantity) -> Self {
+        let (location, end) = (location.to_owned(), None);
+        Point {
+            location,
+            axis,
+            quantity,
+            end,
+        }
+    }
+
+    /// The place, and which end of it.
+    pub fn place(&self) -> String {
+        let end = self.end.map_or(String::new(), |end| format!(" {}", end.name()));
+        format!("{}{end}", self.location)
+    }
+
     /// True where a sensor is one of the point's.
     pub fn has(&self, sensor: &Channel) -> bool {
-        sensor.location == self.location && sensor.axis == self.axis && sensor.quantity == self.quantity
+        let stands_there = self.end.is_none_or(|end| End::of(sensor.side) == Some(end));
+        let is_place = sensor.location == self.location && sensor.axis == self.axis;
+        is_place && sensor.quantity == self.quantity && stands_there
+    }
+
+    /// The two ends, each for itself, where a run has sensors at both; the point itself where it has not.
+    pub fn ends(self, history: &History) -> Vec<Point> {
+        let ends = [End::Front, End::Rear].map(|end| Point {
+            end: Some(end),
+            ..self.clone()
+        });
+        let is_measured = |end: &Point| history.signals.iter().any(|(sensor, _)| end.has(sensor));
+        if ends.iter().all(is_measured) {
+            ends.into()
+        } else {
+            vec![self]
+        }
     }
 }
 
@@ -127,11 +189,7 @@ pub struct Transmissibility {
 pub fn points(history: &History) -> Vec<Point> {
     let mut points = Vec::new();
     for (channel, _) in &history.signals {
-        let point = Point {
-            location: channel.location.clone(),
-            axis: channel.axis,
-            quantity: channel.quantity,
-        };
+        let point = Point::new(&channel.location, channel.axis, channel.quantity);
         if !points.contains(&point) {
             points.push(point);
         }
@@ -296,6 +354,6 @@ fn ratio(history: &History, pair: &(Point, Point), (from, to): (usize, usize), l
 
 impl fmt::Display for Point {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(out, "{} {} {}", self.location, self.axis.name(), self.quantity.name())
+        write!(out, "{} {} {}", self.place(), self.axis.name(), self.quantity.name())
     }
 }

@@ -24,11 +24,7 @@ const TRUTH: [f64; 9] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 16
 const NOISE: f64 = 0.004;
 
 fn point(location: &str) -> Point {
-    Point {
-        location: location.into(),
-        axis: Axis::Z,
-        quantity: Quantity::Acceleration,
-    }
+    Point::new(location, Axis::Z, Quantity::Acceleration)
 }
 
 /// Standard normal numbers: twelve uniform ones by a linear congruence.

@@ -14,11 +14,7 @@ fn folder() -> PathBuf {
 }
 
 fn point(location: &str, quantity: Quantity) -> Point {
-    Point {
-        location: location.into(),
-        axis: Axis::Z,
-        quantity,
-    }
+    Point::new(location, Axis::Z, quantity)
 }
 
 #[test]

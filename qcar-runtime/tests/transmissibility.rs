@@ -112,11 +112,7 @@ impl Noise {
 }
 
 fn point(location: &str) -> Point {
-    Point {
-        location: location.into(),
-        axis: Axis::Z,
-        quantity: Quantity::Acceleration,
-    }
+    Point::new(location, Axis::Z, Quantity::Acceleration)
 }
 
 fn channel(location: &str, side: Side) -> Channel {

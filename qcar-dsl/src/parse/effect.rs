@@ -11,7 +11,7 @@ use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, P
 const HEAD: &str = "effect name at link l named damper { … }";
 
 /// What a change can begin with.
-const WORDS: [&str; 21] = [
+const WORDS: [&str; 22] = [
     "param",
     "strength",
     "shape",
@@ -29,6 +29,7 @@ const WORDS: [&str; 21] = [
     "direction",
     "delay",
     "scale",
+    "sensor",
     "mass",
     "inertia",
     "node",
@@ -186,6 +187,7 @@ fn change(tokens: &mut Tokens) -> Parsed<Change> {
         Some("remove") => remove(tokens),
         Some("direction") => direction(tokens),
         Some("delay") => sensed(tokens, "delay m by delay;", Change::Delay),
+        Some("sensor") => sensor(tokens),
         Some("scale") => sensed(tokens, "scale m by gain;", Change::Scale),
         Some("let" | "mass" | "inertia" | "node" | "point" | "link" | "output" | "channel") => declaration(tokens),
         _ => Err(Box::new(reading::unknown_statement(
@@ -317,6 +319,21 @@ fn direction(tokens: &mut Tokens) -> Parsed<Change> {
     };
     let body = tokens.block(EXAMPLE)?.each(change);
     Ok(Change::Direction { name, without, body })
+}
+
+fn sensor(tokens: &mut Tokens) -> Parsed<Change> {
+    const EXAMPLE: &str = "sensor front of l.lower at l.lower + arm*pitch;";
+    tokens.any_word();
+    if !matches!(tokens.peek().as_deref(), Some("front" | "rear")) {
+        return tokens.expected("`front` or `rear`", EXAMPLE);
+    }
+    let end = tokens.name("an end", EXAMPLE)?;
+    word(tokens, "of", EXAMPLE)?;
+    let of = dotted(tokens, "a mass", EXAMPLE)?;
+    word(tokens, "at", EXAMPLE)?;
+    let at = expression(tokens)?;
+    tokens.expect(";", EXAMPLE)?;
+    Ok(Change::PlaceSensor { end, of, at })
 }
 
 fn sensed(tokens: &mut Tokens, example: &str, kind: fn(Name, Name) -> Change) -> Parsed<Change> {

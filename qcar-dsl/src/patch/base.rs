@@ -131,6 +131,13 @@ impl Base {
         }
     }
 
+    /// Whether the model says itself what is to be seen.
+    pub fn declares_outputs(&self) -> bool {
+        let inside = self.directions().flat_map(|direction| &direction.body);
+        let mut all = self.axle.body.iter().chain(inside);
+        all.any(|statement| matches!(statement, Statement::Output(..)))
+    }
+
     /// Parameters and derived quantities, in the order of the text.
     pub fn globals(&self) -> impl Iterator<Item = &Statement> {
         let inside = self.directions().flat_map(|direction| &direction.body);

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::base::Base;
 use super::rewrite::names_in;
-use crate::syntax::{Dotted, Expression, ParameterDefault, Statement};
+use crate::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault, Statement};
 
 /// Removes parameters, derived quantities and points that nothing uses, until each of them is used.
 pub fn tidy(tree: &mut Base) {
@@ -32,7 +32,10 @@ fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {
     match statement {
         Statement::Parameter(parameter) => used.contains(&parameter.name.text),
         Statement::Let(definition) => used.contains(&definition.name.text),
-        Statement::Point(name, _) => used.contains(&name.text),
+        // What several coordinates move is seen, used or not.
+        Statement::Point(name, target) => {
+            used.contains(&name.text) || !matches!(target.kind, ExpressionKind::Name(_))
+        }
         _ => true,
     }
 }

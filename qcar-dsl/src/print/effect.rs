@@ -75,6 +75,7 @@ fn change_lines(change: &Change) -> Vec<String> {
             let rolling = rolling.as_ref().map_or(String::new(), |by| format!(" rolling {by}"));
             vec![format!("replace s of {} by {by}{rolling};", of.text)]
         }
+        Change::PlaceSensor { end, of, at } => vec![format!("sensor {} of {of} at {at};", end.text)],
         Change::Remove(link) => vec![format!("remove {};", link.text)],
         Change::Direction { name, without, body } => {
             let without = worded(" without ", &texts(without), ", ");

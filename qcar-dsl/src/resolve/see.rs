@@ -39,7 +39,7 @@ const QUANTITIES: [(&str, Quantity); 3] = [
 ];
 
 impl Resolver<'_> {
-    /// Declared outputs, or the acceleration of every mass.
+    /// Declared outputs, or the acceleration of every mass and of every point that several coordinates move.
     pub fn outputs(&mut self, placed: &[Placed]) {
         for (direction, statement) in placed {
             let Statement::Output(name, signal) = statement else {
@@ -89,6 +89,14 @@ impl Resolver<'_> {
                 signal: Signal::Motion(CoordinateId(index as u16), Quantity::Acceleration),
                 unit: motion_unit(coordinate.angle, Quantity::Acceleration),
                 declared: coordinate.declared.clone(),
+            });
+        }
+        for (index, point) in self.model.points.iter().enumerate() {
+            self.model.outputs.push(Output {
+                name: format!("{}_{}_acceleration", point.direction.0, point.name),
+                signal: Signal::Point(index as u16, Quantity::Acceleration),
+                unit: motion_unit(point.angle, Quantity::Acceleration),
+                declared: point.declared.clone(),
             });
         }
     }

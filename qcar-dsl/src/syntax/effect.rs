@@ -146,6 +146,15 @@ pub enum Change {
         /// The same while a tyre rolls; nothing changes there where there is none.
         rolling: Option<Expression>,
     },
+    /// `sensor front of l.lower at l.lower + arm * pitch;`: where the sensor at an end of a mass stands, as the point `sf_front`.
+    PlaceSensor {
+        /// `front` or `rear`.
+        end: Name,
+        /// The mass.
+        of: Dotted,
+        /// What moves the sensor.
+        at: Expression,
+    },
     /// `remove l;`
     Remove(Name),
     /// `direction x without sf { … }`: changes that are made where the place moves along this direction as well.

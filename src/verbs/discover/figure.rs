@@ -10,7 +10,7 @@ pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
     sensors.sort();
     sensors.dedup();
     let panel = |sensor: &Point| Panel {
-        title: sensor.location.clone(),
+        title: sensor.place(),
         vertical: "gap over uncertainty, dB".into(),
         curves: vec![
             curve("before", Style::Before, before, sensor),

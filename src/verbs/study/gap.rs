@@ -59,7 +59,7 @@ pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
     let patch = |tile: &Tile| Patch {
         run: of.answer.evidence.runs[tile.run].name.clone(),
         speed: speed(of, &of.answer.evidence.runs[tile.run].name),
-        channel: format!("{} {}", tile.sensor.location, tile.sensor.axis.name()),
+        channel: format!("{} {}", tile.sensor.place(), tile.sensor.axis.name()),
         kind: match tile.kind {
             Kind::Harmonic(_) => "harmonic",
             Kind::Time => "time",

@@ -55,7 +55,7 @@ pub fn records(of: &Study) -> Vec<Replayed> {
         Replayed {
             run: run.name.clone(),
             role: if run.role == Role::Fit { "fit" } else { "held_out" },
-            channel: format!("{} {}", series.sensor.location, series.sensor.axis.name()),
+            channel: format!("{} {}", series.sensor.place(), series.sensor.axis.name()),
             quantity: series.sensor.quantity.name(),
             unit: series.sensor.quantity.unit(),
             time: curve(series.at.iter().copied()),

@@ -74,15 +74,28 @@ impl<'a> Swept<'a> {
 }
 
 /// What a model shows in one sweep.
-fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> Vec<(Key, Response)> {
+fn responses(model: &dyn Model, values: &Values, sweep: &Evidence) -> BTreeMap<Key, Response> {
     let run = &sweep.runs[0];
     let predictions = predict(model, values, &[], sweep, run.role).unwrap_or_default();
-    let first = predictions.into_iter().filter_map(|prediction| {
+    let mut first: BTreeMap<Key, Response> = BTreeMap::new();
+    for prediction in predictions {
         let series = &sweep.series[prediction.series];
+        if series.kind != Kind::Harmonic(1) {
+            continue;
+        }
+        let value = prediction.value;
         let key = (run.name.clone(), series.sensor.location.clone());
-        (series.kind == Kind::Harmonic(1)).then(|| (key, (series.at.clone(), prediction.value)))
-    });
-    first.collect()
+        // A place moves as the mean of its ends does.
+        let mean = |(_, of_front): &mut Response| {
+            let both = of_front.iter_mut().zip(&value);
+            both.for_each(|(front, rear)| *front = (*front + rear) * 0.5);
+        };
+        first
+            .entry(key)
+            .and_modify(mean)
+            .or_insert_with(|| (series.at.clone(), value.clone()));
+    }
+    first
 }
 
 /// On the straight line between two neighbours; NaN outside.

@@ -1,13 +1,14 @@
 //! Sensors in the words of a model.
 
-use crate::campaign::Quantity;
+use crate::campaign::{History, Quantity};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
-use crate::transmissibility::Point;
+use crate::transmissibility::{Point, points};
 
 /// What a sensor measures, in the model's words.
 ///
-/// On a link a displacement is its stretch.
+/// On a link a displacement is its stretch. A sensor at an end of a place stands at the point of this name, `sf_front`, where
+/// the model has one, and at the place itself where it has not.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
     let link = about
         .links
@@ -21,10 +22,28 @@ pub fn signal_of(about: &About, point: &Point) -> Signal {
         Quantity::Acceleration => SignalKind::Motion(crate::model::Quantity::Acceleration),
     };
     Signal {
-        location: point.location.clone().into(),
+        location: location_of(about, point).into(),
         axis: point.axis.name().into(),
         kind,
     }
+}
+
+fn location_of(about: &About, point: &Point) -> String {
+    let at_end = point.end.map(|end| format!("{}_{}", point.location, end.name()));
+    let is_seen = |name: &String| {
+        let mut signals = about.outputs.iter().map(|output| &output.signal);
+        signals.any(|signal| signal.location == *name && signal.axis == point.axis.name())
+    };
+    at_end.filter(is_seen).unwrap_or_else(|| point.location.clone())
+}
+
+/// The sensors of a run: what drives a model as the mean of all sensors of a place, and what answers by the ends of the place.
+pub fn sensors(about: &About, history: &History) -> Vec<Point> {
+    let ends = |point: Point| match excitation_of(about, &point) {
+        Some(_) => vec![point],
+        None => point.ends(history),
+    };
+    points(history).into_iter().flat_map(ends).collect()
 }
 
 /// How many times a motion has been differentiated where a sensor measures it.

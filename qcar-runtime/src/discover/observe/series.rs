@@ -12,7 +12,7 @@ pub(super) const LEAST_NOISE: f64 = 2.4e-4;
 pub struct Series {
     /// Place in [`Evidence::runs`](super::Evidence::runs).
     pub run: usize,
-    /// The sensor: the mean of all sides of a location.
+    /// The sensor: the mean of all sides of a location, or an end of it.
     pub sensor: Point,
     /// What the values are.
     pub kind: Kind,

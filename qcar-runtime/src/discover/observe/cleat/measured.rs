@@ -4,6 +4,7 @@ use nalgebra::Complex;
 
 use crate::campaign::Campaign;
 use crate::discover::observe::run::PATIENT;
+use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
 use crate::error::InputError;
 use crate::model::About;
@@ -11,7 +12,7 @@ use crate::response::signal::output_of;
 use crate::road::Road;
 use crate::roles::Roles;
 use crate::simulate::{Cleat, tyre};
-use crate::transmissibility::{Point, points, signal};
+use crate::transmissibility::{Point, signal};
 
 /// Half width and spacing of the means, s: half of what is at 100 Hz is left, and nothing at 200 Hz. That keeps the modes
 /// of an axle, and leaves out what depends on how a recorder filters and on how a tyre meets an edge.
@@ -55,7 +56,7 @@ impl Evidence {
             }
         };
         let (place, before) = (self.runs.len(), self.series.len());
-        for sensor in self.known(about, &run.name, points(&cleat.measured)) {
+        for sensor in self.known(about, &run.name, sensors(about, &cleat.measured)) {
             let series = window.series(place, sensor.clone(), &signal(&cleat.measured, &sensor)?);
             match series.filter(|_| is_output(about, &sensor)) {
                 Some(series) => self.series.push(series),

@@ -94,11 +94,7 @@ impl Evidence {
 
 /// The sensor of the force on the wheel.
 pub fn sensor(axis: Axis) -> Point {
-    Point {
-        location: LOCATION.into(),
-        axis,
-        quantity: Quantity::Force,
-    }
+    Point::new(LOCATION, axis, Quantity::Force)
 }
 
 /// What the fitted sines of a campaign say of the damping between wheel and body, N s/m; `None` without any.

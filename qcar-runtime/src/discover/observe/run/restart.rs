@@ -50,5 +50,5 @@ pub fn is_seen(state: &State, point: &Point) -> bool {
         Quantity::Velocity => StateKind::Velocity,
         Quantity::Acceleration | Quantity::Force => return false,
     };
-    state.kind == kind && state.location == point.location && state.axis == point.axis.name()
+    point.end.is_none() && state.kind == kind && state.location == point.location && state.axis == point.axis.name()
 }

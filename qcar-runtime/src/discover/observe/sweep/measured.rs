@@ -6,13 +6,13 @@ use std::sync::Arc;
 use nalgebra::Complex;
 
 use crate::campaign::{Campaign, Sweep};
-use crate::discover::observe::sensor::is_motion;
+use crate::discover::observe::sensor::{is_motion, sensors};
 use crate::discover::observe::series::LEAST_NOISE;
 use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
 use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Passage, Swept};
-use crate::transmissibility::{Point, points, signal};
+use crate::transmissibility::{Point, signal};
 
 /// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
 /// proportion.
@@ -48,7 +48,7 @@ impl Evidence {
         sweep: &Sweep,
     ) -> Result<(), InputError> {
         let history = campaign.history(run)?;
-        let (pads, others): (Vec<_>, Vec<_>) = points(&history).into_iter().partition(|point| is_motion(about, point));
+        let (pads, others): (Vec<_>, Vec<_>) = sensors(about, &history).into_iter().partition(|point| is_motion(about, point));
         let is_one = |pads: &[Point]| {
             pads.iter()
                 .all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis))

@@ -5,11 +5,12 @@ use nalgebra::Complex;
 use super::noise::noise;
 use super::restarts::{drifts, restarts};
 use crate::campaign::{Campaign, History, Recording};
+use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::series::LEAST_NOISE;
 use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
 use crate::error::{InputError, Place, Problem};
 use crate::model::About;
-use crate::transmissibility::{Point, points, signal};
+use crate::transmissibility::{Point, signal};
 
 /// Share of a record at each of its ends near which inputs are not known that a band limit needs.
 const ENDS: f64 = 0.02;
@@ -30,7 +31,7 @@ impl Evidence {
             band_limited, periodic, ..
         } = *recording;
         let history = campaign.history(run)?;
-        let known = self.known(about, &run.name, points(&history));
+        let known = self.known(about, &run.name, sensors(about, &history));
         let (inputs, responses): (Vec<_>, Vec<_>) = known
             .into_iter()
             .partition(|point| excitation_of(about, point).is_some());

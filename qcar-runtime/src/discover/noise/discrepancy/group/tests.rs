@@ -5,11 +5,11 @@ use nalgebra::{DMatrix, DVector};
 use super::*;
 
 fn sensor() -> Point {
-    Point {
-        location: "body".into(),
-        axis: crate::campaign::Axis::Z,
-        quantity: crate::campaign::Quantity::Acceleration,
-    }
+    Point::new(
+        "body",
+        crate::campaign::Axis::Z,
+        crate::campaign::Quantity::Acceleration,
+    )
 }
 
 /// A value of unit noise and signal.
