@@ -237,8 +237,8 @@ fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) 
         let columns: Vec<(&str, Vec<f64>)> = channels(plan)
             .into_iter()
             .filter(|&(_, location, side, _)| location != "pad" && side != "right")
-            .map(|(name, location, _, axis)| {
-                let motion = seen_across(&track, location, axis, plan.hardware.cross_axis(name));
+            .map(|(name, location, side, axis)| {
+                let motion = seen_across(&track, (location, side), axis, plan.hardware.cross_axis(name));
                 (name, record(plan, name, location, TRACK_NOISE, number, &motion))
             })
             .collect();
@@ -256,17 +256,18 @@ fn write_cleats(plan: &Plan, corner: &Corner, folder: &Path, toml: &mut String) 
 }
 
 /// What a sensor of one axis sees that is a little sensitive to the other. On the rig nothing moves along x.
-fn seen_across(track: &Track, location: &str, axis: &str, sensitivity: f64) -> Vec<f64> {
-    let across = track_motion(track, location, if axis == "z" { "x" } else { "z" });
-    let along = track_motion(track, location, axis);
+fn seen_across(track: &Track, place: (&str, &str), axis: &str, sensitivity: f64) -> Vec<f64> {
+    let across = track_motion(track, place, if axis == "z" { "x" } else { "z" });
+    let along = track_motion(track, place, axis);
     along.iter().zip(across).map(|(a, b)| a + sensitivity * b).collect()
 }
 
-fn track_motion<'a>(track: &'a Track, location: &str, axis: &str) -> &'a [f64] {
+fn track_motion<'a>(track: &'a Track, (location, side): (&str, &str), axis: &str) -> &'a [f64] {
     match (location, axis) {
+        ("sf", "z") if side == "front" => &track.sf_front_z,
         ("wheel", "z") => &track.wheel_z,
         ("body", "z") => &track.body_z,
-        ("sf", "z") => &track.sf_z,
+        ("sf", "z") => &track.sf_rear_z,
         ("pwt", "z") => &track.pwt_z,
         ("wheel", _) => &track.wheel_x,
         ("body", _) => &track.body_x,

@@ -1,7 +1,7 @@
 //! The track: a tyre of area contact over a cleat, its overlap summed column by column.
 
 use crate::corner::{
-    BODY, COORDINATES, Corner, FLEX, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL,
+    BODY, COORDINATES, Corner, FLEX, PITCH, PWT, Push, SF, STATES, State, WHEEL, X_BODY, X_PWT, X_SF, X_WHEEL,
 };
 use crate::enveloping::Felt;
 use crate::integrate::step;
@@ -246,7 +246,8 @@ impl Rolling<'_> {
 pub struct Track {
     pub wheel_z: Vec<f64>,
     pub body_z: Vec<f64>,
-    pub sf_z: Vec<f64>,
+    pub sf_front_z: Vec<f64>,
+    pub sf_rear_z: Vec<f64>,
     pub pwt_z: Vec<f64>,
     pub wheel_x: Vec<f64>,
     pub body_x: Vec<f64>,
@@ -278,13 +279,14 @@ pub fn run(corner: &Corner, drive: &CleatRun, late: f64) -> Track {
     let laws = corner.laws;
     let is_dry = laws.friction.is_some() || laws.bouc_wen.is_some() || laws.other.is_some_and(|law| law.is_dry());
     let steps = if is_dry { STICKING } else { 1 };
+    let half = laws.pitch.map_or(0.0, |pitch| pitch.half_length);
     let mut track = Track::default();
     let mut mean = Average::default();
     for i in 0..(drive.seconds * RATE) as usize * FINER {
         let t = i as f64 * h;
         mean.take(&derivative(t, &y)[COORDINATES..2 * COORDINATES]);
         if i % FINER == FINER - 1 {
-            track.push(&mean.give(), corner.sensor_beside_bend());
+            track.push(&mean.give(), corner.sensor_beside_bend(), half);
         }
         for k in 0..steps {
             let part = h / steps as f64;
@@ -313,10 +315,12 @@ impl Average {
 }
 
 impl Track {
-    fn push(&mut self, a: &[f64; COORDINATES], beside_bend: f64) {
+    /// The sub-frame's sensors stand at its bushings, `half` before and behind its centre.
+    fn push(&mut self, a: &[f64; COORDINATES], beside_bend: f64, half: f64) {
         self.wheel_z.push(a[WHEEL]);
         self.body_z.push(a[BODY] - beside_bend * a[FLEX]);
-        self.sf_z.push(a[SF]);
+        self.sf_front_z.push(a[SF] + half * a[PITCH]);
+        self.sf_rear_z.push(a[SF] - half * a[PITCH]);
         self.pwt_z.push(a[PWT]);
         self.wheel_x.push(a[X_WHEEL]);
         self.body_x.push(a[X_BODY]);
