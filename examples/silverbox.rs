@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! qcar discover models/campaigns/silverbox --out results
-//! cargo run --release --example silverbox -- SNLS80mV.csv results/one_mass_with_progressive_spring.axle results/parameters.toml
+//! cargo run --release --example silverbox -- SNLS80mV.csv results
 //! ```
 //!
-//! A sensor has a zero of its own, which discovery does not ask of the model. Here it is what the model's error is in the
-//! mean of the fitted periods.
+//! All that was found counts: the model, its parameters, and the delay of the sensor. A sensor has a zero of its own,
+//! which discovery does not ask of the model. Here it is what the model's error is in the mean of the fitted periods.
 //!
 //! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in nonlinear
 //! system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at 610.35 Hz.
@@ -20,6 +20,7 @@ use qcar::catalogue;
 use qcar::parameters;
 use qcar_runtime::model::SignalKind;
 use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
+use serde_json::Value;
 
 /// Hz.
 const RATE: f64 = 610.35;
@@ -35,11 +36,15 @@ const FITTED: usize = 3;
 
 fn main() -> Result<(), Box<dyn Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
-    let [record, model, values] = arguments.as_slice() else {
-        return Err("expected the record (CSV), a model (name or file) and its parameters (TOML)".into());
+    let [record, results] = arguments.as_slice() else {
+        return Err("expected the record (CSV) and the folder that `qcar discover --out` has written".into());
     };
+    let results = Path::new(results);
+    let found: Value = serde_json::from_str(&fs::read_to_string(results.join("discovery.json"))?)?;
+    let model = found["model_file"].as_str().ok_or("the discovery has found no model")?;
     let [force, measured] = columns(record)?;
-    let modelled = respond(model, Path::new(values), &force)?;
+    let modelled = respond(model, &results.join("parameters.toml"), &force)?;
+    let modelled = late(&modelled, delay(&found));
     let errors: Vec<f64> = modelled.iter().zip(&measured).map(|(own, other)| own - other).collect();
     let period = |at: usize| &errors[MULTISINE + at * SPACING..][..PERIOD];
     let zero = mean(&(0..FITTED).flat_map(period).copied().collect::<Vec<_>>());
@@ -93,6 +98,25 @@ fn respond(model: &str, values: &Path, force: &[f64]) -> Result<Vec<f64>, Box<dy
     let recorded = Recorded::new(model.about(), &[record], RATE, Between::BandLimited)?;
     let mut replayed = replay(&*model, values.as_slice(), &recorded, &Settings::default())?;
     Ok(replayed.outputs.swap_remove(0))
+}
+
+/// By how much the sensor was found to be late, s.
+fn delay(found: &Value) -> f64 {
+    let effects = found["effects"].as_array().into_iter().flatten();
+    let mut delays = effects.filter(|effect| effect["name"] == "sensor_delay");
+    delays
+        .find_map(|effect| effect["parameters"]["delay"].as_f64())
+        .unwrap_or(0.0)
+}
+
+/// A signal that comes late by a small part of a sample: less the delay times its slope, by differences of fourth order.
+fn late(signal: &[f64], delay: f64) -> Vec<f64> {
+    let mut late = signal.to_vec();
+    for (k, around) in signal.windows(5).enumerate() {
+        let slope = (8.0 * (around[3] - around[1]) - (around[4] - around[0])) / 12.0 * RATE;
+        late[k + 2] -= delay * slope;
+    }
+    late
 }
 
 fn mean(values: &[f64]) -> f64 {

@@ -101,8 +101,12 @@ impl Bench {
     fn candidates_of(&self, patches: &[Patch]) -> Vec<Candidate> {
         let values = |name: &str| self.values.get(name).copied();
         let patched = patches.par_iter();
-        let patched = patched.flat_map_iter(|patch| told_apart(patch.candidates(&self.model, &values)));
-        patched.flat_map_iter(candidates).collect()
+        let of_patch = |patch: &Patch| {
+            let nuisance = patch.effect().nuisance;
+            let apart = told_apart(patch.candidates(&self.model, &values)).into_iter();
+            apart.flat_map(move |patched| candidates(patched, nuisance))
+        };
+        patched.flat_map_iter(of_patch).collect()
     }
 
     /// The model with an effect in it, in one of its forms where it has several; `None` where that does not apply.
@@ -157,12 +161,13 @@ fn moves_alike(one: &Patched, other: &Patched) -> bool {
 }
 
 /// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.
-fn candidates(patched: Patched) -> Vec<Candidate> {
+fn candidates(patched: Patched, nuisance: bool) -> Vec<Candidate> {
     let Some(signal) = patched.signals.first() else {
         return vec![Candidate {
             effect: patched.effect,
             at: patched.place,
             form: patched.form,
+            nuisance,
             change: Change::Model {
                 parameters: patched
                     .parameters
@@ -184,6 +189,7 @@ fn candidates(patched: Patched) -> Vec<Candidate> {
             effect: patched.effect.clone(),
             at: patched.place.clone(),
             form: Some(form),
+            nuisance,
             change: Change::Sensor {
                 location: signal.location.clone(),
                 axis,

@@ -212,13 +212,14 @@ pub(crate) fn answer(
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
     // A model that cannot be held against the sweeps has no places.
-    let sweeps = Sweeps::new(bench.model(), &discovery.before.refit, &evidence).unwrap_or_default();
+    let [before, after] = [0, 1].map(|of| with(bench.clone(), &discovery.nuisances[of]));
+    let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
-        base: bench.checked().clone(),
+        base: before.checked().clone(),
         sweeps,
-        units: units(bench.clone(), &discovery),
-        learned: (discovery.learned.as_ref()).and_then(|learned| law::learned_model(bench.clone(), learned)),
-        model: found(bench, &discovery),
+        units: units(after.clone(), &discovery),
+        learned: (discovery.learned.as_ref()).and_then(|learned| law::learned_model(before, learned)),
+        model: found(after, &discovery),
         campaign: campaign.name.clone(),
         evidence,
         discovery,
@@ -243,6 +244,15 @@ fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     parameters.extend(own(about, campaign));
     bound(&mut parameters, about, campaign)?;
     Ok(given(&parameters, campaign))
+}
+
+/// The bench with effects in its model.
+fn with(bench: Bench, effects: &[Finding]) -> Bench {
+    let taken = effects.iter().try_fold(bench.clone(), |bench, own| {
+        let patched = bench.patched(&own.effect, &own.at, own.form.as_deref())?;
+        Some(bench.holding(patched.model))
+    });
+    taken.unwrap_or(bench)
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.

@@ -11,7 +11,7 @@ use crate::syntax::{Change, Effect, EffectParameter, Form, LawStatement, Name, P
 const HEAD: &str = "effect name at link l named damper { … }";
 
 /// What a change can begin with.
-const WORDS: [&str; 22] = [
+const WORDS: [&str; 23] = [
     "param",
     "strength",
     "shape",
@@ -20,6 +20,7 @@ const WORDS: [&str; 22] = [
     "shared",
     "source",
     "shows",
+    "nuisance",
     "form",
     "let",
     "take",
@@ -47,12 +48,18 @@ pub fn effect(tokens: &mut Tokens) -> Parsed<Effect> {
         doc: inside.sentence(),
         source: String::new(),
         shows: String::new(),
+        nuisance: false,
         body: vec![],
         forms: vec![],
     };
     let changes = inside.each(|tokens| match tokens.peek().as_deref() {
         Some("source") => told(tokens, &mut effect.source, "source \"Author: Title, year\";"),
         Some("shows") => told(tokens, &mut effect.shows, "shows \"how it shows in measurements\";"),
+        Some("nuisance") => {
+            tokens.any_word();
+            effect.nuisance = true;
+            tokens.expect(";", "nuisance;").map(|()| None)
+        }
         Some("form") => form(tokens).map(|form| {
             effect.forms.push(form);
             None
@@ -324,10 +331,11 @@ fn direction(tokens: &mut Tokens) -> Parsed<Change> {
 fn sensor(tokens: &mut Tokens) -> Parsed<Change> {
     const EXAMPLE: &str = "sensor front of l.lower at l.lower + arm*pitch;";
     tokens.any_word();
-    if !matches!(tokens.peek().as_deref(), Some("front" | "rear")) {
-        return tokens.expected("`front` or `rear`", EXAMPLE);
-    }
-    let end = tokens.name("an end", EXAMPLE)?;
+    let end = match tokens.peek().as_deref() {
+        Some("front" | "rear") => Some(tokens.name("an end", EXAMPLE)?),
+        Some("of") => None,
+        _ => return tokens.expected("`front`, `rear` or `of`", EXAMPLE),
+    };
     word(tokens, "of", EXAMPLE)?;
     let of = dotted(tokens, "a mass", EXAMPLE)?;
     word(tokens, "at", EXAMPLE)?;

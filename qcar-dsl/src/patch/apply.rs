@@ -92,7 +92,7 @@ impl<'a> Patching<'a> {
             Change::ReplaceStretch { of, by, rolling } => {
                 return self.replace_stretch(direction, of, by, rolling.as_ref());
             }
-            Change::PlaceSensor { end, of, at } => return self.place_sensor(direction, end, of, at),
+            Change::PlaceSensor { end, of, at } => return self.place_sensor(direction, end.as_ref(), of, at),
             Change::Remove(link) => return self.remove(direction, link),
             Change::Delay(place, by) => self.sense(place, Signal::Delay, by),
             Change::Scale(place, by) => self.sense(place, Signal::Gain, by),
@@ -335,16 +335,16 @@ impl<'a> Patching<'a> {
         Ok(())
     }
 
-    /// The sensor at an end of a mass is a point, and seen where the model says what is to be seen.
-    fn place_sensor(&mut self, direction: &str, end: &Name, of: &Dotted, at: &Expression) -> Made<()> {
+    /// A sensor on a mass, or at an end of it, is a point, and seen where the model says what is to be seen.
+    fn place_sensor(&mut self, direction: &str, end: Option<&Name>, of: &Dotted, at: &Expression) -> Made<()> {
         let mass = self.bindings.point(of, direction)?;
         let mass = self.bindings.base.pointed_at(direction, &mass);
         if self.bindings.base.coordinate(direction, &mass).is_none() {
             return Err(refused(effects::place_lacks(of.span(), &of.to_string(), &mass)));
         }
         let point = Name {
-            text: format!("{mass}_{}", end.text),
-            span: end.span,
+            text: format!("{mass}_{}", end.map_or("sensor", |end| &end.text)),
+            span: of.span(),
         };
         self.declare(direction, &Statement::Point(point.clone(), at.clone()))?;
         if !self.tree.declares_outputs() {

@@ -33,9 +33,7 @@ fn is_used(statement: &Statement, used: &BTreeSet<String>) -> bool {
         Statement::Parameter(parameter) => used.contains(&parameter.name.text),
         Statement::Let(definition) => used.contains(&definition.name.text),
         // What several coordinates move is seen, used or not.
-        Statement::Point(name, target) => {
-            used.contains(&name.text) || !matches!(target.kind, ExpressionKind::Name(_))
-        }
+        Statement::Point(name, target) => used.contains(&name.text) || !matches!(target.kind, ExpressionKind::Name(_)),
         _ => true,
     }
 }

@@ -9,9 +9,11 @@ pub fn effect_lines(effect: &Effect) -> Vec<String> {
     let told = [("source", &effect.source), ("shows", &effect.shows)];
     let told = told.into_iter().filter(|(_, text)| !text.is_empty());
     let told = told.map(|(word, text)| format!("{word} {text:?};"));
+    let nuisance = effect.nuisance.then(|| "nuisance;".to_string());
     let body = effect.body.iter().flat_map(change_lines);
     let forms = effect.forms.iter().flat_map(form_lines);
-    block(&head, &effect.doc, told.chain(body).chain(forms).collect())
+    let lines = told.chain(nuisance).chain(body).chain(forms);
+    block(&head, &effect.doc, lines.collect())
 }
 
 fn form_lines(form: &Form) -> Vec<String> {
@@ -75,7 +77,10 @@ fn change_lines(change: &Change) -> Vec<String> {
             let rolling = rolling.as_ref().map_or(String::new(), |by| format!(" rolling {by}"));
             vec![format!("replace s of {} by {by}{rolling};", of.text)]
         }
-        Change::PlaceSensor { end, of, at } => vec![format!("sensor {} of {of} at {at};", end.text)],
+        Change::PlaceSensor { end, of, at } => {
+            let end = end.as_ref().map_or(String::new(), |end| format!("{} ", end.text));
+            vec![format!("sensor {end}of {of} at {at};")]
+        }
         Change::Remove(link) => vec![format!("remove {};", link.text)],
         Change::Direction { name, without, body } => {
             let without = worded(" without ", &texts(without), ", ");

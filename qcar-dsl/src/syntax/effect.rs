@@ -15,6 +15,8 @@ pub struct Effect {
     pub source: String,
     /// How it shows in measurements: `shows "…";`
     pub shows: String,
+    /// `nuisance;`: every real car has some of it, so that it is no answer to what is missing.
+    pub nuisance: bool,
     /// In the order of the text.
     pub body: Vec<Change>,
     /// The ways in which it may act, the usual one first; none where there is only one.
@@ -146,10 +148,11 @@ pub enum Change {
         /// The same while a tyre rolls; nothing changes there where there is none.
         rolling: Option<Expression>,
     },
-    /// `sensor front of l.lower at l.lower + arm * pitch;`: where the sensor at an end of a mass stands, as the point `sf_front`.
+    /// `sensor front of l.lower at l.lower + arm * pitch;`: where the sensor at an end of a mass stands, as the point `sf_front`;
+    /// without an end, where its other sensors stand, as `sf_sensor`.
     PlaceSensor {
         /// `front` or `rear`.
-        end: Name,
+        end: Option<Name>,
         /// The mass.
         of: Dotted,
         /// What moves the sensor.

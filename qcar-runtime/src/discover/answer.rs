@@ -73,6 +73,9 @@ pub struct Discovery {
     pub probability: Option<f64>,
     /// The most probable effects, the most probable first.
     pub candidates: Vec<Probable>,
+    /// What every real car has some of, as far as the runs show it: what was fitted with the base model, and with the
+    /// findings.
+    pub nuisances: [Vec<Finding>; 2],
     /// In the order in which they were found; of a class, what was found before it and then its members, the best first.
     pub findings: Vec<Finding>,
     /// So many of the last findings stand in each other's place: the members of a class.

@@ -13,6 +13,8 @@ pub struct Candidate {
     pub at: String,
     /// Which of several ways in which the effect may act there; `None` where there is only one.
     pub form: Option<String>,
+    /// What every real car has some of: it is fitted, and is no answer.
+    pub nuisance: bool,
     /// What it would change.
     pub change: Change,
 }

@@ -27,9 +27,9 @@ pub struct Numbers {
     /// Probability that an answer may be wrong: the usual level of significance.
     pub doubt: f64,
 
-    /// Share of the excess of the squared gap that an answer may leave on the runs that judge: what leaves more was a part of
-    /// the truth at best, and is listed as a candidate. A choice, made after clean hardware draws of seed 3 had been given a
-    /// name: later seeds have to judge it.
+    /// Share of the excess of the squared gap that an answer may leave on the runs that judge, and a further effect of what the
+    /// others leave: an answer explains the greater part. What explains less is listed as a candidate. What an answer
+    /// leaves is held against a learned law, which takes its place where it is more probable.
     pub left: f64,
 }
 
@@ -45,7 +45,7 @@ impl Default for Numbers {
             false_alarms: 0.01,
             further: 0.1,
             doubt: 0.05,
-            left: 0.2,
+            left: 0.5,
         }
     }
 }

@@ -25,7 +25,7 @@ use rayon::prelude::*;
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, is_missing, judged, predictive};
+use verdict::{Set, closed, is_missing, judged, nameless, predictive};
 use visible::visible;
 
 pub use alone::{Alone, Minimum, alone};
@@ -68,7 +68,7 @@ pub fn discover(
         let less = reductions(&sets[place], &sets[0], evidence, progress);
         sets.extend(less);
     }
-    let alone = &sets[0];
+    let alone = &sets[nameless(&sets)];
     let mut discovery = judged(&sets, evidence);
     if is_unexplained(&discovery, &evidence.numbers) {
         let learned = learn::learn(alone, evidence, progress);
@@ -92,7 +92,7 @@ pub fn discover(
 /// True where a part of the set is an answer, and what the set has beyond that would be withdrawn.
 fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = predictive(sets, set, evidence);
-    let closes = closed(&sets[0].explanation, &sets[answer].explanation, evidence);
+    let closes = closed(&sets[nameless(sets)].explanation, &sets[answer].explanation, evidence);
     answer != set && closes >= evidence.numbers.explained()
 }
 
@@ -137,14 +137,14 @@ const BEAM: usize = 2;
 /// Which set is extended next: the most probable one, until nothing that could be added to it is worth it.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
-    let is_open = !sets[best].extended && sets[best].assembly.effects().len() < MOST_EFFECTS;
+    let is_open = !sets[best].extended && sets[best].names().len() < MOST_EFFECTS;
     let first = is_open.then_some(best).filter(|_| !is_settled(sets, best, evidence));
     first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
 
 /// The next of the sets of one effect that the beam holds.
 fn second(sets: &[Set]) -> Option<usize> {
-    let single = |place: &usize| sets[*place].assembly.effects().len() == 1;
+    let single = |place: &usize| sets[*place].names().len() == 1;
     let (extended, open): (Vec<usize>, Vec<usize>) = (0..sets.len()).filter(single).partition(|&k| sets[k].extended);
     let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
     open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
@@ -160,18 +160,18 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
 fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> Option<&'s Set> {
     let found = discovery.told_apart().0;
     let is_it = |set: &&Set| {
-        let effects = set.assembly.effects().iter();
         let is_found = |own: &Placed| {
             found
                 .iter()
                 .any(|finding| (&*finding.effect, &*finding.at) == own.name())
         };
-        set.assembly.effects().len() == found.len() && effects.clone().all(is_found)
+        set.names().len() == found.len() && set.named().all(is_found)
     };
     let order = |a: &&Set, b: &&Set| a.log_posterior().total_cmp(&b.log_posterior());
     let found = sets.iter().filter(is_it).max_by(order);
-    let closes = |set: &Set| closed(&sets[0].explanation, &set.explanation, evidence);
-    found.filter(|set| set.assembly.effects().len() > 1 || closes(set) < evidence.numbers.certain())
+    let alone = &sets[nameless(sets)].explanation;
+    let closes = |set: &Set| closed(alone, &set.explanation, evidence);
+    found.filter(|set| set.names().len() > 1 || closes(set) < evidence.numbers.certain())
 }
 
 /// The most probable set.
@@ -181,11 +181,7 @@ fn best(sets: &[Set]) -> usize {
 }
 
 fn tell(set: &Set, progress: Progress<'_>) {
-    let names = set
-        .assembly
-        .effects()
-        .iter()
-        .map(|own| format!("{} at {}", own.effect, own.at));
+    let names = set.named().map(|own| format!("{} at {}", own.effect, own.at));
     let names: Vec<String> = names.collect();
     if !names.is_empty() {
         let words = format!("with {} it leaves {}", names.join(" and "), told(&set.explanation));
@@ -273,7 +269,11 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
         let explanation = explained(&hypothesis, finalist.refit, evidence)?;
-        let prior = set.log_prior + log_prior(candidate, &candidates) + set.odds_of_another(&evidence.numbers).ln();
+        let prior = if candidate.nuisance {
+            set.log_prior
+        } else {
+            set.log_prior + log_prior(candidate, &candidates) + set.odds_of_another(&evidence.numbers).ln()
+        };
         Some(Set::new(set.assembly.with(candidate)?, explanation, prior))
     };
     let mut sets: Vec<Set> = finalists.into_par_iter().filter_map(of_finalist).collect();
@@ -299,7 +299,8 @@ fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
     for left in dropped {
         let own = verdict::rival(&candidates[left.candidate], left.behind);
         let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
-        if rivals.len() < RIVALS && !rivals.iter().any(is_it) {
+        let is_answer = !candidates[left.candidate].nuisance && !rivals.iter().any(is_it);
+        if rivals.len() < RIVALS && is_answer {
             rivals.push(own);
         }
     }

@@ -3,12 +3,12 @@
 use crate::campaign::{History, Quantity};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
-use crate::transmissibility::{Point, points};
+use crate::transmissibility::{End, Point, points};
 
 /// What a sensor measures, in the model's words.
 ///
 /// On a link a displacement is its stretch. A sensor at an end of a place stands at the point of this name, `sf_front`, where
-/// the model has one, and at the place itself where it has not.
+/// the model has one, any other sensor at `sf_sensor`, and at the place itself where it has not.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
     let link = about
         .links
@@ -29,12 +29,13 @@ pub fn signal_of(about: &About, point: &Point) -> Signal {
 }
 
 fn location_of(about: &About, point: &Point) -> String {
-    let at_end = point.end.map(|end| format!("{}_{}", point.location, end.name()));
-    let is_seen = |name: &String| {
-        let mut signals = about.outputs.iter().map(|output| &output.signal);
-        signals.any(|signal| signal.location == *name && signal.axis == point.axis.name())
-    };
-    at_end.filter(is_seen).unwrap_or_else(|| point.location.clone())
+    let own = format!("{}_{}", point.location, point.end.map_or("sensor", End::name));
+    let is_it = |signal: &Signal| signal.location == own && signal.axis == point.axis.name();
+    if about.outputs.iter().any(|output| is_it(&output.signal)) {
+        own
+    } else {
+        point.location.clone()
+    }
 }
 
 /// The sensors of a run: what drives a model as the mean of all sensors of a place, and what answers by the ends of the place.

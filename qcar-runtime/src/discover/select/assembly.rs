@@ -30,6 +30,8 @@ pub struct Placed {
     pub at: String,
     /// Its form; `None` where it has only one.
     pub form: Option<String>,
+    /// Whether it is no answer, since every real car has some of it.
+    pub nuisance: bool,
     /// What of it is unknown.
     pub taken: Taken,
 }
@@ -164,6 +166,7 @@ impl Assembly {
             effect: candidate.effect.clone(),
             at: candidate.at.clone(),
             form: candidate.form.clone(),
+            nuisance: candidate.nuisance,
             taken: Taken::new(candidate, &assembly.nuisance),
         });
         Some(assembly)

@@ -45,13 +45,10 @@ impl Set {
 
     /// Odds of one effect more, before any measurement.
     pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
-        match self.assembly.effects() {
-            [] => 1.0,
-            _ => numbers.further,
-        }
+        if self.names().is_empty() { 1.0 } else { numbers.further }
     }
 
-    /// What is told of its effects.
+    /// What is told of all its effects.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
         let finding = |own: &Placed| Finding {
@@ -68,16 +65,17 @@ impl Set {
 
     /// True where an effect stands for another.
     fn stands_at_an_end(&self) -> bool {
-        let effects = self.assembly.effects().iter();
-        effects
-            .map(|own| &own.taken)
-            .any(|own| own.stands_at_an_end(&self.explanation))
+        self.named().any(|own| own.taken.stands_at_an_end(&self.explanation))
     }
 
-    /// Names and places of its effects, in one order.
-    fn names(&self) -> Vec<(&str, &str)> {
-        let effects = self.assembly.effects().iter();
-        let mut names: Vec<_> = effects.map(Placed::name).collect();
+    /// Its effects that may be an answer.
+    pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
+        self.assembly.effects().iter().filter(|own| !own.nuisance)
+    }
+
+    /// Names and places of them, in one order.
+    pub fn names(&self) -> Vec<(&str, &str)> {
+        let mut names: Vec<_> = self.named().map(Placed::name).collect();
         names.sort_unstable();
         names
     }
@@ -125,15 +123,23 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
     answers
 }
 
-/// The answer. The first set is that of the base model.
+/// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
+pub fn nameless(sets: &[Set]) -> usize {
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
+    nameless.max_by(order).unwrap_or(0)
+}
+
+/// The answer.
 pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
     let answers = answers(sets);
     let credible = credible(sets, &answers, &evidence.numbers);
-    let before = sets[0].explanation.clone();
+    let alone = nameless(sets);
+    let before = sets[alone].explanation.clone();
     let predictive = predictive(sets, credible[0], evidence);
     // What explains less than most of the gap is not the answer, however probable beside the others.
     let explains = closed(&before, &sets[predictive].explanation, evidence) >= evidence.numbers.explained();
-    let best = if explains { predictive } else { 0 };
+    let best = if explains { predictive } else { alone };
     let after = sets[best].explanation.clone();
     let finding = |set: &Set, own: &Placed| Finding {
         effect: own.effect.clone(),
@@ -148,13 +154,12 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
     if best == credible[0] {
         let members: Vec<&Set> = credible.iter().map(|&place| &sets[place]).collect();
         let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
-        let (common, others): (Vec<&Placed>, Vec<&Placed>) =
-            members[0].assembly.effects().iter().partition(|own| is_common(own));
+        let (common, others): (Vec<&Placed>, Vec<&Placed>) = members[0].named().partition(|own| is_common(own));
         findings.extend(common.into_iter().map(|own| finding(members[0], own)));
         let found = findings.len();
         findings.extend(others.into_iter().map(|own| finding(members[0], own)));
         for set in &members[1..] {
-            let effects = set.assembly.effects().iter().filter(|own| !is_common(own));
+            let effects = set.named().filter(|own| !is_common(own));
             let new: Vec<Finding> = effects
                 .filter(|own| {
                     !findings
@@ -167,13 +172,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
         }
         alike = if members.len() > 1 { findings.len() - found } else { 0 };
     } else {
-        findings.extend(
-            sets[best]
-                .assembly
-                .effects()
-                .iter()
-                .map(|own| finding(&sets[best], own)),
-        );
+        findings.extend(sets[best].named().map(|own| finding(&sets[best], own)));
     }
     let verdict = match (findings.is_empty(), alike) {
         (true, _) if is_missing(&sets[best], evidence) => Verdict::Unknown,
@@ -186,17 +185,22 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
         wanted.map(|own| own.probability).sum()
     };
     let probability = match verdict {
-        Verdict::None => Some(of_answer(&|set| set == 0)),
+        Verdict::None => Some(of_answer(&|set| sets[set].names().is_empty())),
         Verdict::Found => Some(of_answer(&|set| is_part(&sets[best], &sets[set]))),
         Verdict::Class => Some(of_answer(&|set| {
             credible.iter().any(|&own| is_part(&sets[own], &sets[set]))
         })),
         Verdict::Unknown => None,
     };
+    let nuisances = |set: &Set| {
+        let effects = set.assembly.effects().iter().filter(|own| own.nuisance);
+        effects.map(|own| finding(set, own)).collect()
+    };
     Discovery {
         verdict,
         probability,
         candidates: candidates(sets, &answers, &before, evidence),
+        nuisances: [alone, best].map(|place| nuisances(&sets[place])),
         findings,
         alike,
         before,
@@ -219,7 +223,7 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
 /// The smallest list of sets that is certain, without those that only add to another one of it. It is the
 /// base model alone unless that is less probable than the others have to be certain.
 fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
-    let none = answers.iter().find(|own| sets[own.set].assembly.effects().is_empty());
+    let none = answers.iter().find(|own| sets[own.set].names().is_empty());
     if let Some(none) = none.filter(|none| none.probability > numbers.doubt) {
         return vec![none.set];
     }
@@ -254,7 +258,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
     let probable = names.into_iter().filter_map(|name| {
         let with = sets.iter().filter(|set| set.names().contains(&name));
         let order = |a: &&Set, b: &&Set| {
-            let fewer = b.assembly.effects().len().cmp(&a.assembly.effects().len());
+            let fewer = b.names().len().cmp(&a.names().len());
             fewer.then(a.log_posterior().total_cmp(&b.log_posterior()))
         };
         let best = with.max_by(order)?;
@@ -285,7 +289,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
 }
 
 /// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
-/// what does not predict, and what changes next to nothing, is withdrawn.
+/// what does not predict, and what changes next to nothing, is withdrawn, whichever part shows it.
 pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return best;
@@ -295,12 +299,12 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
         let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
         let is_answer = |other: &usize| is_less(other) && !sets[*other].stands_at_an_end();
-        let part = (0..sets.len()).filter(is_answer).max_by(order);
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
-            !predicts(&sets[best], &sets[part], evidence) || part != 0 && closes < evidence.numbers.explained()
+            let changes_little = !sets[part].names().is_empty() && closes < evidence.numbers.explained();
+            changes_little || !predicts(&sets[best], &sets[part], evidence)
         };
-        match part.filter(withdrawn) {
+        match (0..sets.len()).filter(is_answer).filter(withdrawn).max_by(order) {
             Some(part) => best = part,
             None => return best,
         }

@@ -19,7 +19,10 @@ pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<V
     let tangent = Tangent::new(refit, assembly, evidence);
     let here = assembly.hypothesis().place(refit);
     let candidates = assembly.candidates();
-    let mut usual: Vec<&Candidate> = candidates.iter().filter(|candidate| !candidate.is_sensor()).collect();
+    let mut usual: Vec<&Candidate> = candidates
+        .iter()
+        .filter(|candidate| !candidate.is_sensor() && !candidate.nuisance)
+        .collect();
     usual.dedup_by(|next, first| next.effect == first.effect && next.at == first.at);
     let of = usual.into_par_iter().filter_map(|candidate| {
         let hypothesis = assembly.hypothesis_with(candidate)?;

@@ -48,7 +48,9 @@ impl Evidence {
         sweep: &Sweep,
     ) -> Result<(), InputError> {
         let history = campaign.history(run)?;
-        let (pads, others): (Vec<_>, Vec<_>) = sensors(about, &history).into_iter().partition(|point| is_motion(about, point));
+        let (pads, others): (Vec<_>, Vec<_>) = sensors(about, &history)
+            .into_iter()
+            .partition(|point| is_motion(about, point));
         let is_one = |pads: &[Point]| {
             pads.iter()
                 .all(|pad| (&pad.location, pad.axis) == (&pads[0].location, pads[0].axis))
