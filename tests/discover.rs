@@ -601,3 +601,74 @@ fn names(answer: &Value) -> (Value, Vec<(Value, Value)>) {
     let name = |own: &Value| (own["name"].clone(), own["at"].clone());
     (answer["verdict"].clone(), effects.iter().map(name).collect())
 }
+
+/// A mass on a spring and a damper under a force of three sines, whose record was wired the wrong way round.
+#[test]
+fn a_force_that_was_recorded_upside_down_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let model = "axle held {
+    \"A mass held by a spring and a damper\"
+    known param m_body: kg = 2 in 0.1..100 \"Mass\";
+    param k_body: N/m = 700 in 50..5000 \"Stiffness\";
+    param c_body: N s/m = 7 in 0.5..100 \"Damping\";
+    direction z {
+        mass body = m_body;
+        force motor on body;
+        link held: body { spring k_body; damper c_body; }
+        output body.acceleration;
+    }
+}
+";
+    let mut manifest = "format = 1\nname = \"held\"\nmodel = \"held.axle\"\n
+[[channel]]\nname = \"force\"\nlocation = \"motor\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"force\"\nunit = \"N\"\n
+[[channel]]\nname = \"body\"\nlocation = \"body\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"acceleration\"\nunit = \"m/s^2\"\n
+[parameters.k_body]\nvalue = 700.0\nfit = true\nrange = [50.0, 5000.0]\n
+[parameters.c_body]\nvalue = 7.0\nfit = true\nrange = [0.5, 100.0]\n"
+        .to_owned();
+    let mut noise = noise();
+    for (role, phase) in [("fit", 0.0), ("held_out", 1.0)] {
+        manifest += &format!(
+            "\n[[run]]\nkind = \"time_history\"\nfile = \"{role}.csv\"\nrole = \"{role}\"\nsample_rate = 200.0\n"
+        );
+        fs::write(
+            folder.path().join(format!("{role}.csv")),
+            upside_down(phase, &mut noise),
+        )
+        .expect("a record");
+    }
+    fs::write(folder.path().join("held.axle"), model).expect("a model");
+    fs::write(folder.path().join("campaign.toml"), manifest).expect("a manifest");
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(names(&answer).1, [("input_gain".into(), "motor".into())], "{answer}");
+    let effect = &answer["effects"][0];
+    let [gain, error] = ["parameters", "stderr"].map(|of| effect[of]["input_gain"].as_f64().expect("a number"));
+    assert!((gain + 1.0).abs() < 3.0 * error && error < 0.02, "{gain} ± {error}");
+}
+
+/// 2 kg on 800 N/m and 6 N s/m, by Runge and Kutta's method; the force is written with the wrong sign.
+fn upside_down(phase: f64, noise: &mut impl FnMut() -> f64) -> String {
+    let force = |t: f64| -> f64 {
+        let sines = [(1.1, 9.0), (3.3, 8.0), (6.7, 12.0)];
+        sines
+            .iter()
+            .map(|(f, size)| size * (std::f64::consts::TAU * f * t + phase * f).sin())
+            .sum()
+    };
+    let rate = |t: f64, [x, v]: [f64; 2]| [v, (force(t) - 800.0 * x - 6.0 * v) / 2.0];
+    let (h, mut y, mut text) = (1e-3, [0.0; 2], "time,force,body\n".to_owned());
+    for k in 0..20_000 {
+        let t = f64::from(k) * h;
+        if k % 5 == 0 {
+            let body = rate(t, y)[1] + 0.2 * noise();
+            text += &format!("{t:.3},{},{body}\n", -force(t));
+        }
+        let moved = |by: f64, slope: [f64; 2]| [y[0] + by * slope[0], y[1] + by * slope[1]];
+        let a = rate(t, y);
+        let b = rate(t + h / 2.0, moved(h / 2.0, a));
+        let c = rate(t + h / 2.0, moved(h / 2.0, b));
+        let d = rate(t + h, moved(h, c));
+        y = [0, 1].map(|i| y[i] + h / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+    }
+    text
+}

@@ -378,7 +378,8 @@ fn any_law_of_a_damper_may_stand_on_a_compliant_end() {
 
 #[test]
 fn an_effect_says_where_the_sensors_of_a_mass_stand() {
-    let seen = |made: &Patched| -> Vec<String> { made.model.outputs.iter().map(|output| output.name.clone()).collect() };
+    let seen =
+        |made: &Patched| -> Vec<String> { made.model.outputs.iter().map(|output| output.name.clone()).collect() };
     let pitching = patched(&effect("subframe_pitch"), &model("axle_d"), "subframe");
     for end in ["front", "rear"] {
         let name = format!("z_sf_{end}_acceleration");
@@ -389,7 +390,11 @@ fn an_effect_says_where_the_sensors_of_a_mass_stand() {
     assert!(text.contains("point sf_rear = sf - half_length*sf_pitch;"), "{text}");
 
     let bending = patched(&effect("body_bending"), &model("axle_a"), "body");
-    assert!(seen(&bending).contains(&"z_body_sensor_acceleration".to_string()), "{:?}", seen(&bending));
+    assert!(
+        seen(&bending).contains(&"z_body_sensor_acceleration".to_string()),
+        "{:?}",
+        seen(&bending)
+    );
     let nuisances = effects().into_iter().filter(|own| own.effect().nuisance);
     let names: Vec<String> = nuisances.map(|own| own.effect().name.text.clone()).collect();
     assert_eq!(names, ["body_bending"]);

@@ -9,7 +9,7 @@ use crate::diagnostic::effects;
 use crate::source::Span;
 use crate::syntax::{
     Change, Dotted, EffectParameter, Expression, ExpressionKind, LawStatement, Let, Link, Name, Operator, Parameter,
-    Statement,
+    PlaceKind, Statement,
 };
 
 /// A model under change.
@@ -95,6 +95,9 @@ impl<'a> Patching<'a> {
             Change::PlaceSensor { end, of, at } => return self.place_sensor(direction, end.as_ref(), of, at),
             Change::Remove(link) => return self.remove(direction, link),
             Change::Delay(place, by) => self.sense(place, Signal::Delay, by),
+            Change::Scale(place, by) if self.bindings.effect.pattern.kind == PlaceKind::Force => {
+                self.scale_force(direction, place, by);
+            }
             Change::Scale(place, by) => self.sense(place, Signal::Gain, by),
             Change::Direction { .. } => {}
         }
@@ -354,6 +357,20 @@ impl<'a> Patching<'a> {
             names: vec![point, Name::new("acceleration")],
         };
         self.declare(direction, &Statement::Output(None, acceleration))
+    }
+
+    /// A force input acts by a factor on what it acts on.
+    fn scale_force(&mut self, direction: &str, place: &Name, by: &Name) {
+        let name = self.bindings.name(place).to_string();
+        let by = self.bindings.renamed.get(&by.text).unwrap_or(&by.text).clone();
+        let body = self.tree.direction_mut(direction).map(|home| &mut home.body);
+        for statement in body.into_iter().flatten() {
+            if let Statement::Force(own, Some(on)) = statement
+                && own.text == name
+            {
+                *on = binary(Operator::Multiply, named(&by), on.clone());
+            }
+        }
     }
 
     fn sense(&mut self, place: &Name, kind: Signal, by: &Name) {

@@ -226,7 +226,7 @@ impl Bindings<'_> {
                 let upper = link.and_then(|link| upper(self.base, &self.place.direction, link));
                 self.base.pointed_at(&self.place.direction, &upper.unwrap_or_default())
             }
-            PlaceKind::Mass | PlaceKind::Sensor => self.place.name.clone(),
+            PlaceKind::Mass | PlaceKind::Sensor | PlaceKind::Force => self.place.name.clone(),
         };
         self.base.coordinate(direction, &name).is_some()
     }

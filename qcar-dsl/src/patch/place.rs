@@ -4,7 +4,7 @@ use super::base::{Base, coordinates, links};
 use super::roles::Roles;
 use super::stretch::upper;
 use super::terms::has_terms;
-use crate::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind};
+use crate::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind, Statement};
 
 /// A place of a model where an effect may apply.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -52,7 +52,16 @@ fn candidates(direction: &Direction, pattern: &Pattern) -> Vec<String> {
             matches!(kind, CoordinateKind::Mass(_) | CoordinateKind::Inertia(_))
         }),
         PlaceKind::Sensor => named(direction, |kind| !matches!(kind, CoordinateKind::Node)),
+        PlaceKind::Force => acting(direction).map(|name| name.text.clone()).collect(),
     }
+}
+
+/// The force inputs that act on something, other than through laws alone.
+fn acting(direction: &Direction) -> impl Iterator<Item = &Name> {
+    direction.body.iter().filter_map(|statement| match statement {
+        Statement::Force(name, Some(_)) => Some(name),
+        _ => None,
+    })
 }
 
 fn named(direction: &Direction, fits: fn(&CoordinateKind) -> bool) -> Vec<String> {
@@ -65,6 +74,7 @@ fn called(roles: &Roles, along: &str, pattern: &Pattern, name: &str) -> Option<S
     let has_role = |role: &str| match pattern.kind {
         PlaceKind::Link => roles.is_link(along, name, role),
         PlaceKind::Mass | PlaceKind::Sensor => roles.is_mass(along, name, role),
+        PlaceKind::Force => false,
     };
     let by_name = matching(&pattern.names, |own| own == name)?;
     let by_role = matching(&pattern.roles, has_role)?;

@@ -52,11 +52,18 @@ fn mistakes(effect: &Effect) -> Vec<Diagnostic> {
     {
         match change {
             Change::ReplaceTerm(term, ..) => found.extend(no_term(term, &LINEAR)),
-            Change::Delay(place, _) | Change::Scale(place, _) if pattern.kind != PlaceKind::Sensor => {
+            Change::Delay(place, _) if pattern.kind != PlaceKind::Sensor => {
                 found.push(reading::misplaced_statement(
                     place.span,
                     "delay",
                     "an effect `at sensor m`",
+                ));
+            }
+            Change::Scale(place, _) if !matches!(pattern.kind, PlaceKind::Sensor | PlaceKind::Force) => {
+                found.push(reading::misplaced_statement(
+                    place.span,
+                    "scale",
+                    "an effect `at sensor m` or `at force f`",
                 ));
             }
             Change::Parameter(_) | Change::Delay(..) | Change::Scale(..) => {}
@@ -136,6 +143,7 @@ fn no_role(role: &Name, kind: PlaceKind) -> Option<Diagnostic> {
     let known: &[&str] = match kind {
         PlaceKind::Link => &OF_LINKS,
         PlaceKind::Mass | PlaceKind::Sensor => &OF_MASSES,
+        PlaceKind::Force => &[],
     };
     (!known.contains(&role.text.as_str())).then(|| effects::unknown_role(role.span, &role.text, known))
 }

@@ -100,11 +100,13 @@ pub enum PlaceKind {
     Mass,
     /// Where something can be measured: anything that moves but a massless node.
     Sensor,
+    /// A force input that acts on something.
+    Force,
 }
 
 impl PlaceKind {
     /// Every kind.
-    pub const ALL: [PlaceKind; 3] = [PlaceKind::Link, PlaceKind::Mass, PlaceKind::Sensor];
+    pub const ALL: [PlaceKind; 4] = [PlaceKind::Link, PlaceKind::Mass, PlaceKind::Sensor, PlaceKind::Force];
 
     /// As written.
     pub fn word(self) -> &'static str {
@@ -112,6 +114,7 @@ impl PlaceKind {
             PlaceKind::Link => "link",
             PlaceKind::Mass => "mass",
             PlaceKind::Sensor => "sensor",
+            PlaceKind::Force => "force",
         }
     }
 }
