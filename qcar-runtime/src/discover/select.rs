@@ -32,7 +32,7 @@ pub use alone::{Alone, Minimum, alone};
 
 use super::answer::{Discovery, Learned, News, Progress, Rival, Verdict, told};
 use super::candidate::{Candidate, Workshop};
-use super::numbers::{MOST_EFFECTS, Numbers};
+use super::numbers::{GREATER_PART, MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -93,7 +93,7 @@ pub fn discover(
 fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = predictive(sets, set, evidence);
     let closes = closed(&sets[nameless(sets)].explanation, &sets[answer].explanation, evidence);
-    answer != set && closes >= evidence.numbers.explained()
+    answer != set && closes >= GREATER_PART
 }
 
 /// True where something is missing that no effect of the catalogue explains, be it less than models of this kind leave.

@@ -4,7 +4,7 @@ use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::candidate::Candidate;
-use crate::discover::numbers::Numbers;
+use crate::discover::numbers::{GREATER_PART, Numbers};
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
 
@@ -138,7 +138,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
     let before = sets[alone].explanation.clone();
     let predictive = predictive(sets, credible[0], evidence);
     // What explains less than most of the gap is not the answer, however probable beside the others.
-    let explains = closed(&before, &sets[predictive].explanation, evidence) >= evidence.numbers.explained();
+    let explains = closed(&before, &sets[predictive].explanation, evidence) >= GREATER_PART;
     let best = if explains { predictive } else { alone };
     let after = sets[best].explanation.clone();
     let finding = |set: &Set, own: &Placed| Finding {
