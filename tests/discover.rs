@@ -622,13 +622,13 @@ fn a_force_that_was_recorded_upside_down_is_named() {
     let mut manifest = "format = 1\nname = \"held\"\nmodel = \"held.axle\"\n
 [[channel]]\nname = \"force\"\nlocation = \"motor\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"force\"\nunit = \"N\"\n
 [[channel]]\nname = \"body\"\nlocation = \"body\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"acceleration\"\nunit = \"m/s^2\"\n
-[parameters.k_body]\nvalue = 700.0\nfit = true\nrange = [50.0, 5000.0]\n
-[parameters.c_body]\nvalue = 7.0\nfit = true\nrange = [0.5, 100.0]\n"
+[parameters.k_body]\nvalue = 700.0\nunit = \"N/m\"\nfit = true\nrange = [50.0, 5000.0]\n
+[parameters.c_body]\nvalue = 7.0\nunit = \"N s/m\"\nfit = true\nrange = [0.5, 100.0]\n"
         .to_owned();
     let mut noise = noise();
     for (role, phase) in [("fit", 0.0), ("held_out", 1.0)] {
         manifest += &format!(
-            "\n[[run]]\nkind = \"time_history\"\nfile = \"{role}.csv\"\nrole = \"{role}\"\nsample_rate = 200.0\n"
+            "\n[[run]]\nkind = \"time_history\"\nfile = \"{role}.csv\"\nrole = \"{role}\"\nsample_rate = 200.0\nband_limited = true\n"
         );
         fs::write(
             folder.path().join(format!("{role}.csv")),
