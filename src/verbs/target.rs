@@ -107,5 +107,9 @@ fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, f
     )?;
     workbook::write(answer, folder)?;
     let title = format!("{}: targets", answer.model);
-    Ok(put(folder, "report.html", &page(Report::Targets, &title, &contents))?)
+    Ok(put(
+        folder,
+        "report.html",
+        &page(Report::Targets, &title, &contents, None),
+    )?)
 }
