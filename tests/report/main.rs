@@ -7,6 +7,8 @@ mod swept;
 mod browser;
 // The report on A4.
 mod paper;
+// Responses that the page computes.
+mod sliders;
 // What its first sentences say.
 mod verdict;
 

@@ -15,36 +15,36 @@ function movable({ fit, refitted }) {
   return PROGRAM.about.parameters.filter(({ name, range, follows }) => names.includes(name) && range && !follows);
 }
 
+// Details that are closed until a reader wants them; only then are their figures made.
 function sliders(data) {
-  if (!PROGRAM || view.printing) return { element: null };
-  const parameters = movable(data);
-  const run = data.rig[0].run;
-  const own = data.rig.filter((ratio) => ratio.run === run);
+  const parameters = PROGRAM && !view.printing ? movable(data) : [];
   if (!parameters.length) return { element: null };
-  const columns = own.map(triedFigure);
-  let charts = null;
-  const moved = () => {
-    charts.forEach((pair, at) => redrawn(pair, triedValues(own[at])));
-  };
+  const run = data.rig[0].run;
+  const ratios = data.rig.filter((ratio) => ratio.run === run);
+  const place = h('div', { class: 'columns' });
+  let charts = [];
+  const moved = () => charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], view.tried)));
   const part = details(
     'Try other values',
     h(
       'p',
       {},
-      `The linear response of the ${data.refitted.length ? 'extended' : 'baseline'} model, computed in this page `,
+      `The linear response of the ${data.refitted.length ? 'extended' : 'baseline'} model, computed in this page: `,
       key('tried', 'with your values'),
-      ', beside what was ',
-      key('measured', 'measured'),
-      ` in ${runName(run)} and the `,
+      ', with the ',
       key('found', 'values that were found'),
-      '.',
+      ', and as ',
+      key('measured', 'measured'),
+      ` in ${runName(run)}.`,
     ),
     sliderList(parameters, moved),
-    h('div', { class: 'columns' }, columns),
+    place,
   );
   const draw = () => {
-    if (charts || !part.open) return;
-    charts = own.map((ratio, at) => triedPlots(ratio, columns[at]));
+    if (charts.length || !part.open) return;
+    const columns = ratios.map(triedFigure);
+    place.replaceChildren(...columns);
+    charts = ratios.map((ratio, at) => triedPlots(ratio, columns[at]));
     moved();
   };
   part.addEventListener('toggle', draw);
@@ -121,15 +121,12 @@ function triedPlots(ratio, column) {
   return polarPlots(column, { at: ratio.frequency, sync: 'tried', curves });
 }
 
-function triedValues(ratio) {
-  const { magnitude, phase } = polar(ratio, view.tried);
-  return [magnitude, phase];
-}
-
-// The last curve of each plot is the one that moves.
-function redrawn(charts, values) {
-  charts.forEach((chart, at) => chart.setData([...chart.data.slice(0, -1), values[at]], false));
-  charts.forEach((chart) => chart.redraw(true, true));
+// The last curve of each plot is the one that moves; what is shown of the frequencies stays.
+function redrawn(charts, { magnitude, phase }) {
+  [magnitude, phase].forEach((values, at) => {
+    charts[at].setData([...charts[at].data.slice(0, -1), values], false);
+    charts[at].redraw(true, true);
+  });
 }
 
 // Magnitude in dB and phase in degrees, on the turn of the measured one.
