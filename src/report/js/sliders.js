@@ -6,21 +6,27 @@ const STEPS = 1000;
 // Values beyond such a ratio of the ends of a range are spread by their logarithm.
 const WIDE = 20;
 
-// What a slider moves: what the fit has estimated and has a range, of the model that the program computes.
-function movable({ fit, refitted }) {
+// What a slider moves: what the fit has estimated, has a range and moves one of the ratios.
+function movable({ fit, refitted }, ratios) {
   const estimated = refitted.length
     ? refitted.filter(({ stderr }) => stderr !== null)
     : Object.values(fit.parameters).filter(({ fitted }) => fitted);
   const names = estimated.map(({ name }) => name);
-  return PROGRAM.about.parameters.filter(({ name, range, follows }) => names.includes(name) && range && !follows);
+  const moves = ({ name, value }) =>
+    ratios.some((ratio) => {
+      const [found, moved] = [{}, { [name]: 1.01 * value }].map((given) => polar(ratio, given).magnitude);
+      return found.some((own, at) => own !== moved[at]);
+    });
+  return PROGRAM.about.parameters.filter((own) => names.includes(own.name) && own.range && !own.follows && moves(own));
 }
 
 // Details that are closed until a reader wants them; only then are their figures made.
 function sliders(data) {
-  const parameters = PROGRAM && !view.printing ? movable(data) : [];
-  if (!parameters.length) return { element: null };
+  if (!PROGRAM || view.printing) return { element: null };
   const run = data.rig[0].run;
   const ratios = data.rig.filter((ratio) => ratio.run === run);
+  const parameters = movable(data, ratios);
+  if (!parameters.length) return { element: null };
   const place = h('div', { class: 'columns' });
   let charts = [];
   const moved = () => charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], view.tried)));
@@ -45,7 +51,6 @@ function sliders(data) {
     const columns = ratios.map(triedFigure);
     place.replaceChildren(...columns);
     charts = ratios.map((ratio, at) => triedPlots(ratio, columns[at]));
-    moved();
   };
   part.addEventListener('toggle', draw);
   return { element: part, draw };
@@ -112,11 +117,11 @@ function triedFigure(ratio) {
 }
 
 function triedPlots(ratio, column) {
-  const found = polar(ratio, {});
+  const [found, tried] = [polar(ratio, {}), polar(ratio, view.tried)];
   const curves = (part) => [
     { role: 'measured', values: ratio.measured[part] },
     { role: 'found', values: found[part] },
-    { role: 'tried', values: found[part] },
+    { role: 'tried', values: tried[part] },
   ];
   return polarPlots(column, { at: ratio.frequency, sync: 'tried', curves });
 }
