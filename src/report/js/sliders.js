@@ -12,9 +12,10 @@ function movable({ fit, refitted }, ratios) {
     ? refitted.filter(({ stderr }) => stderr !== null)
     : Object.values(fit.parameters).filter(({ fitted }) => fitted);
   const names = estimated.map(({ name }) => name);
-  const moves = ({ name, value }) =>
+  const moves = ({ name, value, range }) =>
     ratios.some((ratio) => {
-      const [found, moved] = [{}, { [name]: 1.01 * value }].map((given) => polar(ratio, given).magnitude);
+      const other = range.find((end) => end !== value);
+      const [found, moved] = [{}, { [name]: other }].map((given) => polar(ratio, given).magnitude);
       return found.some((own, at) => own !== moved[at]);
     });
   return PROGRAM.about.parameters.filter((own) => names.includes(own.name) && own.range && !own.follows && moves(own));
