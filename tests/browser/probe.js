@@ -164,11 +164,11 @@
     }
   }
 
-  // The sliders, and the first ratio before and after one of them was moved; then all is as it was.
+  // The sliders, and the first ratio before and after one of them was moved, and when all are back.
   async function tried() {
     const part = [...document.querySelectorAll('#rig details')].find((own) => own.querySelector('.sliders'));
     if (!part) return;
-    part.open = true;
+    part.querySelector('summary').click();
     await frame();
     await frame();
     const text = async () => {
@@ -195,7 +195,6 @@
     part.querySelector('.sliders button').click();
     await frame();
     found.tried.reset = await text();
-    part.open = false;
   }
 
   // What paper shows, and whether the page is itself again afterwards.
