@@ -24,7 +24,7 @@ const STYLE: [&str; 4] = [
 ];
 
 /// What every report draws with, in the order in which they use each other.
-const SCRIPTS: [&str; 14] = [
+const SCRIPTS: [&str; 15] = [
     include_str!("report/js/view.js"),
     include_str!("report/js/format.js"),
     include_str!("report/js/units.js"),
@@ -37,6 +37,7 @@ const SCRIPTS: [&str; 14] = [
     include_str!("report/js/picker.js"),
     include_str!("report/js/layout.js"),
     include_str!("report/js/axle.js"),
+    include_str!("report/js/sliders.js"),
     include_str!("report/js/theme.js"),
     include_str!("report/js/page.js"),
 ];
@@ -48,7 +49,7 @@ const STUDY: [&str; 20] = [
     include_str!("report/js/judgement.js"),
     include_str!("report/js/verdict.js"),
     include_str!("report/js/curves.js"),
-    include_str!("report/js/sliders.js"),
+    include_str!("report/js/tried.js"),
     include_str!("report/js/rig.js"),
     include_str!("report/js/parameters.js"),
     include_str!("report/js/modes.js"),
@@ -80,8 +81,9 @@ const COMPARISON: [&str; 10] = [
 ];
 
 /// The sections of targets; the last one starts.
-const TARGETS: [&str; 8] = [
+const TARGETS: [&str; 9] = [
     include_str!("report/js/target/wanted.js"),
+    include_str!("report/js/target/tried.js"),
     include_str!("report/js/target/intervals.js"),
     include_str!("report/js/target/dots.js"),
     include_str!("report/js/target/front.js"),

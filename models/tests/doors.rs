@@ -87,7 +87,10 @@ fn derivatives_by_name_are_limits_of_differences() {
             for ((own, more), less) in own.iter().zip(more).zip(less) {
                 let difference = (more - less) / step;
                 let size = difference.abs().max(1e-6 * more.abs() / step);
-                assert!((own - difference).abs() <= 1e-6 * size, "{name}: {own} is not {difference}");
+                assert!(
+                    (own - difference).abs() <= 1e-6 * size,
+                    "{name}: {own} is not {difference}"
+                );
             }
         };
         close(slopes.a[name].as_slice(), more.a.as_slice(), less.a.as_slice());
@@ -96,7 +99,10 @@ fn derivatives_by_name_are_limits_of_differences() {
         close(slopes.d[name].as_slice(), more.d.as_slice(), less.d.as_slice());
     }
     assert!(slopes.a.get("k_tyre").is_none());
-    assert_eq!(slopes.a.iter().map(|(name, _)| name).collect::<Vec<_>>(), Parameters::NAMES);
+    assert_eq!(
+        slopes.a.iter().map(|(name, _)| name).collect::<Vec<_>>(),
+        Parameters::NAMES
+    );
 }
 
 fn generated(name: &str) -> String {

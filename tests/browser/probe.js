@@ -166,7 +166,7 @@
 
   // The sliders, and the first ratio before and after one of them was moved, and when all are back.
   async function tried() {
-    const part = [...document.querySelectorAll('#rig details')].find((own) => own.querySelector('.sliders'));
+    const part = [...document.querySelectorAll('details')].find((own) => own.querySelector('.sliders'));
     if (!part) return;
     part.querySelector('summary').click();
     await frame();
@@ -185,7 +185,7 @@
       before: await text(),
       blank: [...part.querySelectorAll('[data-figure]')].filter((own) => !('drawn' in own.dataset)).length,
     };
-    const wanted = inputs.find((own) => own.getAttribute('aria-label').startsWith('k_wheel_z'));
+    const wanted = inputs.find((own) => own.getAttribute('aria-label').startsWith('k_wheel_z')) || inputs[0];
     wanted.value = 500;
     wanted.dispatchEvent(new Event('input'));
     await frame();

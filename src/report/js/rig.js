@@ -25,7 +25,7 @@ function rig(data) {
             place,
           ),
   });
-  const tried = sliders(data);
+  const trial = tried(data);
   const element = section(
     'rig',
     'Rig fit',
@@ -47,11 +47,11 @@ function rig(data) {
     shown.control,
     shown.place,
     qualityTable(ratios, runs, channels),
-    tried.element,
+    trial.element,
   );
   const draw = () => {
     shown.draw();
-    if (tried.draw) tried.draw();
+    if (trial.draw) trial.draw();
   };
   return { element, draw };
 }

@@ -1,64 +1,45 @@
-// The ratios of the rig, computed anew in the page while a parameter is moved.
+// Ratios of the model, computed anew in the page while a parameter is moved.
 
 // The steps of a slider.
 const STEPS = 1000;
 
-// Values beyond such a ratio of the ends of a range are spread by their logarithm.
+// Ranges whose ends are further apart than by such a factor are spread by their logarithm.
 const WIDE = 20;
 
-// What a slider moves: what the fit has estimated, has a range and moves one of the ratios.
-function movable({ fit, refitted }, ratios) {
-  const estimated = refitted.length
-    ? refitted.filter(({ stderr }) => stderr !== null)
-    : Object.values(fit.parameters).filter(({ fitted }) => fitted);
-  const names = estimated.map(({ name }) => name);
-  const moves = ({ name, value, range }) =>
-    ratios.some((ratio) => {
-      const other = range.find((end) => end !== value);
-      const [found, moved] = [{}, { [name]: other }].map((given) => polar(ratio, given).magnitude);
-      return found.some((own, at) => own !== moved[at]);
-    });
-  return PROGRAM.about.parameters.filter((own) => names.includes(own.name) && own.range && !own.follows && moves(own));
-}
-
-// Details that are closed until a reader wants them; only then are their figures made.
-function sliders(data) {
-  if (!PROGRAM || view.printing) return { element: null };
-  const run = data.rig[0].run;
-  const ratios = data.rig.filter((ratio) => ratio.run === run);
-  const parameters = movable(data, ratios);
-  if (!parameters.length) return { element: null };
+// Details that are closed until a reader wants them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
+// range, gives}`, of which `gives` makes the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, of which
+// `curves(part)` are shown beside those that move.
+function sliders({ says, knobs, ratios }) {
+  if (view.printing) return { element: null };
+  const moving = knobs.filter((knob) => ratios.some((ratio) => moves(knob, ratio)));
+  if (!moving.length) return { element: null };
   const place = h('div', { class: 'columns' });
   let charts = [];
-  const moved = () => charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], view.tried)));
-  const part = details(
-    'Try other values',
-    h(
-      'p',
-      {},
-      `The linear response of the ${data.refitted.length ? 'extended' : 'baseline'} model, computed in this page: `,
-      key('tried', 'with your values'),
-      ', with the ',
-      key('found', 'values that were found'),
-      ', and as ',
-      key('measured', 'measured'),
-      ` in ${runName(run)}.`,
-    ),
-    sliderList(parameters, moved),
-    place,
-  );
+  const given = () => Object.assign({}, ...moving.map((knob) => givenBy(knob)));
+  const moved = () => charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], given())));
+  const part = details('Try other values', h('p', {}, says), sliderList(moving, moved), place);
   const draw = () => {
     if (charts.length || !part.open) return;
     const columns = ratios.map(triedFigure);
     place.replaceChildren(...columns);
-    charts = ratios.map((ratio, at) => triedPlots(ratio, columns[at]));
+    charts = ratios.map((ratio, at) => triedPlots(ratio, given(), columns[at]));
   };
   part.addEventListener('toggle', draw);
   return { element: part, draw };
 }
 
-function sliderList(parameters, moved) {
-  const rows = parameters.map((parameter) => slider(parameter, moved));
+function moves({ value, range, gives }, ratio) {
+  const other = range.find((end) => end !== value);
+  const [found, moved] = [value, other].map((own) => polar(ratio, gives(own)).magnitude);
+  return found.some((own, at) => own !== moved[at]);
+}
+
+function givenBy({ name, gives }) {
+  return view.tried[name] === undefined ? {} : gives(view.tried[name]);
+}
+
+function sliderList(knobs, moved) {
+  const rows = knobs.map((knob) => slider(knob, moved));
   const reset = () => {
     view.tried = {};
     rows.forEach((row) => row.show());
@@ -68,13 +49,13 @@ function sliderList(parameters, moved) {
     'div',
     { class: 'sliders' },
     rows.map((row) => row.element),
-    h('button', { type: 'button', onclick: reset }, 'Back to the values that were found'),
+    h('button', { type: 'button', onclick: reset }, 'Back to the values of the report'),
   );
 }
 
-function slider(parameter, moved) {
-  const { name, unit, value, doc } = parameter;
-  const place = places(parameter);
+function slider(knob, moved) {
+  const { name, unit, value, doc } = knob;
+  const place = places(knob);
   const current = () => (view.tried[name] === undefined ? value : view.tried[name]);
   const shown = h('output', {});
   const input = h('input', { type: 'range', min: 0, max: STEPS, step: 1, 'aria-label': doc ? `${name}: ${doc}` : name });
@@ -117,13 +98,9 @@ function triedFigure(ratio) {
   );
 }
 
-function triedPlots(ratio, column) {
-  const [found, tried] = [polar(ratio, {}), polar(ratio, view.tried)];
-  const curves = (part) => [
-    { role: 'measured', values: ratio.measured[part] },
-    { role: 'found', values: found[part] },
-    { role: 'tried', values: tried[part] },
-  ];
+function triedPlots(ratio, given, column) {
+  const tried = polar(ratio, given);
+  const curves = (part) => [...ratio.curves(part), { role: 'tried', values: tried[part] }];
   return polarPlots(column, { at: ratio.frequency, sync: 'tried', curves });
 }
 
@@ -135,12 +112,15 @@ function redrawn(charts, { magnitude, phase }) {
   });
 }
 
-// Magnitude in dB and phase in degrees, on the turn of the measured one.
-function polar({ channel, frequency, measured: beside }, given) {
+// Magnitude in dB and phase in degrees, on the turn of others or of the line before.
+function polar({ channel, frequency, turns }, given) {
   const { re, im } = PROGRAM.response(channel, given, frequency);
-  const turn = (phase, other) => (other === null ? phase : phase + 360 * Math.round((other - phase) / 360));
-  return {
-    magnitude: re.map((own, at) => 20 * Math.log10(Math.hypot(own, im[at]))),
-    phase: re.map((own, at) => turn((Math.atan2(im[at], own) * 180) / Math.PI, beside.phase[at])),
-  };
+  let last = 0;
+  const phase = re.map((own, at) => {
+    const bare = (Math.atan2(im[at], own) * 180) / Math.PI;
+    const other = turns && turns[at] !== null ? turns[at] : last;
+    last = bare + 360 * Math.round((other - bare) / 360);
+    return last;
+  });
+  return { magnitude: re.map((own, at) => 20 * Math.log10(Math.hypot(own, im[at]))), phase };
 }
