@@ -4,6 +4,8 @@
 pub mod c;
 // A Functional Mock-up Unit.
 pub mod fmu;
+// JavaScript.
+pub mod javascript;
 // MATLAB.
 pub mod matlab;
 

@@ -30,6 +30,8 @@ impl fmt::Display for Failure {
     }
 }
 
+impl std::error::Error for Failure {}
+
 impl From<InputError> for Failure {
     fn from(error: InputError) -> Self {
         Failure::Input(error.to_string())

@@ -23,3 +23,9 @@ pub fn line(value: &impl Serialize) -> String {
     text.push('\n');
     text
 }
+
+/// JSON that may stand in a script of a page: nothing in it ends the script.
+pub fn inert(value: &impl Serialize) -> String {
+    let json = serde_json::to_string(value).expect("keys are strings and no field refuses");
+    json.replace('<', "\\u003c")
+}

@@ -55,3 +55,8 @@ pub mod export;
 pub mod verbs;
 // The list of it.
 pub mod cli;
+
+/// The guide for users of the library, whose code runs as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/library.md")]
+pub struct Guide;

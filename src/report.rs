@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use crate::json::inert;
 use crate::units;
 
 // Numbers as a page needs them.
@@ -23,7 +24,7 @@ const STYLE: [&str; 4] = [
 ];
 
 /// What every report draws with, in the order in which they use each other.
-const SCRIPTS: [&str; 14] = [
+const SCRIPTS: [&str; 15] = [
     include_str!("report/js/view.js"),
     include_str!("report/js/format.js"),
     include_str!("report/js/units.js"),
@@ -36,17 +37,19 @@ const SCRIPTS: [&str; 14] = [
     include_str!("report/js/picker.js"),
     include_str!("report/js/layout.js"),
     include_str!("report/js/axle.js"),
+    include_str!("report/js/sliders.js"),
     include_str!("report/js/theme.js"),
     include_str!("report/js/page.js"),
 ];
 
 /// The sections of a study; the last one starts.
-const STUDY: [&str; 19] = [
+const STUDY: [&str; 20] = [
     include_str!("report/js/shapes.js"),
     include_str!("report/js/changes.js"),
     include_str!("report/js/judgement.js"),
     include_str!("report/js/verdict.js"),
     include_str!("report/js/curves.js"),
+    include_str!("report/js/tried.js"),
     include_str!("report/js/rig.js"),
     include_str!("report/js/parameters.js"),
     include_str!("report/js/modes.js"),
@@ -78,8 +81,9 @@ const COMPARISON: [&str; 10] = [
 ];
 
 /// The sections of targets; the last one starts.
-const TARGETS: [&str; 8] = [
+const TARGETS: [&str; 9] = [
     include_str!("report/js/target/wanted.js"),
+    include_str!("report/js/target/tried.js"),
     include_str!("report/js/target/intervals.js"),
     include_str!("report/js/target/dots.js"),
     include_str!("report/js/target/front.js"),
@@ -110,15 +114,15 @@ impl Report {
     }
 }
 
-/// A report.
-pub fn page(report: Report, title: &str, data: &impl Serialize) -> String {
+/// A report. Its script may compute with a `program`, an expression of JavaScript that [`inert`] texts alone come into.
+pub fn page(report: Report, title: &str, data: &impl Serialize, program: Option<&str>) -> String {
     let mut out = String::new();
     for part in TEMPLATE.split("{{").enumerate() {
         match part {
             (0, text) => out += text,
             (_, part) => {
                 let (slot, text) = part.split_once("}}").expect("the template closes its slots");
-                out += &filled(slot, report, title, data);
+                out += &filled(slot, report, title, data, program);
                 out += text;
             }
         }
@@ -126,21 +130,24 @@ pub fn page(report: Report, title: &str, data: &impl Serialize) -> String {
     out
 }
 
-fn filled(slot: &str, report: Report, title: &str, data: &impl Serialize) -> String {
+fn filled(slot: &str, report: Report, title: &str, data: &impl Serialize, program: Option<&str>) -> String {
     match slot {
         "title" => escaped(title),
         "style" => UPLOT[0].to_string() + "\n" + &STYLE.join("\n"),
         "uplot" => UPLOT[1].to_string(),
         "data" => inert(data),
-        "script" => [SCRIPTS.join("\n"), units::script(), report.sections().join("\n")].join("\n"),
+        "script" => {
+            let program = format!("const PROGRAM = {};", program.unwrap_or("null"));
+            [
+                SCRIPTS.join("\n"),
+                units::script(),
+                program,
+                report.sections().join("\n"),
+            ]
+            .join("\n")
+        }
         other => unreachable!("the template has no slot {other}"),
     }
-}
-
-/// JSON that cannot end the script element that it stands in.
-fn inert(data: &impl Serialize) -> String {
-    let json = serde_json::to_string(data).expect("keys are strings and no field refuses");
-    json.replace('<', "\\u003c")
 }
 
 fn escaped(text: &str) -> String {
@@ -153,7 +160,7 @@ mod tests {
 
     #[test]
     fn data_cannot_leave_its_script() {
-        let page = page(Report::Study, "a < b", &"</script><script>alert(1)</script>");
+        let page = page(Report::Study, "a < b", &"</script><script>alert(1)</script>", None);
         assert!(!page.contains("alert(1)</script>"));
         assert!(page.contains("\\u003c/script>\\u003cscript>alert(1)"));
         assert!(page.contains("<title>a &lt; b</title>"));
@@ -162,7 +169,7 @@ mod tests {
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
         let pages = [Report::Study, Report::Comparison, Report::Targets]
-            .map(|report| page(report, "t", &0))
+            .map(|report| page(report, "t", &0, None))
             .concat();
         for loader in [
             "src=",

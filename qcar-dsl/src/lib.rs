@@ -67,6 +67,8 @@ pub mod rust;
 pub mod c;
 // The matrices as a function of MATLAB.
 pub mod matlab;
+// Functions of JavaScript.
+pub mod javascript;
 // A flat model of Modelica.
 pub mod modelica;
 // For people: equations, matrices, LaTeX, dot.

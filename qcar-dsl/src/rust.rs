@@ -57,7 +57,7 @@ pub fn module(compiled: &Compiled) -> String {
 const ALLOW: &str = "#[allow(clippy::all, unused, non_snake_case, reason = \"names and numbers are the model's, and not every model needs all\")]\n";
 
 const USES: &str =
-    "use ::qcar_runtime::generated::{Block, LINES, Sets, StateSpace, fixed, fixed_mut, no_response, respond, sign, together};
+    "use ::qcar_runtime::generated::{Block, Jacobians, LINES, Sets, StateSpace, fixed, fixed_mut, no_response, respond, sign, together};
 use ::qcar_runtime::model as seam;
 use ::qcar_runtime::model::{Entry, Matrix};
 use ::qcar_runtime::nalgebra::SVector;

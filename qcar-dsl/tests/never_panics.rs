@@ -1,8 +1,13 @@
-//! No text makes the compiler panic: neither words at random, nor models with parts cut out, doubled or swapped.
+//! No text makes the compiler panic: neither words at random, nor models and effects with parts cut out, doubled or swapped.
+
+#[path = "../../fuzz/bodies/effect.rs"]
+mod effect;
+#[path = "../../fuzz/bodies/model.rs"]
+mod model;
 
 use proptest::prelude::*;
-use qcar_dsl::front::{check_members, check_text};
-use qcar_dsl::parse::parse_text;
+use qcar_dsl::front::check_members;
+use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 
 const WORDS: [&str; 62] = [
@@ -102,38 +107,18 @@ family corner {
 }
 "#;
 
-fn run(text: String) {
-    let source = Source {
-        name: "fuzz.axle".to_string(),
-        text,
-    };
-    let load = |_: &str, _: &str| Err("there are no files".to_string());
-    let parsed = parse_text(&source, 0);
-    if parsed.mistakes.is_empty() {
-        let printed = Source {
-            name: "printed".to_string(),
-            text: parsed.file.to_string(),
-        };
-        let again = parse_text(&printed, 0);
-        assert!(again.mistakes.is_empty(), "{}", printed.text);
-        assert!(
-            again.file == parsed.file,
-            "{}\nprints as\n{}",
-            source.text,
-            printed.text
-        );
-    }
-    match check_text(source.clone(), &load) {
-        Ok(checked) => drop(checked.warnings().to_string()),
-        Err(report) => assert!(!report.to_string().is_empty() && !report.compact().is_empty()),
-    }
-    drop(check_members(source, &load));
-}
+/// Effects of every kind: on a link, with a mass, in several forms, of a sensor.
+const EFFECTS: [&str; 4] = [
+    include_str!("../../models/effects/coulomb_friction.axle"),
+    include_str!("../../models/effects/tire_belt.axle"),
+    include_str!("../../models/effects/bump_stop.axle"),
+    include_str!("../../models/effects/sensor_delay.axle"),
+];
 
-/// The words and marks of the model.
-fn tokens() -> Vec<String> {
+/// The words and marks of a text.
+fn tokens(text: &str) -> Vec<String> {
     let mut tokens = Vec::new();
-    let mut rest = MODEL;
+    let mut rest = text;
     while let Some(first) = rest.chars().next() {
         let is_word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
         let length = match first {
@@ -158,36 +143,65 @@ fn the_model_to_be_mangled_is_sound() {
     }
 }
 
+/// A part taken out, two swapped, or one doubled elsewhere; each with its places.
+type Edit = (usize, usize, usize);
+
+fn edits() -> impl Strategy<Value = Vec<Edit>> {
+    proptest::collection::vec((0..3usize, 0..1000usize, 0..1000usize), 1..4)
+}
+
+fn edited(text: &str, edits: Vec<Edit>) -> String {
+    let mut tokens = tokens(text);
+    for (edit, a, b) in edits {
+        let (a, b) = (a % tokens.len(), b % tokens.len());
+        match edit {
+            0 => drop(tokens.remove(a)),
+            1 => tokens.swap(a, b),
+            _ => tokens.insert(a, tokens[b].clone()),
+        }
+    }
+    tokens.concat()
+}
+
+#[test]
+fn the_effects_to_be_mangled_are_sound_and_apply() {
+    for text in EFFECTS {
+        let source = Source {
+            name: "effect.axle".to_string(),
+            text: text.to_string(),
+        };
+        let patch = Patch::read(source).unwrap_or_else(|report| panic!("{report}"));
+        assert!(!patch.places(&effect::bench()).is_empty(), "{text}");
+        effect::survives(text);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 150, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn words_at_random(words in proptest::collection::vec(proptest::sample::select(&WORDS[..]), 0..60)) {
-        run(words.join(" "));
+        model::survives(&words.join(" "));
     }
 
     #[test]
     fn words_inside_a_model(words in proptest::collection::vec(proptest::sample::select(&WORDS[..44]), 0..12)) {
-        run(format!("axle a {{ direction z {{ road pad; mass body = 1 kg; {}; }} }}", words.join(" ")));
-        run(format!("axle a {{ direction z {{ road pad; link l: pad {{ {}; }} }} }}", words.join(" ")));
+        model::survives(&format!("axle a {{ direction z {{ road pad; mass body = 1 kg; {}; }} }}", words.join(" ")));
+        model::survives(&format!("axle a {{ direction z {{ road pad; link l: pad {{ {}; }} }} }}", words.join(" ")));
     }
 
     #[test]
-    fn a_model_with_parts_changed(edits in proptest::collection::vec((0..3usize, 0..1000usize, 0..1000usize), 1..4)) {
-        let mut tokens = tokens();
-        for (edit, a, b) in edits {
-            let (a, b) = (a % tokens.len(), b % tokens.len());
-            match edit {
-                0 => drop(tokens.remove(a)),
-                1 => tokens.swap(a, b),
-                _ => tokens.insert(a, tokens[b].clone()),
-            }
-        }
-        run(tokens.concat());
+    fn a_model_with_parts_changed(edits in edits()) {
+        model::survives(&edited(MODEL, edits));
+    }
+
+    #[test]
+    fn an_effect_with_parts_changed(which in 0..EFFECTS.len(), edits in edits()) {
+        effect::survives(&edited(EFFECTS[which], edits));
     }
 
     #[test]
     fn any_characters(text in "\\PC{0,80}") {
-        run(text);
+        model::survives(&text);
     }
 }

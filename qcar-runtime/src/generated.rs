@@ -3,9 +3,11 @@
 //! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
 //! here a frequency response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.
 
+use std::ops::Index;
+
 use nalgebra::SMatrix;
 
-use crate::model::{About, LANES, Lanes, ResponseMut};
+use crate::model::{About, Entry, LANES, Lanes, Matrix, ResponseMut};
 use crate::vectors::{Loops, widest};
 
 /// How many lines of a frequency response are computed together: a cache line of each row.
@@ -33,6 +35,82 @@ impl<const N: usize, const M: usize, const O: usize> StateSpace<N, M, O> {
             c: SMatrix::zeros(),
             d: SMatrix::zeros(),
         }
+    }
+}
+
+/// The derivatives of A, B, C and D by each parameter, dense and by name: `jacobians.a["k_tire"]` is ∂A/∂k_tire.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jacobians<const N: usize, const M: usize, const O: usize> {
+    /// Of A.
+    pub a: ByParameter<SMatrix<f64, N, N>>,
+    /// Of B.
+    pub b: ByParameter<SMatrix<f64, N, M>>,
+    /// Of C.
+    pub c: ByParameter<SMatrix<f64, O, N>>,
+    /// Of D.
+    pub d: ByParameter<SMatrix<f64, O, M>>,
+}
+
+impl<const N: usize, const M: usize, const O: usize> Jacobians<N, M, O> {
+    /// Puts each nonzero where it belongs; all others are zero.
+    pub fn new(names: &'static [&'static str], places: &[(Entry, u16)], nonzeros: &[f64]) -> Self {
+        let mut all = Jacobians {
+            a: ByParameter::zeros(names),
+            b: ByParameter::zeros(names),
+            c: ByParameter::zeros(names),
+            d: ByParameter::zeros(names),
+        };
+        for ((entry, parameter), &nonzero) in places.iter().zip(nonzeros) {
+            let at = (usize::from(entry.row), usize::from(entry.column));
+            let parameter = usize::from(*parameter);
+            match entry.matrix {
+                Matrix::A => all.a.matrices[parameter][at] = nonzero,
+                Matrix::B => all.b.matrices[parameter][at] = nonzero,
+                Matrix::C => all.c.matrices[parameter][at] = nonzero,
+                Matrix::D => all.d.matrices[parameter][at] = nonzero,
+            }
+        }
+        all
+    }
+}
+
+/// A matrix for each parameter, found by its name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ByParameter<T> {
+    names: &'static [&'static str],
+    matrices: Vec<T>,
+}
+
+impl<T> ByParameter<T> {
+    /// The matrix of a parameter; none where the model has no parameter of this name.
+    pub fn get(&self, name: &str) -> Option<&T> {
+        let place = self.names.iter().position(|own| *own == name)?;
+        Some(&self.matrices[place])
+    }
+
+    /// Every parameter with its matrix, in the order of the model.
+    pub fn iter(&self) -> impl Iterator<Item = (&'static str, &T)> {
+        self.names.iter().copied().zip(&self.matrices)
+    }
+}
+
+impl<const R: usize, const C: usize> ByParameter<SMatrix<f64, R, C>> {
+    fn zeros(names: &'static [&'static str]) -> Self {
+        let matrices = vec![SMatrix::zeros(); names.len()];
+        ByParameter { names, matrices }
+    }
+}
+
+impl<T> Index<&str> for ByParameter<T> {
+    type Output = T;
+
+    /// # Panics
+    ///
+    /// Where the model has no parameter of this name; [`ByParameter::get`] asks first.
+    #[track_caller]
+    fn index(&self, name: &str) -> &T {
+        self.get(name)
+            .unwrap_or_else(|| panic!("no parameter `{name}`; there are {}", self.names.join(", ")))
     }
 }
 

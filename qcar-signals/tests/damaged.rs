@@ -2,6 +2,11 @@
 
 #![expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
 
+#[path = "../../fuzz/mutation.rs"]
+mod mutation;
+#[path = "../../fuzz/bodies/recording.rs"]
+mod recording;
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::fs;
@@ -12,6 +17,8 @@ use std::path::Path;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 use qcar_signals::read::recognise;
+
+use mutation::{Random, mutated};
 
 /// Counts what the thread of a test holds, and the most it held.
 struct Counting;
@@ -46,65 +53,12 @@ static ALLOCATOR: Counting = Counting;
 fn memory_of(bytes: &[u8]) -> isize {
     let before = HELD.get();
     MOST.set(before);
-    let _ = recognise(bytes);
+    recording::survives(bytes);
     MOST.get() - before
 }
 
 fn sample(name: &str) -> Vec<u8> {
     fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples").join(name)).unwrap()
-}
-
-/// Numbers that look random and are the same every time (xorshift64*).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 ^= self.0 >> 12;
-        self.0 ^= self.0 << 25;
-        self.0 ^= self.0 >> 27;
-        (self.0.wrapping_mul(0x2545_f491_4f6c_dd1d) >> 33) as usize % end
-    }
-}
-
-/// A few bytes changed, each to what breaks readers; or a piece taken out, doubled, or cut off.
-fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
-    let mut bytes = file.to_vec();
-    // Most of what matters stands at the beginning and at the end.
-    let place = |random: &mut Random, length: usize| match random.below(4) {
-        0 => random.below(length),
-        1 => length - 1 - random.below(length.min(600)),
-        _ => random.below(length.min(3000)),
-    };
-    match random.below(10) {
-        0 => bytes.truncate(random.below(file.len())),
-        1 => {
-            let (at, length) = (place(random, bytes.len()), random.below(300));
-            bytes.drain(at..(at + length).min(file.len()));
-        }
-        2 => {
-            let (at, length) = (place(random, bytes.len()), random.below(300));
-            let piece = bytes[at..(at + length).min(file.len())].to_vec();
-            bytes.splice(at..at, piece);
-        }
-        _ => {
-            for _ in 0..=random.below(4) {
-                let at = place(random, bytes.len());
-                let values = [
-                    0,
-                    1,
-                    0x7f,
-                    0x80,
-                    0xff,
-                    random.below(256) as u8,
-                    bytes[at].wrapping_add(1),
-                ];
-                let value = values[random.below(values.len())];
-                let end = (at + [1, 1, 2, 4, 8][random.below(5)]).min(bytes.len());
-                bytes[at..end].fill(value);
-            }
-        }
-    }
-    bytes
 }
 
 /// Bytes that a reader may hold for each byte of a file of a few hundred kilobytes, and for any file. Rows of a table of text

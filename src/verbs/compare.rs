@@ -91,7 +91,11 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         put(folder, "transmissibility.csv", &render::ratios_csv(&comparison))?;
         put(folder, "cleat.csv", &render::passages_csv(&comparison))?;
         let title = format!("{} beside {}", contents.result.a.name, contents.result.b.name);
-        put(folder, "report.html", &page(Report::Comparison, &title, &contents))?;
+        put(
+            folder,
+            "report.html",
+            &page(Report::Comparison, &title, &contents, None),
+        )?;
     }
     Ok(match arguments.format {
         Format::Text => prose(&render::text(&comparison, &contents.result, arguments.out.as_deref())),

@@ -10,14 +10,14 @@ use qcar_runtime::response::parameters::Values;
 use super::ModelArguments;
 use crate::catalogue::{self, Loaded};
 use crate::export::fmu::Library;
-use crate::export::{File, Subject, c, fmu, matlab};
+use crate::export::{File, Subject, c, fmu, javascript, matlab};
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::json;
 use crate::parameters;
 use crate::state_space::{StateSpace, state_space};
 
-/// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, tables
+/// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables
 ///
 /// Every parameter starts with the value that is given, and stays changeable where the tool can change it. Files that are
 /// there already stay as they are.
@@ -52,6 +52,8 @@ enum Kind {
     Mat,
     /// FILE.mo: a flat model of Modelica
     Modelica,
+    /// FILE.js: an object with the functions of the model, for a page or Node
+    Js,
     /// FILE.json: A, B, C, D and their derivatives, as `qcar matrices` prints them
     Json,
     /// FILE.csv: A, B, C and D, an entry a line
@@ -88,6 +90,7 @@ impl Kind {
             Kind::Matlab => "m",
             Kind::Mat => "mat",
             Kind::Modelica => "mo",
+            Kind::Js => "js",
             Kind::Json => "json",
             Kind::Csv => "csv",
             Kind::Latex => "tex",
@@ -186,6 +189,10 @@ fn files(
             String::new(),
         ),
         Kind::Modelica => text(modelica::model(subject.compiled, subject.values)),
+        Kind::Js => (
+            vec![javascript::file(subject, model.about(), values, stem)],
+            String::new(),
+        ),
         Kind::Json => text(json::line(&matrices(model, values)?)),
         Kind::Csv => text(entries(&matrices(model, values)?)),
         Kind::Latex => text(show(subject.compiled, Stage::Latex)),

@@ -37,6 +37,8 @@ mod summary;
 mod record;
 // The numbers as a workbook.
 mod workbook;
+// The model as a program of the page.
+mod program;
 // All of it for the page, and without the curves for programs.
 mod contents;
 
@@ -68,7 +70,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     put(&arguments.out, "study.json", &json)?;
     workbook::write(&study, &arguments.out)?;
     let title = format!("{}: study of {}", contents.result.campaign, contents.result.model);
-    put(&arguments.out, "report.html", &page(Report::Study, &title, &contents))?;
+    let program = program::program(&study);
+    put(
+        &arguments.out,
+        "report.html",
+        &page(Report::Study, &title, &contents, program.as_deref()),
+    )?;
     let result = match arguments.format {
         Format::Text => prose(&summary::text(&study, &contents.result.summary, &arguments.out)),
         Format::Json => json,

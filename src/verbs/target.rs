@@ -4,7 +4,11 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use qcar_runtime::metric::Ground;
+use qcar_runtime::response::parameters::Values;
 
+use crate::catalogue;
+use crate::export;
+use crate::export::javascript::{declared, responses};
 use crate::failure::Failure;
 use crate::files::{folder_for_results, put};
 use crate::json;
@@ -98,7 +102,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, folder: &Path) -> Result<(), Failure> {
     let design = gather::design(plan, answer, subject);
-    let contents = Contents::of(answer, ground, &subject.values, &design);
+    let contents = Contents::of(answer, &plan.moves, ground, [&subject.values, &design]);
     put(folder, "target.json", &json::line(answer))?;
     put(
         folder,
@@ -107,5 +111,25 @@ fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, f
     )?;
     workbook::write(answer, folder)?;
     let title = format!("{}: targets", answer.model);
-    Ok(put(folder, "report.html", &page(Report::Targets, &title, &contents))?)
+    let program = program(subject, &design)?;
+    Ok(put(
+        folder,
+        "report.html",
+        &page(Report::Targets, &title, &contents, program.as_deref()),
+    )?)
+}
+
+/// A linear model as a program of the page, which computes its ratios with other values.
+fn program(subject: &Subject, design: &Values) -> Result<Option<String>, Failure> {
+    let about = subject.model.about();
+    let ratios = declared(about);
+    if ratios.is_empty() {
+        return Ok(None);
+    }
+    let compiled = catalogue::compiled(&subject.source)?;
+    let exported = export::Subject {
+        compiled: &compiled,
+        values: design.as_slice(),
+    };
+    Ok(Some(responses(exported, about, design, &ratios)))
 }

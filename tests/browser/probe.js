@@ -55,6 +55,7 @@
     found.zoom = await zoomed();
     found.maps = maps();
     await exported();
+    await tried();
     found.themes = themes();
     await printed();
     await otherUnits();
@@ -161,6 +162,39 @@
       buttons.find((own) => own.textContent === text).click();
       await frame();
     }
+  }
+
+  // The sliders, and the first ratio before and after one of them was moved, and when all are back.
+  async function tried() {
+    const part = [...document.querySelectorAll('details')].find((own) => own.querySelector('.sliders'));
+    if (!part) return;
+    part.querySelector('summary').click();
+    await frame();
+    await frame();
+    const text = async () => {
+      part.querySelector('[data-figure=tried-magnitude] .exports button:last-child').click();
+      await frame();
+      return found.saved.pop();
+    };
+    const inputs = [...part.querySelectorAll('.sliders input')];
+    const labels = [...part.querySelectorAll('.sliders label')];
+    found.tried = {
+      channel: part.querySelector('h3').textContent,
+      labels: inputs.map((own) => own.getAttribute('aria-label')),
+      shown: labels.map((own) => own.querySelector('output').textContent),
+      before: await text(),
+      blank: [...part.querySelectorAll('[data-figure]')].filter((own) => !('drawn' in own.dataset)).length,
+    };
+    const wanted = inputs.find((own) => own.getAttribute('aria-label').startsWith('k_wheel_z')) || inputs[0];
+    wanted.value = 500;
+    wanted.dispatchEvent(new Event('input'));
+    await frame();
+    found.tried.moved = wanted.closest('label').querySelector('output').textContent;
+    found.tried.after = await text();
+    found.tried.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
+    part.querySelector('.sliders button').click();
+    await frame();
+    found.tried.reset = await text();
   }
 
   // What paper shows, and whether the page is itself again afterwards.

@@ -1,7 +1,8 @@
-//! Exported models against other programs: FMPy, SciPy, GNU Octave; and tables against pyarrow.
+//! Exported models against other programs: FMPy, SciPy, GNU Octave, Node; and tables against pyarrow.
 
 mod fmu;
 mod histories;
+mod javascript;
 mod matlab;
 mod modelica;
 mod programs;

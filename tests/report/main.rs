@@ -7,6 +7,8 @@ mod swept;
 mod browser;
 // The report on A4.
 mod paper;
+// Responses that the page computes.
+mod sliders;
 // What its first sentences say.
 mod verdict;
 
@@ -339,6 +341,7 @@ fn targets_are_whole_in_a_browser() {
         let place = format!("{width} px, {theme}: {found}");
         check(&found, (width, &place), &TARGETS);
         assert_eq!(found["sections"].as_array().unwrap().len(), 6, "{place}");
+        sliders::check_design(&found["tried"]);
     }
 }
 

@@ -53,7 +53,36 @@ impl Parameters {{
 }}
 ",
         listed("self."),
-    )
+    ) + &defaults(parameters).unwrap_or_default()
+}
+
+/// `impl Default`, where the model has a value for every parameter.
+fn defaults(parameters: &[Parameter]) -> Option<String> {
+    let assigned = parameters.iter().map(|parameter| {
+        let value = default(parameter, parameters)?;
+        Some(format!("            {}: {value:?},\n", identifier(&parameter.name)))
+    });
+    let assigned = assigned.collect::<Option<String>>()?;
+    Some(format!(
+        "
+impl ::std::default::Default for Parameters {{
+    /// The values of the model file.
+    fn default() -> Parameters {{
+        Parameters {{
+{assigned}        }}
+    }}
+}}
+"
+    ))
+}
+
+/// The value of the model file: its own, or that of the parameter which it follows.
+fn default(parameter: &Parameter, all: &[Parameter]) -> Option<f64> {
+    match parameter.default {
+        Default::None => None,
+        Default::Value(value) => Some(value),
+        Default::Same(other) => default(&all[other as usize], all),
+    }
 }
 
 /// `Stiffness of the tyre, N/m; from 50000 to 1000000; 200000 unless given.`

@@ -106,7 +106,13 @@ pub fn sensitivities(p: &Parameters{point}) -> [f64; {sensitivities}] {{
     straight::sensitivities(&p.to_array(), {zero}, &mut nonzeros);
     nonzeros
 }}
+
+/// The derivatives of A, B, C and D by each parameter{at}, dense: `jacobians(…).a[\"NAME\"]` is ∂A/∂NAME.
+pub fn jacobians(p: &Parameters{point}) -> Jacobians<STATES, INPUTS, OUTPUTS> {{
+    Jacobians::new(&Parameters::NAMES, &SENSITIVITIES, &sensitivities({given}))
+}}
 ",
+        given = if about.linear { "p" } else { "p, x, u" },
         matrices = about.matrices.len(),
         scatter = scatter(about),
         sensitivities = about.sensitivities.len(),

@@ -209,7 +209,8 @@ function named(chart, own, place) {
   own.curves.forEach((curve, at) =>
     markers[at].querySelector('.u-marker').replaceChildren(sample(curve.role, curve.beside !== undefined || undefined)),
   );
-  place.before(exports(name, () => curveRows(own, shown)));
+  const now = () => shown.map((curve) => ({ ...curve, values: chart.data[own.curves.indexOf(curve) + 1] }));
+  place.before(exports(name, () => curveRows(own, now())));
 }
 
 function curveRows({ x, y, at }, curves) {

@@ -3,7 +3,8 @@
 // The choice of all runs.
 const ALL = '';
 
-function rig({ rig: ratios }) {
+function rig(data) {
+  const { rig: ratios } = data;
   if (!ratios.length) return null;
   const runs = [...new Map(ratios.map((ratio) => [ratio.run, ratio.role])).entries()];
   const channels = [...new Set(ratios.map((ratio) => ratio.channel))];
@@ -24,6 +25,7 @@ function rig({ rig: ratios }) {
             place,
           ),
   });
+  const trial = tried(data);
   const element = section(
     'rig',
     'Rig fit',
@@ -45,8 +47,13 @@ function rig({ rig: ratios }) {
     shown.control,
     shown.place,
     qualityTable(ratios, runs, channels),
+    trial.element,
   );
-  return { element, draw: shown.draw };
+  const draw = () => {
+    shown.draw();
+    if (trial.draw) trial.draw();
+  };
+  return { element, draw };
 }
 
 function drawRatios(ratios, channels, place) {

@@ -10,6 +10,8 @@ const ROLES = {
   after: { label: 'extended', width: 1.6 },
   change: { label: 'B over A', width: 1.6 },
   locked: { label: 'longitudinally locked', width: 1.4, dash: [10, 3, 2, 3] },
+  found: { label: 'as found', width: 1.3, dash: [2, 4] },
+  tried: { label: 'your values', width: 2 },
   vertical: { label: 'purely vertical', width: 1.4, dash: [2, 3] },
 };
 

@@ -11,4 +11,6 @@ const view = {
   // What each picker shows, and where its plots were zoomed to.
   picked: new Map(),
   zoomed: new Map(),
+  // The values of parameters that the reader tries, SI.
+  tried: {},
 };

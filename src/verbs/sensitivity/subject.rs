@@ -20,6 +20,8 @@ use crate::verbs::fit::{self, Choices};
 pub(crate) struct Subject {
     /// As the user has named it.
     pub name: String,
+    /// The name or path of its model.
+    pub source: String,
     /// As it runs.
     pub model: Loaded,
     /// Of all parameters.
@@ -170,7 +172,7 @@ fn of_model(
     mut errors: Errors,
     beneath: &Beneath<'_>,
 ) -> Result<Subject, Failure> {
-    let model = catalogue::load(model)?;
+    let (source, model) = (model, catalogue::load(model)?);
     let folder = beneath.campaign.map(|folder| folder.join("campaign.toml"));
     let files: Vec<PathBuf> = folder
         .into_iter()
@@ -185,7 +187,7 @@ fn of_model(
         facts.extend(beside.vehicle);
         errors.deviations.extend(beside.errors);
     }
-    finish(name, model, values, facts, campaign, errors)
+    finish((name, source), model, values, facts, campaign, errors)
 }
 
 /// Values of a model from files of which one may be a campaign of another model: of its values, those that the model has.
@@ -221,8 +223,8 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
         .runs
         .iter()
         .any(|run| run.role == Role::Fit && is_rig(&run.test));
+    let model = catalogue::named_by(&campaign, None)?;
     if beneath.params.is_some() || !beneath.set.is_empty() || !is_fitted {
-        let model = catalogue::named_by(&campaign, None)?;
         let beneath = Beneath {
             campaign: Some(folder),
             ..*beneath
@@ -243,7 +245,7 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
     };
     let (values, facts) = (fitted.values(), campaign.vehicle.iter().cloned().collect());
     finish(
-        &folder.display().to_string(),
+        (&folder.display().to_string(), &model),
         fitted.model,
         values,
         facts,
@@ -253,7 +255,7 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
 }
 
 fn finish(
-    name: &str,
+    (name, source): (&str, &str),
     model: Loaded,
     values: Values,
     facts: BTreeMap<String, f64>,
@@ -275,6 +277,7 @@ fn finish(
     };
     Ok(Subject {
         name: name.into(),
+        source: source.into(),
         model,
         values,
         roles: campaign.map_or_else(RoleNames::default, |campaign| campaign.roles),

@@ -2,6 +2,7 @@
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::target::Move;
 use serde::Serialize;
 
 use super::gather::Answer;
@@ -13,6 +14,17 @@ pub(super) struct Contents<'a> {
     #[serde(flatten)]
     answer: &'a Answer,
     rides: Vec<Ride>,
+    moves: Vec<Moved<'a>>,
+}
+
+/// A parameter of the model that a parameter of the file moves: `factor` times its value, and `constant`.
+#[derive(Serialize)]
+struct Moved<'a> {
+    /// The place of that in the file.
+    knob: usize,
+    parameter: &'a str,
+    factor: f64,
+    constant: f64,
 }
 
 /// A run by both axles.
@@ -34,12 +46,19 @@ struct Both {
 }
 
 impl<'a> Contents<'a> {
-    /// Drives both; what cannot be driven has no ride.
-    pub fn of(answer: &'a Answer, ground: &Ground<'_>, today: &Values, design: &Values) -> Self {
-        let rides = (0..ground.courses().len()).filter_map(|course| ride(ground, course, [today, design]));
+    /// Drives both axles, today's and the design; what cannot be driven has no ride.
+    pub fn of(answer: &'a Answer, moves: &[Move], ground: &'a Ground<'_>, axles: [&Values; 2]) -> Self {
+        let rides = (0..ground.courses().len()).filter_map(|course| ride(ground, course, axles));
+        let moves = moves.iter().map(|own| Moved {
+            knob: own.knob,
+            parameter: &ground.about().parameters[own.parameter].name,
+            factor: own.factor,
+            constant: own.constant,
+        });
         Self {
             answer,
             rides: rides.collect(),
+            moves: moves.collect(),
         }
     }
 }

@@ -24,13 +24,15 @@ function intervals(data) {
   const words = space
     ? `Anywhere in the solution space ${percent(space.probability, 3)} of the designs meet all targets; with 95 % confidence it is at least ${percent(space.at_least, 3)}, and ${percent(space.wanted, 3)} were wanted. Each team may choose within its interval, whatever the others choose.`
     : 'Each bar is the range of a parameter.';
+  const trial = tried(data);
   const element = section(
     'parameters',
     'Parameters',
     h('p', {}, words, ' A thin mark is ', key('before', 'today'), ', a thick one ', key('after', 'the design'), '.'),
     table('Parameters', columns, rows),
+    trial.element,
   );
-  return { element };
+  return { element, draw: trial.draw };
 }
 
 const RANGE_BAR = { width: 180, height: 18 };

@@ -1,0 +1,26 @@
+//! A model file that is compiled while the program runs: its natural vibrations.
+//!
+//! ```text
+//! cargo run --example model_file -- models/axles/axle_c.axle
+//! ```
+
+use std::error::Error;
+use std::path::Path;
+
+use qcar::{catalogue, parameters};
+use qcar_runtime::modes::modes;
+
+/// Shows the modes of the model whose file is given, else of a quarter car.
+pub fn main() -> Result<(), Box<dyn Error>> {
+    let file = std::env::args().nth(1).filter(|argument| argument.ends_with(".axle"));
+    let file = file.unwrap_or("models/axles/quarter_car.axle".into());
+    let model = catalogue::load(&file)?;
+    let values = parameters::resolve(model.about(), Vec::<&Path>::new(), &[])?;
+    for mode in modes(&*model, &values) {
+        println!("{:.2} Hz, damping ratio {:.3}", mode.frequency, mode.damping);
+        for part in mode.shape {
+            println!("  {} {}: {:.3}", part.location, part.axis, part.amplitude);
+        }
+    }
+    Ok(())
+}

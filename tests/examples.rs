@@ -1,0 +1,32 @@
+//! The examples run as they stand, without arguments.
+
+#[path = "../examples/discover.rs"]
+mod discover;
+#[path = "../examples/fit.rs"]
+mod fit;
+#[path = "../examples/inline.rs"]
+mod inline;
+#[path = "../examples/jacobians.rs"]
+mod jacobians;
+#[path = "../examples/model_file.rs"]
+mod model_file;
+#[path = "../examples/ride.rs"]
+mod ride;
+
+/// A test of each example; `main` of one that fails says why.
+macro_rules! run {
+    ($($name:ident)*) => {
+        $(
+            #[test]
+            fn $name() {
+                if let Err(error) = crate::$name::main() {
+                    panic!("{error}");
+                }
+            }
+        )*
+    };
+}
+
+mod runs {
+    run!(discover fit inline jacobians model_file ride);
+}
