@@ -5,10 +5,10 @@ use std::path::Path;
 
 use models::Shipped;
 use qcar_dsl::check::Unseen;
+use qcar_dsl::check::{Member, check_members};
 use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::{Files, compile_file_wanted};
-use qcar_dsl::front::{Member, check_members};
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;

@@ -3,13 +3,13 @@
 use proc_macro2::TokenStream;
 
 use crate::check::Checked;
-use crate::describe::describe;
+use crate::check::{check_text, check_tokens};
+use crate::derive::describe::describe;
+use crate::derive::response::Wanted;
+use crate::derive::{linear, motion, response};
 use crate::diagnostic::Report;
-use crate::front::{check_text, check_tokens};
-use crate::response::Wanted;
-use crate::schedule::{Compiled, schedule};
+use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
-use crate::{linear, motion, response};
 
 /// Compiles a model file.
 ///

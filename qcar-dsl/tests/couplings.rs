@@ -6,10 +6,10 @@ use common::{assert_close, text};
 use nalgebra::Complex;
 use qcar_dsl::about::{Entry, Matrix};
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
 
 type C = Complex<f64>;

@@ -4,9 +4,9 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::{Contact, Evaluator};
-use qcar_dsl::front::check_text;
 use qcar_dsl::patch::{NewParameter, ParameterRole, Patch, Patched};
 use qcar_dsl::source::Source;
 

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::check::Checked;
-use qcar_dsl::front::check_text;
+use qcar_dsl::check::check_text;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::patch::{Ordinate, ParameterRole, Patch, Patched};
 use qcar_dsl::source::Source;

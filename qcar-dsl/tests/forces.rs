@@ -4,10 +4,10 @@ mod common;
 
 use common::{assert_close, text};
 use nalgebra::Complex;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Severity};
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
 
 const OMEGA: [f64; 4] = [1.0, 7.0, 30.0, 200.0];

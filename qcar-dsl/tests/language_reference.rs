@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::check::{check_members, check_text};
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 

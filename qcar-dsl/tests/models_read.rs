@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use qcar_dsl::front::{check_members, check_text, check_tokens};
+use qcar_dsl::check::{check_members, check_text, check_tokens};
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 

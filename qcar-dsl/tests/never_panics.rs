@@ -1,7 +1,7 @@
 //! No text makes the compiler panic: neither words at random, nor models with parts cut out, doubled or swapped.
 
 use proptest::prelude::*;
-use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::check::{check_members, check_text};
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 

@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use qcar_dsl::check::check_text;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
-use qcar_dsl::front::check_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 

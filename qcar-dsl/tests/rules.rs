@@ -1,7 +1,7 @@
 //! What the rules of structure and visibility accept and refuse, case by case.
 
+use qcar_dsl::check::check_text;
 use qcar_dsl::diagnostic::Code::{self, *};
-use qcar_dsl::front::check_text;
 use qcar_dsl::source::Source;
 
 /// The codes that a model earns, in the order of the text; none where it is accepted without a word.

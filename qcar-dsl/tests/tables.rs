@@ -1,11 +1,11 @@
 //! Tables: the curve of another program, exact derivatives, and the same numbers from every part of the compiler.
 
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::Code;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Curve, Expr, Graph, Symbol};
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
 use qcar_dsl::source::Source;
 

@@ -19,10 +19,11 @@ use std::path::Path;
 use modules::Modules;
 use source::{code, read, rust_files};
 
-const CRATES: [&str; 7] = [
+const CRATES: [&str; 8] = [
     ".",
     "qcar-derive",
     "qcar-dsl",
+    "qcar-python",
     "qcar-runtime",
     "qcar-signals",
     "models",

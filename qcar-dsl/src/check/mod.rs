@@ -31,8 +31,11 @@ mod pushed;
 mod visible;
 // The rule of passive links, for several that use each other.
 mod coupled;
+// Text or tokens to a checked model.
+mod text;
 
 use slopes::{Slopes, slopes};
+pub use text::{Member, check_members, check_text, check_tokens};
 pub use visible::Unseen;
 
 /// A model that has passed every rule. Every later stage takes one, and none of them fails.

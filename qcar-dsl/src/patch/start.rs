@@ -9,11 +9,11 @@ use super::rewrite::{made, names_in};
 use super::scale::Scale;
 use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
-use crate::model::Model;
-use crate::syntax::{
+use crate::front::syntax::{
     Change, Effect, EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role,
     Statement, VanishesAt,
 };
+use crate::model::Model;
 use crate::units::Unit;
 
 /// What a parameter is to its effect, in numbers.
