@@ -6,10 +6,18 @@ use crate::check::Checked;
 use crate::check::{check_text, check_tokens};
 use crate::derive::describe::describe;
 use crate::derive::response::Wanted;
-use crate::derive::{linear, motion, response};
+use crate::derive::{linear, motion, response, visible};
 use crate::diagnostic::Report;
 use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
+
+/// Reads, checks and looks at a model file: all that can be said of it, and no programs.
+///
+/// # Errors
+/// The report of every mistake that is found.
+pub fn check(source: Source, load: Load) -> Result<Checked, Report> {
+    check_text(source, load).map(visible::look)
+}
 
 /// Compiles a model file.
 ///
@@ -46,6 +54,7 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     let motion = motion::derive(&model, &mut graph);
     let rolling = motion::rolling_tyre(&model).map(|tyre| (motion::derive_rolling(&model, &mut graph, &tyre), tyre));
     let linear = linear::linearise(&model, &motion, &mut graph);
+    let model = visible::look_at_derived(model, graph.clone(), &motion, &linear);
     let responses = if linear.linear {
         response::responses(&model, &mut graph, wanted)
     } else {

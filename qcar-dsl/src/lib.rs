@@ -16,9 +16,9 @@ pub mod expr;
 pub mod model;
 // Text to graph.
 pub mod front;
-// The structure: what is held, what is solvable, what can be seen.
+// The structure: what is held, what is solvable, what takes energy.
 pub mod check;
-// Graph to equations, matrices and responses.
+// Graph to equations, matrices and responses, and what can be seen.
 pub mod derive;
 // Expressions to straight-line programs, interpreted at run time.
 pub mod program;

@@ -6,7 +6,7 @@ use common::{assert_close, text};
 use nalgebra::Complex;
 use qcar_dsl::about::{Entry, Matrix};
 use qcar_dsl::check::Checked;
-use qcar_dsl::check::check_text;
+use qcar_dsl::compile::check;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::evaluate::Evaluator;
@@ -67,7 +67,7 @@ fn change(place: usize) -> ([f64; 4], [f64; 4]) {
 
 #[test]
 fn a_law_of_two_stretches_has_the_derivatives_of_both() {
-    let checked = check_text(text(&bushing()), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    let checked = check(text(&bushing()), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
     assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
     let compiled = derive(checked);
     let evaluator = Evaluator::new(&compiled);
@@ -132,7 +132,7 @@ fn a_law_of_two_stretches_has_the_derivatives_of_both() {
     }
     insta::assert_snapshot!("coupled_equations", show(&compiled, Stage::Equations));
     let printed = compiled.model.text().to_string();
-    let again = check_text(text(&printed), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    let again = check(text(&printed), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
     assert_eq!(derive(again).programs, compiled.programs);
 }
 
@@ -154,7 +154,7 @@ fn pair(left: &str, right: &str) -> Result<Checked, Report> {
             }}
         }}"
     );
-    check_text(text(&model), &|_, _| Err(String::new()))
+    check(text(&model), &|_, _| Err(String::new()))
 }
 
 /// What is wrong with them.

@@ -1,7 +1,8 @@
 //! No text makes the compiler panic: neither words at random, nor models with parts cut out, doubled or swapped.
 
 use proptest::prelude::*;
-use qcar_dsl::check::{check_members, check_text};
+use qcar_dsl::check::check_members;
+use qcar_dsl::compile::check;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 
@@ -123,7 +124,7 @@ fn run(text: String) {
             printed.text
         );
     }
-    match check_text(source.clone(), &load) {
+    match check(source.clone(), &load) {
         Ok(checked) => drop(checked.warnings().to_string()),
         Err(report) => assert!(!report.to_string().is_empty() && !report.compact().is_empty()),
     }

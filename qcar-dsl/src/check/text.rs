@@ -1,7 +1,5 @@
 //! The front end in one function: text or tokens to a checked model, or to a report of every mistake.
 
-use std::collections::BTreeSet;
-
 use proc_macro2::TokenStream;
 use quote::quote_spanned;
 
@@ -208,18 +206,12 @@ impl<'a> Front<'a> {
 
     /// Everything that was found, once and in the order of the texts.
     fn report(self) -> Report {
-        let mut told = BTreeSet::new();
-        let place = |diagnostic: &Diagnostic| {
-            let span = diagnostic.labels.first().map(|label| label.span).unwrap_or_default();
-            (span.source, span.start)
-        };
-        let mut diagnostics = self.found;
-        diagnostics.retain(|diagnostic| told.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
-        diagnostics.sort_by_key(place);
-        Report {
+        let mut report = Report {
             sources: self.sources,
-            diagnostics,
-        }
+            diagnostics: vec![],
+        };
+        report.add(self.found);
+        report
     }
 }
 

@@ -1,6 +1,7 @@
 //! The force of a link in its own terms: stretch, rate and inner states.
 
 use crate::check::Checked;
+use crate::check::slopes::summed;
 use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
 use crate::model::Term;
 
@@ -29,20 +30,7 @@ pub fn rolling(model: &Checked, g: &mut Graph, l: LinkId) -> Law {
 }
 
 fn law(g: &mut Graph, l: LinkId, terms: &[Term]) -> Law {
-    let (s, v) = (g.symbol(Symbol::Stretch(l)), g.symbol(Symbol::Rate(l)));
-    let (mut force, mut inertance) = (g.constant(0.0), g.constant(0.0));
-    for &term in terms {
-        let summand = match term {
-            Term::Spring(k) => g.mul(k, s),
-            Term::Damper(c) => g.mul(c, v),
-            Term::Force(law) => law,
-            Term::Inerter(b) => {
-                inertance = g.add(inertance, b);
-                continue;
-            }
-        };
-        force = g.add(force, summand);
-    }
+    let (force, inertance) = summed(terms, g, l);
     let stiffness = Differential::by(g, Symbol::Stretch(l)).of(g, force);
     let damping = Differential::by(g, Symbol::Rate(l)).of(g, force);
     Law {

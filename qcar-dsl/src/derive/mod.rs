@@ -20,3 +20,5 @@ pub mod stiffness;
 pub mod response;
 // Names for what stands at each place.
 pub mod describe;
+// What outputs can see.
+pub mod visible;

@@ -48,6 +48,7 @@ pub use watch::watched;
 
 use crate::check::Checked;
 use crate::check::check_text;
+use crate::derive::visible;
 use crate::diagnostic::{Diagnostic, Report, Severity, effects};
 use crate::front::syntax::{Effect, File, Item, Name};
 use crate::source::Source;
@@ -247,8 +248,10 @@ impl Patch {
             name: format!("{}.axle", tree.axle.name.text),
             text: tree.file().to_string(),
         };
-        let seen_before = before.unseen();
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+        let model = visible::look(model);
+        let seen_before = visible::look(before.clone());
+        let seen_before = seen_before.unseen();
         if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
             let mut report = model.warnings().clone();
             report

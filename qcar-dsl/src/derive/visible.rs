@@ -1,15 +1,26 @@
 //! What an output can see: a parameter that changes no response, or only together with others, cannot be estimated
 //! from any measurement. Decided by the rank of the derivatives of all responses at points that look random.
 
+// Laws by their forces.
+mod forces;
+// Responses with their derivatives.
+mod seen;
+
 use std::collections::BTreeSet;
 
-use super::Scratch;
-use super::rank::{null_space_of_scale, support};
-use super::response::{Seen, sensitivities};
-use super::sample::{Kind, Point};
+use num_complex::Complex64;
+
+use crate::check::rank::{null_space_of_scale, support};
+use crate::check::sample::{Kind, Point};
+use crate::check::{Checked, Unseen};
+use crate::derive::linear::{Linear, linearise};
+use crate::derive::motion::{self, Motion};
 use crate::diagnostic::{Diagnostic, visibility};
-use crate::expr::{Expr, Symbol};
+use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
+
+use forces::Forces;
+use seen::{Derived, Seen};
 
 /// How many motions a nonlinear model is seen in at first, and where that leaves something unseen: each piece of a curve
 /// is met by few motions.
@@ -23,20 +34,45 @@ struct Set {
     scale: f64,
 }
 
-/// Parameters that no measurement can tell from each other, or at all.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Unseen {
-    /// Their names.
-    pub parameters: Vec<String>,
-    /// How many combinations of them the outputs see.
-    pub seen: usize,
+/// A model with what its outputs do not see, and warnings of it; as it is where that is known.
+pub fn look(model: Checked) -> Checked {
+    if model.is_looked_at() {
+        return model;
+    }
+    let mut graph = model.graph.clone();
+    let motion = motion::derive(&model, &mut graph);
+    let linear = linearise(&model, &motion, &mut graph);
+    look_at_derived(model, graph, &motion, &linear)
+}
+
+/// The same with the equations at hand, and the graph in which they live.
+pub fn look_at_derived(model: Checked, graph: Graph, motion: &Motion, linear: &Linear) -> Checked {
+    if model.is_looked_at() {
+        return model;
+    }
+    let (unseen, warnings) = parameters_are_seen(&model, graph, motion, linear).into_iter().unzip();
+    model.with_unseen(unseen, warnings)
 }
 
 /// Parameters that no output sees, and groups of which it sees a combination only, each with a warning: such a model has
 /// a response, but cannot be fitted.
-pub fn parameters_are_seen(scratch: &Scratch) -> Vec<(Unseen, Diagnostic)> {
-    let estimated = estimated(scratch);
-    let set = |kind, seed, motions| set(scratch, Point::new(scratch.model, kind, seed), motions, &estimated);
+fn parameters_are_seen(
+    model: &Checked,
+    mut graph: Graph,
+    motion: &Motion,
+    linear: &Linear,
+) -> Vec<(Unseen, Diagnostic)> {
+    let estimated = estimated(model);
+    let forces = Forces::of(model, motion, &mut graph, &estimated);
+    let derived = Derived {
+        model,
+        graph: &graph,
+        motion,
+        linear,
+        forces,
+        estimated: &estimated,
+    };
+    let set = |kind, seed, motions| set(&derived, Point::new(model, kind, seed), motions);
     let first = set(Kind::Plain, 1, FEW_MOTIONS);
     let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
     if hidden.is_empty() || first.rows.is_empty() {
@@ -48,15 +84,14 @@ pub fn parameters_are_seen(scratch: &Scratch) -> Vec<(Unseen, Diagnostic)> {
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
     let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
     let groups = merged(groups.collect());
-    let describe = |group: &Vec<usize>| describe(scratch.model, &estimated, group, &sets);
+    let describe = |group: &Vec<usize>| describe(model, &estimated, group, &sets);
     groups.iter().map(describe).collect()
 }
 
 /// The parameters that a measurement is to tell: not the known ones, and not those that the law or the states of a
 /// rolling tyre contain, since rolling over a profile shows more than the responses here do, nor those of a constant force
 /// where a position or a force is an output: its mean shows them.
-fn estimated(scratch: &Scratch) -> Vec<u16> {
-    let model = scratch.model;
+fn estimated(model: &Model) -> Vec<u16> {
     let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
     let rolling = tyres().flat_map(|link| link.rolling.iter().flatten());
     let rates = tyres().flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
@@ -64,8 +99,8 @@ fn estimated(scratch: &Scratch) -> Vec<u16> {
         Term::Spring(e) | Term::Damper(e) | Term::Inerter(e) | Term::Force(e) => e,
     };
     let expressions: Vec<Expr> = rolling.map(value).chain(rates).collect();
-    let rolls: BTreeSet<Symbol> = scratch.graph.symbols(expressions);
-    let constant = constant_forces(scratch);
+    let rolls: BTreeSet<Symbol> = model.graph.symbols(expressions);
+    let constant = constant_forces(model);
     let counts = |index: &u16| {
         let known = model.parameters[usize::from(*index)].known;
         !known && !rolls.contains(&Symbol::Parameter(*index)) && !constant.contains(&Symbol::Parameter(*index))
@@ -74,39 +109,37 @@ fn estimated(scratch: &Scratch) -> Vec<u16> {
 }
 
 /// The parameters that stand in forces which nothing changes, where an output shows a mean.
-fn constant_forces(scratch: &Scratch) -> BTreeSet<Symbol> {
+fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
     let shows_mean = |signal: &Signal| match signal {
         Signal::Motion(_, quantity) | Signal::Point(_, quantity) => *quantity == Quantity::Position,
         Signal::LinkForce(_) | Signal::LinkStretch(_) => true,
     };
-    let model = scratch.model;
     if !model.outputs.iter().any(|output| shows_mean(&output.signal)) {
         return BTreeSet::new();
     }
     let terms = model.links.iter().flat_map(|link| &link.law.terms);
     let contents = terms.filter_map(|term| match *term {
-        Term::Force(force) => Some(scratch.graph.symbols([force])),
+        Term::Force(force) => Some(model.graph.symbols([force])),
         _ => None,
     });
     let is_constant = |symbols: &BTreeSet<Symbol>| symbols.iter().all(|symbol| matches!(symbol, Symbol::Parameter(_)));
     contents.filter(is_constant).flatten().collect()
 }
 
-fn set(scratch: &Scratch, point: Point, motions: u64, estimated: &[u16]) -> Set {
-    let parameters: Vec<f64> = estimated
+fn set(derived: &Derived, point: Point, motions: u64) -> Set {
+    let parameters: Vec<f64> = derived
+        .estimated
         .iter()
         .map(|&index| point.leaf(Symbol::Parameter(index)))
         .collect();
-    let rows: Vec<Vec<f64>> = sensitivities(scratch, point, motions, estimated)
+    let rows: Vec<Vec<f64>> = derived
+        .seen(point, motions)
         .into_iter()
         .flat_map(|Seen { value, gradient }| {
-            let relative = |part: fn(&super::dual::Complex) -> f64| -> Vec<f64> {
-                gradient
-                    .iter()
-                    .zip(&parameters)
-                    .map(|(by, p)| part(by) * p / value)
-                    .collect()
-            };
+            let size = value.norm().max(f64::MIN_POSITIVE);
+            let changes = || gradient.iter().zip(&parameters);
+            let relative =
+                |part: fn(&Complex64) -> f64| -> Vec<f64> { changes().map(|(by, p)| part(by) * p / size).collect() };
             [relative(|z| z.re), relative(|z| z.im)]
         })
         .filter(|row| row.iter().all(|entry| entry.is_finite()) && row.iter().any(|entry| *entry != 0.0))
