@@ -4,7 +4,7 @@ use proc_macro2::TokenStream;
 
 use crate::check::Checked;
 use crate::check::{check_text, check_tokens};
-use crate::derive::describe::describe;
+use crate::derive::describe::{describe, vectors};
 use crate::derive::response::Wanted;
 use crate::derive::{linear, motion, response, visible};
 use crate::diagnostic::Report;
@@ -62,9 +62,10 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     };
     let programs = schedule(&mut graph, &motion, rolling.as_ref(), &linear, &responses);
     let tyre = rolling.as_ref().map(|(_, tyre)| tyre);
+    let vectors = vectors(&model, &motion);
     let about = describe(
         &model,
-        &motion,
+        &vectors,
         tyre,
         &linear,
         &responses,
@@ -76,6 +77,7 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
         motion,
         linear,
         about,
+        vectors,
         programs,
     }
 }

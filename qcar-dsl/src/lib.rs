@@ -32,7 +32,9 @@ pub mod compile;
 pub mod disk;
 
 pub use back::{c, equations, matlab, modelica, notation, rust, show, straight};
-pub use derive::{about, response};
+pub use derive::response;
 pub use front::{parse, print, resolve, syntax};
 pub use patch::difference;
 pub use program::{evaluate, schedule};
+/// How a compiled model is described.
+pub use qcar_model as about;

@@ -4,13 +4,13 @@ mod common;
 
 use common::{assert_close, text};
 use nalgebra::Complex;
-use qcar_dsl::about::{Entry, Matrix};
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::check;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::show::{Stage, show};
+use qcar_model::{Entry, Matrix, Model as _};
 
 type C = Complex<f64>;
 
@@ -72,7 +72,7 @@ fn a_law_of_two_stretches_has_the_derivatives_of_both() {
     let compiled = derive(checked);
     let evaluator = Evaluator::new(&compiled);
     let about = evaluator.about();
-    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_str()).collect();
+    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_ref()).collect();
     assert_eq!(names, ["z_body", "x_body", "vz_body", "vx_body"]);
 
     let u = vec![0.0; about.inputs.len()];

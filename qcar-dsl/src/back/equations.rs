@@ -448,7 +448,7 @@ fn reference(writer: &Writer, reference: &Reference) -> String {
 
 fn signal(writer: &Writer, signal: &Signal) -> String {
     match *signal {
-        Signal::Motion(c, quantity) => writer.symbol(quantity.of(c)),
+        Signal::Motion(c, quantity) => writer.symbol(Symbol::of_motion(c, quantity)),
         Signal::Point(place, quantity) => writer.of_point(place, quantity),
         Signal::LinkForce(l) => writer.of_link("F", l),
         Signal::LinkStretch(l) => writer.of_link("s", l),

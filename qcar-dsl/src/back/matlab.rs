@@ -3,8 +3,11 @@
 // One statement an operation.
 mod statements;
 
+use std::borrow::Cow;
+
+use qcar_model::{About, Matrix, Parameter};
+
 use crate::back::straight::{At, Leaf, Local, Locals, Names, Pieces, Straight};
-use crate::derive::about::{About, Matrix, Parameter};
 use crate::program::schedule::Compiled;
 
 use statements::{Statements, support, text};
@@ -138,32 +141,20 @@ fn target(about: &About, place: usize) -> (String, String) {
 }
 
 fn names(about: &About) -> String {
-    let cell = |field: &str, of: Vec<String>| {
-        let quoted: Vec<String> = of.iter().map(|name| text(name)).collect();
+    fn cell<'a>(field: &str, of: impl Iterator<Item = &'a Cow<'static, str>>) -> String {
+        let quoted: Vec<String> = of.map(|name| text(name)).collect();
         format!("    names.{field} = {{{}}};\n", quoted.join(", "))
-    };
-    let parameters = &about.parameters;
+    }
+    let (states, inputs, outputs) = (&about.states, &about.inputs, &about.outputs);
     [
-        cell("states", about.states.iter().map(|own| own.name.clone()).collect()),
-        cell("inputs", about.inputs.iter().map(|own| own.name.clone()).collect()),
-        cell("outputs", about.outputs.iter().map(|own| own.name.clone()).collect()),
-        cell("parameters", parameters.iter().map(|own| own.name.clone()).collect()),
-        cell(
-            "state_units",
-            about.states.iter().map(|own| own.unit.to_string()).collect(),
-        ),
-        cell(
-            "input_units",
-            about.inputs.iter().map(|own| own.unit.to_string()).collect(),
-        ),
-        cell(
-            "output_units",
-            about.outputs.iter().map(|own| own.unit.to_string()).collect(),
-        ),
-        cell(
-            "parameter_units",
-            parameters.iter().map(|own| own.unit.clone()).collect(),
-        ),
+        cell("states", states.iter().map(|own| &own.name)),
+        cell("inputs", inputs.iter().map(|own| &own.name)),
+        cell("outputs", outputs.iter().map(|own| &own.name)),
+        cell("parameters", about.parameters.iter().map(|own| &own.name)),
+        cell("state_units", states.iter().map(|own| &own.unit)),
+        cell("input_units", inputs.iter().map(|own| &own.unit)),
+        cell("output_units", outputs.iter().map(|own| &own.unit)),
+        cell("parameter_units", about.parameters.iter().map(|own| &own.unit)),
     ]
     .concat()
 }

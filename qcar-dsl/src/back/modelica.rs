@@ -3,8 +3,10 @@
 // How it is spelled.
 mod spelling;
 
+use qcar_model::About;
+
 use crate::back::straight::{Locals, Names, Straight, Written};
-use crate::derive::about::About;
+use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::schedule::Compiled;
 use crate::program::{Op, Program, Value};
@@ -66,7 +68,7 @@ impl Known {
 }
 
 fn declarations(compiled: &Compiled, known: &Known, values: &[f64]) -> String {
-    let about = &compiled.about;
+    let vectors = &compiled.vectors;
     let parameters = compiled.model.parameters.iter().zip(&known.parameters).zip(values);
     let parameters = parameters.map(|((own, name), value)| {
         let doc = if own.doc.is_empty() {
@@ -80,11 +82,11 @@ fn declarations(compiled: &Compiled, known: &Known, values: &[f64]) -> String {
     let declared = |kind: &str, name: &String, of: Unit, more: &str| {
         format!("  {kind}Real {name}(unit = {}{more});\n", string(&unit(of)))
     };
-    let inputs = about.inputs.iter().zip(&known.inputs);
+    let inputs = vectors.inputs.iter().zip(&known.inputs);
     let inputs = inputs.map(|(own, name)| declared("input ", name, own.unit, ""));
-    let outputs = about.outputs.iter().zip(&known.outputs);
-    let outputs = outputs.map(|(own, name)| declared("output ", name, own.unit, ""));
-    let states = about.states.iter().zip(&known.states);
+    let outputs = vectors.outputs.iter().zip(&known.outputs);
+    let outputs = outputs.map(|(own, name)| declared("output ", name, *own, ""));
+    let states = vectors.states.iter().zip(&known.states);
     let states = states.map(|(own, name)| declared("", name, own.unit, ", start = 0, fixed = true"));
     parameters.chain(inputs).chain(outputs).chain(states).collect()
 }
@@ -111,7 +113,7 @@ impl<'a> Part<'a> {
             let name = match *op {
                 Op::Constant(_) => String::new(),
                 Op::Prepared(constant) => constants[constant as usize].clone(),
-                Op::Input(symbol) => given(&compiled.about, known, symbol),
+                Op::Input(symbol) => given(&compiled.vectors, known, symbol),
                 _ if uses.stands_where_it_is_used(value, label.is_some()) => {
                     format!("({})", part.written().operation(value))
                 }
@@ -195,12 +197,12 @@ impl Uses {
 }
 
 /// The variable that a leaf is.
-fn given(about: &About, known: &Known, symbol: Symbol) -> String {
+fn given(vectors: &Vectors, known: &Known, symbol: Symbol) -> String {
     if let Symbol::Parameter(place) = symbol {
         return known.parameters[usize::from(place)].clone();
     }
-    let state = about.states.iter().position(|own| own.symbol == symbol);
-    let input = about.inputs.iter().position(|own| own.symbol == symbol);
+    let state = vectors.state(symbol);
+    let input = vectors.input(symbol);
     let state = state.map(|place| &known.states[place]);
     let name = state.or_else(|| Some(&known.inputs[input?]));
     name.cloned().unwrap_or_default()

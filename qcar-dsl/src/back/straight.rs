@@ -17,9 +17,10 @@ mod kinks;
 use std::collections::BTreeMap;
 use std::fmt;
 
+use qcar_model::About;
+
 use crate::back::equations::Sheet;
 use crate::back::notation::Notation;
-use crate::derive::about::{About, Source};
 use crate::expr::Symbol;
 use crate::program::schedule::Compiled;
 use crate::program::{Program, Value};
@@ -129,7 +130,7 @@ impl<'a> Straight<'a> {
             .iter()
             .map(|state| format!("d/dt {}", state.name))
             .collect();
-        let seen: Vec<String> = about.outputs.iter().map(|output| output.name.clone()).collect();
+        let seen: Vec<String> = about.outputs.iter().map(|output| output.name.to_string()).collect();
         let motion = self.equations();
         let mut functions = vec![
             self.function("prepare", PREPARE, &["p"], self.constants.clone(), &programs.prepare),
@@ -213,10 +214,10 @@ impl<'a> Straight<'a> {
             Leaf::Symbol(symbol) => symbol,
         };
         let about = &self.compiled.about;
-        if let Some(place) = about.states.iter().position(|state| state.symbol == symbol) {
+        if let Some(place) = self.compiled.vectors.state(symbol) {
             return entry("x", place, &about.states[place].name);
         }
-        if let Some(place) = about.inputs.iter().position(|input| input.symbol == symbol) {
+        if let Some(place) = self.compiled.vectors.input(symbol) {
             return entry("u", place, &about.inputs[place].name);
         }
         let rolls = arguments.contains(&"contact");
@@ -239,7 +240,7 @@ impl<'a> Straight<'a> {
         let excitation = &about.excitations[place];
         let layout = &about.responses[place];
         let output = |place: u16| &about.outputs[place as usize].name;
-        let responds = layout.outputs.iter().map(|&place| output(place).clone());
+        let responds = layout.outputs.iter().map(|&place| output(place).to_string());
         let mut rows: Vec<String> = complex(responds).collect();
         if !suffix.is_empty() {
             let derivative = |&(row, parameter): &(u16, u16)| {
@@ -251,11 +252,7 @@ impl<'a> Straight<'a> {
         let doc = format!(
             "The response per {} of `{}` at {at}{}: `Z(ω) = K + jωC - ω²M`, eliminated without fill.\n
 Real parts of all rows, then imaginary parts{}.",
-            if matches!(excitation.source, Source::Force(_)) {
-                "N"
-            } else {
-                "m"
-            },
+            if excitation.force { "N" } else { "m" },
             excitation.name,
             if suffix.is_empty() {
                 ""

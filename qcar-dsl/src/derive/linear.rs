@@ -5,8 +5,9 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
+use qcar_model::{Entry, Matrix};
+
 use crate::check::Checked;
-use crate::derive::about::{Entry, Matrix};
 use crate::derive::motion::Motion;
 use crate::expr::{Differential, Expr, Graph, LinkId, Symbol};
 

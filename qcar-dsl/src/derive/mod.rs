@@ -1,7 +1,7 @@
 //! Graph to equations, matrices and responses. All of it is total: a checked model has them.
 
 // What is at which place of the vectors.
-pub mod about;
+pub mod vectors;
 // Sparse symmetric systems solved symbolically.
 pub mod elimination;
 // Sums with common factors taken out.

@@ -254,10 +254,11 @@ impl<'a> Derivation<'a> {
 
     fn signal(&mut self, signal: &Signal) -> Expr {
         match *signal {
-            Signal::Motion(c, quantity) => self.g.symbol(quantity.of(c)),
+            Signal::Motion(c, quantity) => self.g.symbol(Symbol::of_motion(c, quantity)),
             Signal::Point(point, quantity) => {
                 let combination = self.model.points[usize::from(point)].combination.iter();
-                let motions = combination.map(|&(c, coefficient)| (coefficient, self.g.symbol(quantity.of(c))));
+                let motions =
+                    combination.map(|&(c, coefficient)| (coefficient, self.g.symbol(Symbol::of_motion(c, quantity))));
                 let motions: Vec<(Expr, Expr)> = motions.collect();
                 combine(self.g, motions)
             }

@@ -18,11 +18,11 @@ mod compliance;
 use std::collections::BTreeMap;
 
 use crate::check::Checked;
-use crate::derive::about::Source;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::{Scalar, Symmetric, outer};
 use crate::derive::motion::directions;
 use crate::derive::stiffness::{self, Stiffness};
+use crate::derive::vectors::Source;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::model::CoordinateKind;
 

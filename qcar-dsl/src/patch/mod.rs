@@ -41,9 +41,9 @@ pub(crate) use base::Base;
 use bind::Bindings;
 pub use curve::{Curve, Ordinate};
 use place::Place;
+pub use qcar_model::ParameterRole;
 use roles::Roles;
 pub use scale::Scale;
-pub use start::ParameterRole;
 pub use watch::watched;
 
 use crate::check::Checked;

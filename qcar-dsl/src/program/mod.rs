@@ -126,7 +126,7 @@ pub struct Program {
     pub curves: Vec<Curve<Value>>,
 }
 
-/// The programs of a model. [`crate::derive::about::About`] says what their outputs are.
+/// The programs of a model. [`qcar_model::About`] says what their outputs are.
 ///
 /// `matrices`, `sensitivities` and `parameter_jacobian` read parameters as `Op::Input(Symbol::Parameter)`, and so does
 /// `prepare`; all others read what depends on parameters alone as `Op::Prepared`, which are the outputs of `prepare`.

@@ -3,12 +3,14 @@
 //! A program holds what its outputs need and nothing else, each value once, arguments first, in the order in which the
 //! outputs ask for them. What depends on the parameters alone is left to `prepare`.
 
+use qcar_model::About;
+
 use crate::check::Checked;
-use crate::derive::about::About;
 use crate::derive::complex::Complex;
 use crate::derive::linear::Linear;
 use crate::derive::motion::{Motion, RollingTyre};
 use crate::derive::response;
+use crate::derive::vectors::Vectors;
 use crate::expr::{CurveId, Expr, Graph, Node, Symbol};
 use crate::hash::{HashMap, HashSet};
 use crate::program::{Op, Program, Programs, Response, Rolling, Value};
@@ -26,6 +28,8 @@ pub struct Compiled {
     pub linear: Linear,
     /// Names, places and sparsity.
     pub about: About,
+    /// Which symbols stand at those places.
+    pub vectors: Vectors,
     /// What computes it.
     pub programs: Programs,
 }

@@ -1,6 +1,6 @@
 //! Names, units, values and sparsity as arrays, and the functions that read them.
 
-use crate::derive::about::{About, Entry};
+use qcar_model::{About, Entry};
 
 use super::text::{number, string};
 
@@ -13,19 +13,10 @@ pub fn data(about: &About, values: &[f64]) -> String {
         let texts = [&p.name, &p.unit, &p.doc].map(|text| string(text)).join(", ");
         format!("{texts}, {}, {}, {}", number(value), number(lower), number(upper))
     });
-    let signal = |name: &str, unit: String| format!("{}, {}", string(name), string(&unit));
-    let states = about
-        .states
-        .iter()
-        .map(|state| signal(&state.name, state.unit.to_string()));
-    let inputs = about
-        .inputs
-        .iter()
-        .map(|input| signal(&input.name, input.unit.to_string()));
-    let outputs = about
-        .outputs
-        .iter()
-        .map(|output| signal(&output.name, output.unit.to_string()));
+    let signal = |name: &str, unit: &str| format!("{}, {}", string(name), string(unit));
+    let states = about.states.iter().map(|state| signal(&state.name, &state.unit));
+    let inputs = about.inputs.iter().map(|input| signal(&input.name, &input.unit));
+    let outputs = about.outputs.iter().map(|output| signal(&output.name, &output.unit));
     let sensitivities = about
         .sensitivities
         .iter()

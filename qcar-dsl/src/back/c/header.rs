@@ -1,6 +1,7 @@
 //! The header: sizes, places of the vectors, and what can be called.
 
-use crate::derive::about::{About, Parameter};
+use qcar_model::{About, Parameter};
+
 use crate::program::Program;
 use crate::program::schedule::Compiled;
 
@@ -19,19 +20,19 @@ pub fn header(compiled: &Compiled, kinks: &Program, declarations: &str) -> Strin
             about,
             "X",
             "x, the state",
-            about.states.iter().map(|of| (&of.name, of.unit.to_string())),
+            about.states.iter().map(|of| (&*of.name, &*of.unit)),
         ),
         places(
             about,
             "U",
             "u, the input",
-            about.inputs.iter().map(|of| (&of.name, of.unit.to_string())),
+            about.inputs.iter().map(|of| (&*of.name, &*of.unit)),
         ),
         places(
             about,
             "Y",
             "y, the output",
-            about.outputs.iter().map(|of| (&of.name, of.unit.to_string())),
+            about.outputs.iter().map(|of| (&*of.name, &*of.unit)),
         ),
         types(name),
         rolling(about),
@@ -91,25 +92,26 @@ fn sizes(about: &About, kinks: &Program) -> String {
 }
 
 fn parameters(about: &About) -> String {
-    let named = |p: &Parameter| {
+    let meaning = |p: &Parameter| {
         let unit = format!("{}; {}", p.unit, p.doc);
-        (p.name.clone(), unit.trim_end_matches("; ").to_string())
+        unit.trim_end_matches("; ").to_string()
     };
-    let named: Vec<(String, String)> = about.parameters.iter().map(named).collect();
+    let meanings: Vec<String> = about.parameters.iter().map(meaning).collect();
+    let names = about.parameters.iter().map(|p| &*p.name);
     places(
         about,
         "P",
         "p, the parameters",
-        named.iter().map(|(name, unit)| (name, unit.clone())),
+        names.zip(meanings.iter().map(String::as_str)),
     )
 }
 
 /// An enumeration of the places of a vector; C knows none without members.
-fn places<'a>(about: &About, vector: &str, what: &str, names: impl Iterator<Item = (&'a String, String)>) -> String {
+fn places<'a>(about: &About, vector: &str, what: &str, names: impl Iterator<Item = (&'a str, &'a str)>) -> String {
     let model = about.name.to_uppercase();
-    let line = |(place, (name, unit)): (usize, (&String, String))| {
+    let line = |(place, (name, unit)): (usize, (&str, &str))| {
         let name = name.replace('.', "_").to_uppercase();
-        format!("    {model}_{vector}_{name} = {place},{}\n", remark(&unit))
+        format!("    {model}_{vector}_{name} = {place},{}\n", remark(unit))
     };
     let lines: String = names.enumerate().map(line).collect();
     match lines.is_empty() {

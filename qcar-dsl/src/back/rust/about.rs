@@ -1,10 +1,11 @@
 //! `static ABOUT`: what the runtime shows of a generated model.
 
-use crate::back::straight::{entry_name, parameter_jacobian_names, sensitivity_names};
-use crate::derive::about::{
+use qcar_model::{
     About, Channel, Clock, ContactAxis, Entry, Excitation, Input, InputKind, Link, Mass, Output, Parameter,
-    ResponseLayout, Signal, SignalKind, Source, State, StateKind,
+    ResponseLayout, Signal, SignalKind, State, StateKind,
 };
+
+use crate::back::straight::{entry_name, parameter_jacobian_names, sensitivity_names};
 use crate::model::{Default, Quantity};
 
 /// The static and the arrays that it borrows.
@@ -146,9 +147,8 @@ fn outputs(about: &About) -> String {
 
 fn excitations(about: &About) -> String {
     let item = |e: &Excitation| {
-        let force = matches!(e.source, Source::Force(_));
         let (name, axis) = (text(&e.name), text(&e.axis));
-        format!("{{ name: {name}, axis: {axis}, force: {force}, road: {} }}", e.road)
+        format!("{{ name: {name}, axis: {axis}, force: {}, road: {} }}", e.force, e.road)
     };
     array(
         "ABOUT_EXCITATIONS",

@@ -1,6 +1,7 @@
 //! The parameter struct of a generated model.
 
-use crate::derive::about::Parameter;
+use qcar_model::Parameter;
+
 use crate::model::Default;
 use crate::program::schedule::Compiled;
 
@@ -59,7 +60,7 @@ impl Parameters {{
 /// `Stiffness of the tyre, N/m; from 50000 to 1000000; 200000 unless given.`
 fn sentence(parameter: &Parameter, all: &[Parameter]) -> String {
     let mut text = match parameter.doc.is_empty() {
-        true => parameter.unit.clone(),
+        true => parameter.unit.to_string(),
         false => format!("{}, {}", parameter.doc.trim_end_matches('.'), parameter.unit),
     };
     if let Some((low, high)) = parameter.range {

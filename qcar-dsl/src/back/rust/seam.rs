@@ -1,7 +1,8 @@
 //! `impl Model`: the generated functions behind the runtime's trait.
 
+use qcar_model::About;
+
 use crate::back::straight::response_name;
-use crate::derive::about::About;
 use crate::program::schedule::Compiled;
 
 use super::names::camel;

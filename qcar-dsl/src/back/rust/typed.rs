@@ -1,6 +1,7 @@
 //! The public face of a generated model: fixed sizes, nalgebra's types.
 
-use crate::derive::about::{About, Matrix};
+use qcar_model::{About, Matrix};
+
 use crate::program::schedule::Compiled;
 
 /// Sizes, and the places of states, inputs and outputs.
@@ -14,30 +15,15 @@ pub fn sizes(about: &About) -> String {
         size("INPUTS", "inputs", about.inputs.len()),
         size("OUTPUTS", "outputs", about.outputs.len()),
         size("CONSTANTS", "constants of a parameter set", about.constants),
-        places(
-            "state",
-            "x",
-            about.states.iter().map(|state| (&state.name, state.unit.to_string())),
-        ),
-        places(
-            "input",
-            "u",
-            about.inputs.iter().map(|input| (&input.name, input.unit.to_string())),
-        ),
-        places(
-            "output",
-            "y",
-            about
-                .outputs
-                .iter()
-                .map(|output| (&output.name, output.unit.to_string())),
-        ),
+        places("state", "x", about.states.iter().map(|own| (&*own.name, &*own.unit))),
+        places("input", "u", about.inputs.iter().map(|own| (&*own.name, &*own.unit))),
+        places("output", "y", about.outputs.iter().map(|own| (&*own.name, &*own.unit))),
     ]
     .concat()
 }
 
-fn places<'a>(what: &str, vector: &str, names: impl Iterator<Item = (&'a String, String)>) -> String {
-    let constant = |(place, (name, unit)): (usize, (&String, String))| {
+fn places<'a>(what: &str, vector: &str, names: impl Iterator<Item = (&'a str, &'a str)>) -> String {
+    let constant = |(place, (name, unit)): (usize, (&str, &str))| {
         let constant = name.replace('.', "_").to_uppercase();
         format!("    /// `{name}`, {unit}.\n    pub const {constant}: usize = {place};\n")
     };
@@ -115,7 +101,7 @@ pub fn sensitivities(p: &Parameters{point}) -> [f64; {sensitivities}] {{
 
 /// The statements that put the nonzeros into their matrices, which are stored column by column.
 fn scatter(about: &About) -> String {
-    let statement = |(place, entry): (usize, &crate::derive::about::Entry)| {
+    let statement = |(place, entry): (usize, &qcar_model::Entry)| {
         let matrix = match entry.matrix {
             Matrix::A => "a",
             Matrix::B => "b",

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use qcar_model::{About, Entry, Matrix};
+
 use crate::back::equations::named_quantities;
 use crate::back::notation::{Notation, Writer};
-use crate::derive::about::{About, Entry, Matrix};
 use crate::expr::Expr;
 use crate::program::schedule::Compiled;
 
@@ -21,19 +22,19 @@ pub fn matrices(compiled: &Compiled) -> String {
         about
             .states
             .iter()
-            .map(|state| state.name.as_str())
+            .map(|state| state.name.as_ref())
             .collect::<Vec<_>>()
             .join(", "),
         about
             .inputs
             .iter()
-            .map(|input| input.name.as_str())
+            .map(|input| input.name.as_ref())
             .collect::<Vec<_>>()
             .join(", "),
         about
             .outputs
             .iter()
-            .map(|output| output.name.as_str())
+            .map(|output| output.name.as_ref())
             .collect::<Vec<_>>()
             .join(", "),
     );

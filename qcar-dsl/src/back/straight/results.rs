@@ -1,6 +1,6 @@
 //! What a reviewer calls the results of the programs: places of matrices, and derivatives by parameters.
 
-use crate::derive::about::{About, Entry};
+use qcar_model::{About, Entry};
 
 /// What a place of a matrix relates: `A[vz_wheel, z_body]`.
 pub fn entry_name(about: &About, entry: &Entry) -> String {
@@ -19,7 +19,7 @@ pub fn sensitivity_names(about: &About) -> Vec<String> {
 pub fn parameter_jacobian_names(about: &About) -> Vec<String> {
     let name = |&(is_output, row, parameter): &(bool, u16, u16)| {
         let row = match is_output {
-            true => about.outputs[row as usize].name.clone(),
+            true => about.outputs[row as usize].name.to_string(),
             false => format!("(d/dt {})", about.states[row as usize].name),
         };
         format!("∂{row}/∂{}", about.parameters[parameter as usize].name)

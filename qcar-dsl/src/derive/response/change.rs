@@ -2,10 +2,10 @@
 
 use super::load::Load;
 use crate::check::Checked;
-use crate::derive::about::Source;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
+use crate::derive::vectors::Source;
 use crate::expr::{CoordinateId, Differential, Expr, Graph, Symbol};
 use crate::model::CoordinateKind;
 

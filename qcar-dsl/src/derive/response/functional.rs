@@ -3,11 +3,11 @@
 use super::change::Change;
 use super::load::by_source;
 use crate::check::Checked;
-use crate::derive::about::Source;
 use crate::derive::combination::combine;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
+use crate::derive::vectors::Source;
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::model::{Quantity, Signal};
 

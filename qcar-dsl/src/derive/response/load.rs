@@ -1,10 +1,10 @@
 //! What a force input pushes, by itself and through the laws that use it.
 
 use crate::check::Checked;
-use crate::derive::about::Source;
 use crate::derive::complex::Complex;
 use crate::derive::elimination::Scalar;
 use crate::derive::stiffness::Stiffness;
+use crate::derive::vectors::Source;
 use crate::expr::Graph;
 
 /// The force on each coordinate for a unit of a force input, while nothing moves.

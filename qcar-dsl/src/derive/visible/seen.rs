@@ -4,15 +4,16 @@
 //! `C R (A' R B + B') u + (C' R B + D') u`, in which `C R` is the adjoint of the outputs.
 
 use num_complex::Complex64;
+use qcar_model::{Entry, Matrix};
 
 use super::forces::Forces;
 use crate::check::Checked;
 use crate::check::sample::{Kind, Point, Values};
 use crate::check::solve::solve;
-use crate::derive::about::{Entry, Matrix, Source};
 use crate::derive::linear::Linear;
 use crate::derive::motion::Motion;
 use crate::derive::response::sources;
+use crate::derive::vectors::Source;
 use crate::expr::{Graph, Symbol};
 use crate::hash::HashMap;
 use crate::model::{CoordinateKind, Quantity, Reference, Signal};
@@ -220,7 +221,7 @@ impl<'a> Matrices<'a> {
             && let CoordinateKind::Road | CoordinateKind::Motion = model.coordinates[usize::from(c.0)].kind
         {
             return Some(Seen {
-                value: share(source, quantity.of(c), frequency),
+                value: share(source, Symbol::of_motion(c, quantity), frequency),
                 gradient: vec![Complex64::default(); self.derived.estimated.len()],
             });
         }

@@ -7,7 +7,7 @@ use std::cell::{Cell, RefCell};
 
 use super::given::{self, Given, Part, Read};
 use super::order;
-use crate::derive::about::About;
+use crate::derive::vectors::Vectors;
 use crate::expr::Curve;
 use crate::program::{Op, Program};
 
@@ -59,8 +59,8 @@ pub struct Code {
 
 impl Code {
     /// Gives every value of a program its register.
-    pub fn new(about: &About, program: &Program) -> Self {
-        let reads = given::reads(about, program);
+    pub fn new(vectors: &Vectors, program: &Program) -> Self {
+        let reads = given::reads(vectors, program);
         let first_number = reads.last().map_or(0, |read| read.registers().end);
         let mut numbers = Vec::new();
         let leaves = program.ops.iter().map(|op| match *op {
@@ -68,7 +68,7 @@ impl Code {
                 numbers.push(number);
                 first_number + numbers.len() - 1
             }
-            _ => given::register(about, &reads, op).unwrap_or_default(),
+            _ => given::register(vectors, &reads, op).unwrap_or_default(),
         });
         let mut registers: Vec<u32> = leaves.map(|register| register as u32).collect();
         let runs = order::runs(program);

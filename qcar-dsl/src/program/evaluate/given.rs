@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use crate::derive::about::About;
+use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::{Op, Program};
 
@@ -58,8 +58,8 @@ impl Read {
 }
 
 /// What a program reads, in registers from the first, part by part.
-pub fn reads(about: &About, program: &Program) -> Vec<Read> {
-    let leaves = program.ops.iter().filter_map(|op| place(about, op));
+pub fn reads(vectors: &Vectors, program: &Program) -> Vec<Read> {
+    let leaves = program.ops.iter().filter_map(|op| place(vectors, op));
     let leaves: Vec<(Part, usize)> = leaves.collect::<BTreeSet<_>>().into_iter().collect();
     let mut first = 0;
     let parts = leaves.chunk_by(|one, next| one.0 == next.0).map(|leaves| {
@@ -74,24 +74,22 @@ pub fn reads(about: &About, program: &Program) -> Vec<Read> {
 }
 
 /// The register of a leaf that is given; `None` of a number and of an operation.
-pub fn register(about: &About, reads: &[Read], op: &Op) -> Option<usize> {
-    let place = place(about, op)?;
+pub fn register(vectors: &Vectors, reads: &[Read], op: &Op) -> Option<usize> {
+    let place = place(vectors, op)?;
     reads.iter().find_map(|read| read.register(place))
 }
 
 /// The part and place of a leaf in what is given.
-fn place(about: &About, op: &Op) -> Option<(Part, usize)> {
+fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
     match *op {
         Op::Prepared(place) => Some((Part::Constants, place as usize)),
-        Op::Input(symbol) => place_of(about, symbol),
+        Op::Input(symbol) => place_of(vectors, symbol),
         _ => None,
     }
 }
 
 /// The part and place of a symbol in what is given.
-fn place_of(about: &About, symbol: Symbol) -> Option<(Part, usize)> {
-    let state = || about.states.iter().position(|state| state.symbol == symbol);
-    let input = || about.inputs.iter().position(|input| input.symbol == symbol);
+fn place_of(vectors: &Vectors, symbol: Symbol) -> Option<(Part, usize)> {
     match symbol {
         Symbol::Frequency => Some((Part::Frequency, 0)),
         Symbol::Parameter(p) => Some((Part::Parameters, p.into())),
@@ -99,8 +97,8 @@ fn place_of(about: &About, symbol: Symbol) -> Option<(Part, usize)> {
         Symbol::Rate(_) => Some((Part::Contact, 1)),
         Symbol::ContactForce(axis) => Some((Part::Contact, 2 + usize::from(axis))),
         _ => {
-            let state = state().map(|place| (Part::States, place));
-            state.or_else(|| Some((Part::Inputs, input()?)))
+            let state = vectors.state(symbol).map(|place| (Part::States, place));
+            state.or_else(|| Some((Part::Inputs, vectors.input(symbol)?)))
         }
     }
 }

@@ -1,60 +1,79 @@
-//! What there is to know of a compiled model without evaluating it: names, places and sparsity.
-//!
-//! It says which symbol of the equations stands at which place of the vectors `p`, `x`, `u` and `y`, and mirrors
-//! what the runtime's seam shows of a model, as plain data.
+//! What there is to know of a model without evaluating it: names, places and sparsity.
 
-use crate::expr::{CoordinateId, Symbol};
-use crate::model::{Default, Quantity};
-use crate::units::Unit;
+use std::borrow::Cow;
 
-/// Names, units, sizes and sparsity of a compiled model.
+/// What there is to know of a model without evaluating it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct About {
     /// Snake case.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// The sentence that describes it.
-    pub doc: String,
-    /// In the order of `p`; `Symbol::Parameter` counts them.
-    pub parameters: Vec<Parameter>,
-    /// In the order of `x`: positions of the masses, their velocities, positions of the nodes, inner states.
-    pub states: Vec<State>,
-    /// In the order of `u`: of each direction its motions, its forces, its gravity.
-    pub inputs: Vec<Input>,
+    pub doc: Cow<'static, str>,
+    /// In the order of `p`.
+    pub parameters: Cow<'static, [Parameter]>,
+    /// In the order of `x`.
+    pub states: Cow<'static, [State]>,
+    /// In the order of `u`.
+    pub inputs: Cow<'static, [Input]>,
     /// In the order of `y`.
-    pub outputs: Vec<Output>,
-    /// Harmonic excitations: each prescribed motion and each force input, in the order of `u`.
-    pub excitations: Vec<Excitation>,
+    pub outputs: Cow<'static, [Output]>,
+    /// Harmonic excitations: each prescribed motion and each force input.
+    pub excitations: Cow<'static, [Excitation]>,
     /// Named ratios of two signals.
-    pub channels: Vec<Channel>,
-    /// The force elements; `LinkId` counts them.
-    pub links: Vec<Link>,
+    pub channels: Cow<'static, [Channel]>,
+    /// The force elements.
+    pub links: Cow<'static, [Link]>,
     /// The inertias.
-    pub masses: Vec<Mass>,
+    pub masses: Cow<'static, [Mass]>,
     /// The tyre link that can roll over a profile.
-    pub contact: Option<Contact>,
-    /// How many values `prepare` computes.
+    pub contact: Option<ContactAbout>,
+    /// Length of `constants`.
     pub constants: usize,
-    /// True where A, B, C and D depend on the parameters alone.
+    /// True where f and h are linear in x and u.
     pub linear: bool,
-    /// The nonzeros of A, B, C and D, matrix after matrix, row after row.
-    pub matrices: Vec<Entry>,
-    /// The nonzeros of their parameter Jacobians with the parameter, parameter after parameter.
-    pub sensitivities: Vec<(Entry, u16)>,
-    /// The nonzeros of ∂f/∂p, then of ∂h/∂p: is it an output, row, parameter; row after row.
-    pub parameter_jacobian: Vec<(bool, u16, u16)>,
+    /// The nonzeros of A, B, C and D.
+    pub matrices: Cow<'static, [Entry]>,
+    /// The nonzeros of their parameter Jacobians, with the parameter.
+    pub sensitivities: Cow<'static, [(Entry, u16)]>,
+    /// The nonzeros of ∂f/∂p (block A's rows) and ∂h/∂p (block C's rows): is it an output, row, parameter.
+    pub parameter_jacobian: Cow<'static, [(bool, u16, u16)]>,
     /// For each excitation; empty for a nonlinear model.
-    pub responses: Vec<ResponseLayout>,
+    pub responses: Cow<'static, [ResponseLayout]>,
+}
+
+impl About {
+    /// The state whose rate a signal is: the velocity of a mass, for its acceleration.
+    pub fn rate(&self, signal: &Signal) -> Option<usize> {
+        let moves = |state: &State| state.axis == signal.axis && state.location == signal.location;
+        let accelerates = signal.kind == SignalKind::Motion(Quantity::Acceleration);
+        let velocity = |state: &State| state.kind == StateKind::Velocity && accelerates && moves(state);
+        self.states.iter().position(velocity)
+    }
+
+    /// The names of the row and the column of a place in A, B, C or D.
+    pub fn relates(&self, entry: &Entry) -> (&str, &str) {
+        let (row, column) = (usize::from(entry.row), usize::from(entry.column));
+        let row = match entry.matrix {
+            Matrix::A | Matrix::B => &self.states[row].name,
+            Matrix::C | Matrix::D => &self.outputs[row].name,
+        };
+        let column = match entry.matrix {
+            Matrix::A | Matrix::C => &self.states[column].name,
+            Matrix::B | Matrix::D => &self.inputs[column].name,
+        };
+        (row, column)
+    }
 }
 
 /// A parameter of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parameter {
     /// Name.
-    pub name: String,
-    /// What people call its unit.
-    pub unit: String,
+    pub name: Cow<'static, str>,
+    /// Unit, as in `N s/m`.
+    pub unit: Cow<'static, str>,
     /// Sentence.
-    pub doc: String,
+    pub doc: Cow<'static, str>,
     /// What it is when nobody gives it a value.
     pub default: Default,
     /// Bounds.
@@ -70,23 +89,32 @@ pub struct Parameter {
 pub enum Clock {
     /// In s.
     Seconds,
-    /// In parts of the run, for a clock without a unit.
+    /// In parts of the run: from 0 at its beginning to 1 at its end.
     PartOfRun,
+}
+
+/// What a parameter is when nobody gives it a value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Default {
+    /// It must be given.
+    None,
+    /// A value.
+    Value(f64),
+    /// The value of another parameter, by its place.
+    Same(u16),
 }
 
 /// A state of the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct State {
-    /// What it is in the equations: a position, a velocity or an inner state.
-    pub symbol: Symbol,
-    /// `z_wheel`, `vz_wheel` or, for an inner state, `z_damper_f`.
-    pub name: String,
+    /// `z_wheel`, `vz_wheel` or, for an inner state, `damper.f`.
+    pub name: Cow<'static, str>,
     /// Unit.
-    pub unit: Unit,
+    pub unit: Cow<'static, str>,
     /// The mass or node that moves, or the link of an inner state.
-    pub location: String,
+    pub location: Cow<'static, str>,
     /// `z`, `x`.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// What it is.
     pub kind: StateKind,
 }
@@ -105,14 +133,12 @@ pub enum StateKind {
 /// An entry of `u`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Input {
-    /// What it is in the equations.
-    pub symbol: Symbol,
     /// `z_pad`, `vz_pad`, `az_pad`, `f_wheel_z`, `g`.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// Unit.
-    pub unit: Unit,
+    pub unit: Cow<'static, str>,
     /// `z`, `x`.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// What it is.
     pub kind: InputKind,
 }
@@ -132,31 +158,31 @@ pub enum InputKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Excitation {
     /// `pad`, `f_wheel_z`.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// `z`, `x`.
-    pub axis: String,
-    /// What is excited.
-    pub source: Source,
+    pub axis: Cow<'static, str>,
+    /// True for a force (response per N), false for a motion (response per m).
+    pub force: bool,
     /// True for a road.
     pub road: bool,
 }
 
-/// What excites a model.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Source {
-    /// A prescribed motion: the response is per m or rad.
-    Motion(CoordinateId),
-    /// A force input, by its place in `Model::forces`: the response is per N or N m.
-    Force(u16),
+/// A derivative of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[expect(missing_docs, reason = "each says it")]
+pub enum Quantity {
+    Position,
+    Velocity,
+    Acceleration,
 }
 
 /// What can be measured: where, along which axis, what.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Signal {
     /// A mass, node, motion or link.
-    pub location: String,
+    pub location: Cow<'static, str>,
     /// `z`, `x`.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// What.
     pub kind: SignalKind,
 }
@@ -176,9 +202,9 @@ pub enum SignalKind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Output {
     /// `z_body_acceleration`.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// Unit.
-    pub unit: Unit,
+    pub unit: Cow<'static, str>,
     /// What it measures.
     pub signal: Signal,
 }
@@ -187,7 +213,7 @@ pub struct Output {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
     /// `pad_to_body`.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// Above the line.
     pub numerator: Signal,
     /// Below the line.
@@ -198,43 +224,43 @@ pub struct Channel {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Link {
     /// Name.
-    pub name: String,
+    pub name: Cow<'static, str>,
     /// Axis.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// The coordinates it acts between, in the order of its stretch.
-    pub ends: Vec<String>,
+    pub ends: Cow<'static, [Cow<'static, str>]>,
     /// The parameters on which its law depends, by their places, in that order.
-    pub parameters: Vec<u16>,
+    pub parameters: Cow<'static, [u16]>,
 }
 
 /// An inertia: a mass that moves along an axis, or a moment of inertia that turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mass {
     /// What moves.
-    pub location: String,
+    pub location: Cow<'static, str>,
     /// `z`, `x`.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// True for what turns.
     pub angle: bool,
     /// The parameters of which it is made, by their places, in that order.
-    pub parameters: Vec<u16>,
+    pub parameters: Cow<'static, [u16]>,
 }
 
-/// The tyre link that can roll over a profile: the first whose stretch joins a mass to a road.
+/// The tyre link that can roll over a profile: the one whose stretch joins a mass to a road.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Contact {
+pub struct ContactAbout {
     /// Its place in [`About::links`].
     pub link: u16,
-    /// The mass that it carries, along the direction of the link (`Symbol::ContactForce(0)`) and, where a mass of that
-    /// name moves in a second direction too, along that one (`Symbol::ContactForce(1)`).
-    pub axes: Vec<ContactAxis>,
+    /// The mass that it carries: places of its position and velocity in `x`, along the direction of the link and,
+    /// where that mass moves in a second direction too, along that one.
+    pub axes: Cow<'static, [ContactAxis]>,
 }
 
 /// A direction in which the wheel of a rolling tyre moves.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactAxis {
     /// `z`, `x`.
-    pub axis: String,
+    pub axis: Cow<'static, str>,
     /// Place of the wheel's position in `x`.
     pub position: u16,
     /// Place of its velocity.
@@ -252,6 +278,13 @@ pub struct Entry {
     pub column: u16,
 }
 
+impl Entry {
+    /// A place in a matrix.
+    pub const fn at(matrix: Matrix, row: u16, column: u16) -> Entry {
+        Entry { matrix, row, column }
+    }
+}
+
 /// A matrix of the state-space form.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 #[expect(missing_docs, reason = "the names of the field")]
@@ -266,23 +299,7 @@ pub enum Matrix {
 #[derive(Clone, Debug, PartialEq)]
 pub struct ResponseLayout {
     /// Outputs (places in `y`) that respond.
-    pub outputs: Vec<u16>,
-    /// Nonzeros of the parameter Jacobian: place in `outputs` of this layout, parameter; output after output.
-    pub jacobian: Vec<(u16, u16)>,
-}
-
-impl About {
-    /// The names of the row and the column of a place in A, B, C or D.
-    pub fn relates(&self, entry: &Entry) -> (&str, &str) {
-        let (row, column) = (usize::from(entry.row), usize::from(entry.column));
-        let row = match entry.matrix {
-            Matrix::A | Matrix::B => &self.states[row].name,
-            Matrix::C | Matrix::D => &self.outputs[row].name,
-        };
-        let column = match entry.matrix {
-            Matrix::A | Matrix::C => &self.states[column].name,
-            Matrix::B | Matrix::D => &self.inputs[column].name,
-        };
-        (row, column)
-    }
+    pub outputs: Cow<'static, [u16]>,
+    /// Nonzeros of the parameter Jacobian: place in `outputs` of this layout, parameter.
+    pub jacobian: Cow<'static, [(u16, u16)]>,
 }
