@@ -7,6 +7,8 @@
 mod curve;
 // Leaves found, and replaced.
 mod rewrite;
+// Arithmetic as it is written on paper.
+mod algebra;
 // Values and derivatives.
 mod calculus;
 
@@ -14,6 +16,7 @@ use qcar_model::Quantity;
 
 use crate::hash::HashMap;
 
+pub use algebra::Formula;
 pub use calculus::Differential;
 pub use curve::Curve;
 pub use rewrite::{Leaves, Substitution};

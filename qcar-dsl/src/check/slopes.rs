@@ -108,7 +108,7 @@ fn at_rest(g: &mut Graph, e: Expr) -> Expr {
 /// Twice the motion does not give twice the change, or the opposite motion not the opposite one.
 fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     let rest = at_rest(g, e);
-    let change = g.sub(e, rest);
+    let change = g.of(e - rest);
     let value = |seed: u64, size: f64| {
         let leaf = |symbol| match symbol {
             Symbol::Parameter(_) => 0.5 + uniform(1, tag(symbol)),
@@ -132,16 +132,10 @@ pub fn summed(terms: &[Term], g: &mut Graph, id: LinkId) -> (Expr, Expr) {
     let (mut force, mut inertance) = (g.constant(0.0), g.constant(0.0));
     for &term in terms {
         match term {
-            Term::Inerter(b) => inertance = g.add(inertance, b),
-            Term::Spring(k) => {
-                let term = g.mul(k, s);
-                force = g.add(force, term);
-            }
-            Term::Damper(c) => {
-                let term = g.mul(c, v);
-                force = g.add(force, term);
-            }
-            Term::Force(law) => force = g.add(force, law),
+            Term::Inerter(b) => inertance = g.of(inertance + b),
+            Term::Spring(k) => force = g.of(force + k * s),
+            Term::Damper(c) => force = g.of(force + c * v),
+            Term::Force(law) => force = g.of(force + law),
         }
     }
     (force, inertance)

@@ -24,8 +24,8 @@ impl Complex {
     /// `-self`
     pub fn neg(self, g: &mut Graph) -> Self {
         Complex {
-            re: g.neg(self.re),
-            im: g.neg(self.im),
+            re: g.of(-self.re),
+            im: g.of(-self.im),
         }
     }
 
@@ -55,40 +55,39 @@ impl Scalar for Complex {
 
     fn add(self, g: &mut Graph, other: Self) -> Self {
         Complex {
-            re: g.add(self.re, other.re),
-            im: g.add(self.im, other.im),
+            re: g.of(self.re + other.re),
+            im: g.of(self.im + other.im),
         }
     }
 
     fn sub(self, g: &mut Graph, other: Self) -> Self {
         Complex {
-            re: g.sub(self.re, other.re),
-            im: g.sub(self.im, other.im),
+            re: g.of(self.re - other.re),
+            im: g.of(self.im - other.im),
         }
     }
 
     fn mul(self, g: &mut Graph, other: Self) -> Self {
-        let (rr, ii) = (g.mul(self.re, other.re), g.mul(self.im, other.im));
-        let (ri, ir) = (g.mul(self.re, other.im), g.mul(self.im, other.re));
+        let (rr, ii) = (g.of(self.re * other.re), g.of(self.im * other.im));
+        let (ri, ir) = (g.of(self.re * other.im), g.of(self.im * other.re));
         Complex {
-            re: g.sub(rr, ii),
-            im: g.add(ri, ir),
+            re: g.of(rr - ii),
+            im: g.of(ri + ir),
         }
     }
 
     /// By the reciprocal, which all that is divided by the same number shares.
     fn div(self, g: &mut Graph, other: Self) -> Self {
-        let (re2, im2) = (g.mul(other.re, other.re), g.mul(other.im, other.im));
-        let square = g.add(re2, im2);
-        let (re, im) = (g.div(other.re, square), g.div(other.im, square));
-        let reciprocal = Complex { re, im: g.neg(im) };
+        let square = g.of(other.re * other.re + other.im * other.im);
+        let (re, im) = (g.of(other.re / square), g.of(other.im / square));
+        let reciprocal = Complex { re, im: g.of(-im) };
         self.mul(g, reciprocal)
     }
 
     fn scale(self, g: &mut Graph, factor: Expr) -> Self {
         Complex {
-            re: g.mul(factor, self.re),
-            im: g.mul(factor, self.im),
+            re: g.of(factor * self.re),
+            im: g.of(factor * self.im),
         }
     }
 }

@@ -142,8 +142,7 @@ fn chain(graph: &mut Graph, by: &Differential, slopes: &[(Symbol, Expr)]) -> Exp
     let mut sum = graph.constant(0.0);
     for &(argument, slope) in slopes {
         if let Some(change) = by.leaf(argument) {
-            let term = graph.mul(slope, change);
-            sum = graph.add(sum, term);
+            sum = graph.of(sum + slope * change);
         }
     }
     sum

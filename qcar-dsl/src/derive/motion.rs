@@ -266,8 +266,7 @@ impl<'a> Derivation<'a> {
             Signal::LinkForce(l) => {
                 let acceleration = self.along(l, |g, c| Some(g.symbol(Symbol::Acceleration(c))));
                 let force = self.g.symbol(Symbol::LinkForce(l));
-                let inertial = self.g.mul(self.laws[l.0 as usize].inertance, acceleration);
-                self.g.add(force, inertial)
+                self.g.of(force + self.laws[l.0 as usize].inertance * acceleration)
             }
         }
     }

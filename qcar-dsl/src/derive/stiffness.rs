@@ -33,11 +33,10 @@ pub fn of_link(model: &Checked, g: &mut Graph, l: LinkId) -> Stiffness {
     let relaxation = relaxation(model, g, l, law.force);
     let inputs = inputs(model, g, l, law.force);
     let omega = g.symbol(Symbol::Frequency);
-    let square = g.powi(omega, 2);
-    let inertia = g.mul(square, law.inertance);
+    let inertia = g.of(omega.power(2) * law.inertance);
     let local = Complex {
-        re: g.sub(law.stiffness, inertia),
-        im: g.mul(omega, law.damping),
+        re: g.of(law.stiffness - inertia),
+        im: g.of(omega * law.damping),
     };
     let total = local.add(g, relaxation);
     Stiffness {
@@ -56,7 +55,7 @@ fn relaxation(model: &Checked, g: &mut Graph, l: LinkId, force: Expr) -> Complex
         let by_rate = slope(g, rate, Symbol::Rate(l));
         Complex {
             re: slope(g, rate, Symbol::Stretch(l)),
-            im: g.mul(omega, by_rate),
+            im: g.of(omega * by_rate),
         }
     })
 }
@@ -98,7 +97,7 @@ fn through_states(
             let own = slope(g, state.rate, Symbol::Inner(l, column as u16));
             let zero = g.constant(0.0);
             Complex {
-                re: g.neg(own),
+                re: g.of(-own),
                 im: if row == column { omega } else { zero },
             }
         });

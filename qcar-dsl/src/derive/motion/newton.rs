@@ -24,16 +24,15 @@ impl Derivation<'_> {
             let inertance = self.laws[l.0 as usize].inertance;
             let held = places(&coordinates, self.stretch_of(l));
             let given = self.along(l, |_, c| Some(known[c.0 as usize]));
-            let force = self.g.mul(inertance, given);
+            let force = self.g.of(inertance * given);
             matrix.add_outer(self.g, &held, inertance);
             for &(i, coefficient) in &held {
-                let share = self.g.mul(coefficient, force);
-                balance[i] = self.g.sub(balance[i], share);
+                balance[i] = self.g.of(balance[i] - coefficient * force);
             }
         }
         let solution = Factors::of(self.g, matrix).solve(self.g, balance);
         for (&c, relative) in coordinates.iter().zip(solution) {
-            let acceleration = self.g.add(relative, known[c.0 as usize]);
+            let acceleration = self.g.of(relative + known[c.0 as usize]);
             self.define(Symbol::Acceleration(c), acceleration);
         }
     }
@@ -48,7 +47,7 @@ impl Derivation<'_> {
         match (coordinate.kind, gravity) {
             (CoordinateKind::Mass(_), Some(gravity)) if !coordinate.angle => {
                 let g = self.g.symbol(Symbol::Gravity(gravity as u16));
-                self.g.neg(g)
+                self.g.of(-g)
             }
             (CoordinateKind::Road | CoordinateKind::Motion, _) => self.g.symbol(Symbol::Acceleration(c)),
             _ => self.g.constant(0.0),
@@ -60,8 +59,7 @@ impl Derivation<'_> {
         let mut sum = self.applied(c);
         for (l, coefficient) in self.links_of(c) {
             let force = self.g.symbol(Symbol::LinkForce(l));
-            let share = self.g.mul(coefficient, force);
-            sum = self.g.sub(sum, share);
+            sum = self.g.of(sum - coefficient * force);
         }
         sum
     }
@@ -72,8 +70,7 @@ impl Derivation<'_> {
         for (i, force) in self.model.forces.iter().enumerate() {
             for &(_, coefficient) in force.on.iter().filter(|(pushed, _)| *pushed == c) {
                 let force = self.g.symbol(Symbol::Force(i as u16));
-                let share = self.g.mul(coefficient, force);
-                sum = self.g.add(sum, share);
+                sum = self.g.of(sum + coefficient * force);
             }
         }
         let contact = self
@@ -83,7 +80,7 @@ impl Derivation<'_> {
             .filter(|(_, wheel)| **wheel == c);
         for (axis, _) in contact {
             let force = self.g.symbol(Symbol::ContactForce(axis as u16));
-            sum = self.g.add(sum, force);
+            sum = self.g.of(sum + force);
         }
         sum
     }

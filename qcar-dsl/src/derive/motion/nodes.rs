@@ -88,7 +88,7 @@ impl Derivation<'_> {
         for &(c, coefficient) in self.stretch_of(l) {
             for moved in [Some(c), self.leaders.get(&c).copied()].into_iter().flatten() {
                 match reduced.iter_mut().find(|(other, _)| *other == moved) {
-                    Some((_, sum)) => *sum = self.g.add(*sum, coefficient),
+                    Some((_, sum)) => *sum = self.g.of(*sum + coefficient),
                     None => reduced.push((moved, coefficient)),
                 }
             }
@@ -117,7 +117,7 @@ impl Derivation<'_> {
                 self.g.symbol(Symbol::Position(leader)),
                 self.g.symbol(Symbol::Offset(c)),
             );
-            let position = self.g.add(start, offset);
+            let position = self.g.of(start + offset);
             self.define(Symbol::Position(c), position);
         }
     }
@@ -160,7 +160,7 @@ impl Derivation<'_> {
         );
         for (c, rate) in self.offset_rates.clone() {
             let leader = self.g.symbol(Symbol::Velocity(self.leaders[&c]));
-            let velocity = self.g.add(leader, rate);
+            let velocity = self.g.of(leader + rate);
             self.define(Symbol::Velocity(c), velocity);
         }
     }
@@ -211,8 +211,7 @@ impl Derivation<'_> {
             let (slope, rest) = law(self, l);
             matrix.add_outer(self.g, &held, slope);
             for &(i, coefficient) in &held {
-                let force = self.g.mul(coefficient, rest);
-                balance[i] = self.g.sub(balance[i], force);
+                balance[i] = self.g.of(balance[i] - coefficient * rest);
             }
         }
         let solution = Factors::of(self.g, matrix).solve(self.g, balance);
@@ -232,7 +231,7 @@ impl Derivation<'_> {
         for (led, leader) in self.leaders.clone() {
             if leader == c {
                 let force = self.applied(led);
-                sum = self.g.add(sum, force);
+                sum = self.g.of(sum + force);
             }
         }
         sum

@@ -34,9 +34,7 @@ impl Resolver<'_> {
         let expr = match (knots.as_slice(), curve.slopes.as_slice()) {
             (&[start, _], &[slope, _]) => {
                 let start = graph.constant(start);
-                let beyond = graph.sub(x.expr, start);
-                let rise = graph.mul(slope, beyond);
-                graph.add(curve.values[0], rise)
+                graph.of(curve.values[0] + slope * (x.expr - start))
             }
             _ => graph.table(0, x.expr, curve),
         };
