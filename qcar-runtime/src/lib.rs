@@ -6,6 +6,10 @@ pub use nalgebra;
 /// What a compiled axle model offers: one trait, and its description.
 pub use qcar_model as model;
 
+// What records have for a size.
+pub mod mean;
+// Dense matrices of a model at rest.
+pub mod matrices;
 // Loops for every instruction set.
 mod vectors;
 // What generated models stand on.
