@@ -1,10 +1,12 @@
 //! What an output can see: a parameter that changes no response, or only together with others, cannot be estimated
 //! from any measurement. Decided by the rank of the derivatives of all responses at points that look random.
 
+// Values with their derivatives.
+mod seen;
 // Laws by their forces.
 mod forces;
-// Responses with their derivatives.
-mod seen;
+// Outputs and channels by their responses.
+mod responses;
 
 use std::collections::BTreeSet;
 
@@ -20,7 +22,8 @@ use crate::expr::{Expr, Graph, Symbol};
 use crate::model::{Model, Quantity, Signal, Term};
 
 use forces::Forces;
-use seen::{Derived, Seen};
+use responses::Derived;
+use seen::Seen;
 
 /// How many motions a nonlinear model is seen in at first, and where that leaves something unseen: each piece of a curve
 /// is met by few motions.
