@@ -5,10 +5,11 @@ use std::path::Path;
 
 use models::Shipped;
 use qcar_dsl::check::Unseen;
+use qcar_dsl::check::{Member, check_members};
 use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::{Files, compile_file_wanted};
-use qcar_dsl::front::{Member, check_members};
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
@@ -16,7 +17,6 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
 
-use crate::evaluated::Evaluated;
 use crate::failure::{Failure, flag};
 use crate::files::read_text;
 use crate::inertias::Inertias;
@@ -32,7 +32,7 @@ pub struct Loaded {
 /// Compiled into qcar, or interpreted.
 enum Program {
     Shipped(&'static dyn Model),
-    File(Box<Evaluated>),
+    File(Box<Evaluator>),
 }
 
 impl Loaded {
@@ -45,7 +45,7 @@ impl Loaded {
     }
 
     fn file(compiled: &Compiled) -> Self {
-        Loaded::new(compiled, Program::File(Box::new(Evaluated::new(compiled))))
+        Loaded::new(compiled, Program::File(Box::new(Evaluator::new(compiled))))
     }
 
     /// Checks what the masses are at the values `p` of all parameters.

@@ -31,8 +31,6 @@ pub mod progress;
 pub mod interruption;
 // Parameter values from files and flags.
 pub mod parameters;
-// A model, compiled in or read at run time.
-pub mod evaluated;
 // What a parameter set must not do to a model.
 pub mod inertias;
 // Models by name or path.

@@ -9,6 +9,7 @@ use std::f64::consts::TAU;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{Scale, watched};
 use qcar_runtime::campaign::{Quantity as Measured, Role};
 use qcar_runtime::discover::Evidence;
@@ -18,8 +19,6 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::spectrum::transform;
 use qcar_runtime::transmissibility::Point;
-
-use crate::evaluated::Evaluated;
 
 /// Frequencies at which a record is looked at: thirds of an octave are coarse for a resonance, but a scale is no more than
 /// an order of magnitude.
@@ -40,7 +39,7 @@ pub fn scales(model: &Checked, values: &BTreeMap<String, f64>, evidence: &Eviden
     let Ok(shown) = watched(model) else {
         return BTreeMap::new();
     };
-    let shown = Evaluated::new(&derive(shown));
+    let shown = Evaluator::new(&derive(shown));
     let Ok(values) = Values::resolve(shown.about(), &BTreeMap::new(), values) else {
         return BTreeMap::new();
     };
@@ -133,7 +132,7 @@ fn orders(kind: SignalKind) -> &'static [(Scale, i32)] {
     }
 }
 
-fn amplitudes(model: &Evaluated, values: &Values, driven: &Driven, signal: &Signal) -> Vec<(String, f64)> {
+fn amplitudes(model: &Evaluator, values: &Values, driven: &Driven, signal: &Signal) -> Vec<(String, f64)> {
     let about = model.about();
     let Some(excitation) = excitation(about, driven.reference) else {
         return vec![];

@@ -4,6 +4,7 @@
 
 use std::collections::BTreeMap;
 
+use qcar_runtime::matrices::{at_rest, sensitivities_at_rest};
 use qcar_runtime::model::{
     About, Input, InputKind, Matrix, Model, Output, Quantity, Signal, SignalKind, State, StateKind,
 };
@@ -162,9 +163,7 @@ const ALL: [(Matrix, &str); 4] = [(Matrix::A, "A"), (Matrix::B, "B"), (Matrix::C
 
 fn matrices(model: &dyn Model, p: &[f64], keep: &Kept) -> BTreeMap<String, Rows> {
     let about = model.about();
-    let (x, u) = at_rest(about);
-    let mut nonzeros = vec![0.0; about.matrices.len()];
-    model.matrices(p, &x, &u, &mut nonzeros);
+    let nonzeros = at_rest(model, p);
     let dense = ALL.map(|(matrix, name)| {
         let mut rows = keep.zeros(matrix);
         for (entry, value) in about
@@ -185,9 +184,7 @@ fn matrices(model: &dyn Model, p: &[f64], keep: &Kept) -> BTreeMap<String, Rows>
 /// The derivative by a parameter includes what it moves through those that take their value from it.
 fn sensitivities(model: &dyn Model, values: &Values, keep: &Kept) -> BTreeMap<String, BTreeMap<String, Rows>> {
     let about = model.about();
-    let (x, u) = at_rest(about);
-    let mut nonzeros = vec![0.0; about.sensitivities.len()];
-    model.sensitivities(values.as_slice(), &x, &u, &mut nonzeros);
+    let nonzeros = sensitivities_at_rest(model, values.as_slice());
     let leaders = (0..about.parameters.len()).filter(|&k| values.leader(k) == k);
     let dense = ALL.map(|(matrix, name)| {
         let mut of: BTreeMap<usize, Rows> = leaders.clone().map(|k| (k, keep.zeros(matrix))).collect();
@@ -204,10 +201,6 @@ fn sensitivities(model: &dyn Model, values: &Values, keep: &Kept) -> BTreeMap<St
         (format!("d{name}"), named.collect())
     });
     BTreeMap::from(dense)
-}
-
-fn at_rest(about: &About) -> (Vec<f64>, Vec<f64>) {
-    (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()])
 }
 
 /// A state in the words of JSON.

@@ -6,17 +6,17 @@ use std::sync::Arc;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
 use qcar_dsl::difference::difference;
-use qcar_dsl::patch::{self, NewParameter, Patch, Patched, Signal};
+use qcar_dsl::evaluate::Evaluator;
+use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::{Axis, Campaign, Parameter};
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
+use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
 use qcar_runtime::discover::noise::Form;
 use qcar_runtime::discover::posterior::{Given, Setting};
 use qcar_runtime::model::Model;
 use rayon::prelude::*;
 
 use crate::effects::Catalogue;
-use crate::evaluated::Evaluated;
 use crate::failure::Failure;
 use crate::scales::scales;
 use crate::{catalogue, effects};
@@ -38,7 +38,7 @@ pub fn given(parameters: &[Parameter], campaign: &Campaign) -> Setting {
 #[derive(Clone)]
 pub struct Bench {
     model: Checked,
-    running: Arc<Evaluated>,
+    running: Arc<Evaluator>,
     catalogue: Arc<Catalogue>,
     values: Arc<BTreeMap<String, f64>>,
 }
@@ -47,7 +47,7 @@ impl Bench {
     /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
     pub fn new(model: Checked, catalogue: Arc<Catalogue>, values: Arc<BTreeMap<String, f64>>) -> Self {
         Bench {
-            running: Arc::new(Evaluated::new(&derive(model.clone()))),
+            running: Arc::new(Evaluator::new(&derive(model.clone()))),
             model,
             catalogue,
             values,
@@ -175,7 +175,7 @@ fn candidates(patched: Patched, nuisance: bool) -> Vec<Candidate> {
                     .filter(|p| p.is_new || !p.known)
                     .map(added)
                     .collect(),
-                model: Box::new(Evaluated::new(&derive(patched.model))),
+                model: Box::new(Evaluator::new(&derive(patched.model))),
             },
         }];
     };
@@ -211,11 +211,6 @@ fn added(parameter: &NewParameter) -> Added {
         start: parameter.start,
         range: parameter.range,
         known: parameter.known,
-        role: match parameter.role {
-            patch::ParameterRole::Strength { vanishes_at } => ParameterRole::Strength { vanishes_at },
-            patch::ParameterRole::Shape => ParameterRole::Shape,
-            patch::ParameterRole::Clock => ParameterRole::Clock,
-            patch::ParameterRole::Other => ParameterRole::Other,
-        },
+        role: parameter.role,
     }
 }

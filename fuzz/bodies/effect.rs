@@ -1,8 +1,8 @@
 //! Whatever an effect file holds, it applies, or is refused with a message; and what it makes of a model is a model.
 
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
-use qcar_dsl::front::check_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 

@@ -1,7 +1,7 @@
 //! Whatever a model file holds, it compiles or is refused with a message; and what can be read prints as the same tree.
 
+use qcar_dsl::check::check_members;
 use qcar_dsl::compile::compile;
-use qcar_dsl::front::check_members;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 

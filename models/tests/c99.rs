@@ -6,11 +6,11 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use qcar_dsl::about::About;
 use qcar_dsl::c::{self, motion_kinks};
 use qcar_dsl::disk::compile_file;
-use qcar_dsl::evaluate::{Contact, Evaluator};
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
+use qcar_runtime::model::{About, Contact, Model as _, ResponseMut};
 
 /// Nothing is contracted, so every operation rounds as in the evaluator.
 const FLAGS: [&str; 7] = [
@@ -159,14 +159,8 @@ impl Point {
                 let (re, rest) = to.split_at_mut(n);
                 let (im, rest) = rest.split_at_mut(n);
                 let slopes = rest.split_at_mut(if jacobian { m } else { 0 });
-                evaluator.response(
-                    excitation,
-                    &constants,
-                    &[self.omega],
-                    re,
-                    im,
-                    jacobian.then_some(slopes),
-                );
+                let jacobian = jacobian.then_some(slopes);
+                evaluator.response(excitation, &constants, &[self.omega], ResponseMut { re, im, jacobian });
             };
             write(2 * n, &|to| respond(to, false));
             write(2 * (n + m), &|to| respond(to, true));
@@ -222,7 +216,7 @@ fn main(about: &About) -> String {
         {name}_sensitivities(p, x, u, out); write(SENSITIVITIES);
         {name}_parameter_jacobian(p, x, u, out); write(PARAMETER_JACOBIAN);\n"
     );
-    for (excitation, layout) in about.excitations.iter().zip(&about.responses) {
+    for (excitation, layout) in about.excitations.iter().zip(about.responses.iter()) {
         let function = format!("{name}_response_{}_{}", excitation.axis, excitation.name);
         let (n, m) = (layout.outputs.len(), layout.jacobian.len());
         calls += &format!(

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
-use qcar_dsl::evaluate::{self, Evaluator};
+use qcar_dsl::evaluate::Evaluator;
 use qcar_runtime::model::{Contact, LANES, Lanes, Model, Points, ResponseMut};
 
 /// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
@@ -153,26 +153,26 @@ impl Pair {
             numbers.take(entries * COUNT).copied().collect()
         };
         let (x, u) = (&rows(0, about.states.len())[..], &rows(97, about.inputs.len())[..]);
-        let (at, again) = (Points { count: COUNT, x, u }, evaluate::Points { count: COUNT, x, u });
+        let at = Points { count: COUNT, x, u };
         equal(
             COUNT * about.states.len(),
             |to| generated.derivative_at(constants, &at, to),
-            |to| interpreted.derivative_at(constants, &again, to),
+            |to| interpreted.derivative_at(constants, &at, to),
         );
         equal(
             COUNT * about.outputs.len(),
             |to| generated.outputs_at(constants, &at, to),
-            |to| interpreted.outputs_at(constants, &again, to),
+            |to| interpreted.outputs_at(constants, &at, to),
         );
         equal(
             COUNT * about.matrices.len(),
             |to| generated.matrices_at(p, &at, to),
-            |to| interpreted.matrices_at(p, &again, to),
+            |to| interpreted.matrices_at(p, &at, to),
         );
         equal(
             COUNT * about.parameter_jacobian.len(),
             |to| generated.parameter_jacobian_at(p, &at, to),
-            |to| interpreted.parameter_jacobian_at(p, &again, to),
+            |to| interpreted.parameter_jacobian_at(p, &at, to),
         );
     }
 
@@ -191,7 +191,8 @@ impl Pair {
                 let interpreted = |to: &mut [f64]| {
                     let (re, im, slopes) = split(to, n, m);
                     let jacobian = jacobian.then_some(slopes);
-                    self.evaluator.response(excitation, constants, &omega, re, im, jacobian);
+                    self.evaluator
+                        .response(excitation, constants, &omega, ResponseMut { re, im, jacobian });
                 };
                 equal(2 * n + 2 * m, generated, interpreted);
             }
@@ -201,10 +202,7 @@ impl Pair {
     fn compare_rolling(&self, constants: &[f64], x: &[f64], u: &[f64], numbers: &[f64]) {
         let about = self.model.about();
         let [s, v, fz, fx] = [numbers[0], numbers[1], numbers[2], numbers[3]];
-        let (contact, again) = (
-            Contact { s, v, force: [fz, fx] },
-            evaluate::Contact { s, v, force: [fz, fx] },
-        );
+        let contact = Contact { s, v, force: [fz, fx] };
         equal(
             1,
             |to| to[0] = self.model.contact_force(constants, x, s, v),
@@ -213,12 +211,12 @@ impl Pair {
         equal(
             about.states.len(),
             |to| self.model.rolling_derivative(constants, x, u, &contact, to),
-            |to| self.evaluator.rolling_derivative(constants, x, u, &again, to),
+            |to| self.evaluator.rolling_derivative(constants, x, u, &contact, to),
         );
         equal(
             about.outputs.len(),
             |to| self.model.rolling_outputs(constants, x, u, &contact, to),
-            |to| self.evaluator.rolling_outputs(constants, x, u, &again, to),
+            |to| self.evaluator.rolling_outputs(constants, x, u, &contact, to),
         );
     }
 }

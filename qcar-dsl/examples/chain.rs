@@ -5,8 +5,8 @@
 
 use std::time::Instant;
 
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
 use qcar_dsl::source::Source;
 

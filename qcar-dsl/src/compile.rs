@@ -3,13 +3,21 @@
 use proc_macro2::TokenStream;
 
 use crate::check::Checked;
-use crate::describe::describe;
+use crate::check::{check_text, check_tokens};
+use crate::derive::describe::{describe, vectors};
+use crate::derive::response::Wanted;
+use crate::derive::{linear, motion, response, visible};
 use crate::diagnostic::Report;
-use crate::front::{check_text, check_tokens};
-use crate::response::Wanted;
-use crate::schedule::{Compiled, schedule};
+use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
-use crate::{linear, motion, response};
+
+/// Reads, checks and looks at a model file: all that can be said of it, and no programs.
+///
+/// # Errors
+/// The report of every mistake that is found.
+pub fn check(source: Source, load: Load) -> Result<Checked, Report> {
+    check_text(source, load).map(visible::look)
+}
 
 /// Compiles a model file.
 ///
@@ -46,6 +54,7 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     let motion = motion::derive(&model, &mut graph);
     let rolling = motion::rolling_tyre(&model).map(|tyre| (motion::derive_rolling(&model, &mut graph, &tyre), tyre));
     let linear = linear::linearise(&model, &motion, &mut graph);
+    let model = visible::look_at_derived(model, graph.clone(), &motion, &linear);
     let responses = if linear.linear {
         response::responses(&model, &mut graph, wanted)
     } else {
@@ -53,9 +62,10 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
     };
     let programs = schedule(&mut graph, &motion, rolling.as_ref(), &linear, &responses);
     let tyre = rolling.as_ref().map(|(_, tyre)| tyre);
+    let vectors = vectors(&model, &motion);
     let about = describe(
         &model,
-        &motion,
+        &vectors,
         tyre,
         &linear,
         &responses,
@@ -67,6 +77,7 @@ pub fn derive_wanted(model: Checked, wanted: Wanted) -> Compiled {
         motion,
         linear,
         about,
+        vectors,
         programs,
     }
 }

@@ -4,9 +4,9 @@ use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use crate::compile::compile_wanted;
+use crate::derive::response::Wanted;
 use crate::diagnostic::Report;
-use crate::response::Wanted;
-use crate::schedule::Compiled;
+use crate::program::schedule::Compiled;
 use crate::source::Source;
 
 /// A model file compiled, and what was read for it.

@@ -7,11 +7,16 @@
 mod curve;
 // Leaves found, and replaced.
 mod rewrite;
+// Arithmetic as it is written on paper.
+mod algebra;
 // Values and derivatives.
 mod calculus;
 
+use qcar_model::Quantity;
+
 use crate::hash::HashMap;
 
+pub use algebra::Formula;
 pub use calculus::Differential;
 pub use curve::Curve;
 pub use rewrite::{Leaves, Substitution};
@@ -49,10 +54,21 @@ pub enum Symbol {
     Force(u16),
     /// Gravity of a direction, by its place in `Model::gravities`, m/s².
     Gravity(u16),
-    /// The force of a rolling tyre on its wheel, by the place of its direction in `about::Contact::axes`, N.
+    /// The force of a rolling tyre on its wheel, by the place of its direction in `ContactAbout::axes` of the description, N.
     ContactForce(u16),
     /// The angular frequency ω of a harmonic excitation, rad/s.
     Frequency,
+}
+
+impl Symbol {
+    /// The position, velocity or acceleration of a coordinate.
+    pub fn of_motion(c: CoordinateId, quantity: Quantity) -> Symbol {
+        match quantity {
+            Quantity::Position => Symbol::Position(c),
+            Quantity::Velocity => Symbol::Velocity(c),
+            Quantity::Acceleration => Symbol::Acceleration(c),
+        }
+    }
 }
 
 /// A function of one argument.

@@ -9,6 +9,8 @@
 
 use std::collections::BTreeSet;
 
+pub use qcar_model::{Default, Quantity};
+
 use crate::expr::{CoordinateId, Expr, Graph, LinkId, Symbol};
 use crate::source::Span;
 use crate::units::Unit;
@@ -77,17 +79,6 @@ pub struct Parameter {
     pub clock: bool,
     /// Where.
     pub declared: Declared,
-}
-
-/// What a parameter is when nobody gives it a value.
-#[derive(Clone, Copy, PartialEq, Debug)]
-pub enum Default {
-    /// It must be given.
-    None,
-    /// A value in SI.
-    Value(f64),
-    /// The value of another parameter, by its place in `Model::parameters`.
-    Same(u16),
 }
 
 /// A derived quantity. Its expression may be shared with other names.
@@ -280,26 +271,6 @@ pub enum Signal {
     LinkForce(LinkId),
     /// The stretch of a link.
     LinkStretch(LinkId),
-}
-
-/// Which derivative of a motion.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Debug)]
-#[expect(missing_docs, reason = "each says it")]
-pub enum Quantity {
-    Position,
-    Velocity,
-    Acceleration,
-}
-
-impl Quantity {
-    /// The symbol of a coordinate's motion.
-    pub fn of(self, c: CoordinateId) -> Symbol {
-        match self {
-            Quantity::Position => Symbol::Position(c),
-            Quantity::Velocity => Symbol::Velocity(c),
-            Quantity::Acceleration => Symbol::Acceleration(c),
-        }
-    }
 }
 
 /// An output of the model.

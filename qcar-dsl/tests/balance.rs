@@ -11,6 +11,7 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Expr, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
+use qcar_model::Model as _;
 
 /// What a random model shows: of each coordinate and each link.
 struct Seen {
@@ -42,13 +43,14 @@ fn see(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f64], u: &[f64]) 
 }
 
 fn judge(model: &Checked, p: &[f64]) {
-    let evaluator = Evaluator::new(&derive(model.clone()));
+    let compiled = derive(model.clone());
+    let (evaluator, vectors) = (Evaluator::new(&compiled), &compiled.vectors);
     let about = evaluator.about();
     let x: Vec<f64> = (0..about.states.len()).map(|i| (1.0 + i as f64).sin()).collect();
     let u: Vec<f64> = (0..about.inputs.len()).map(|i| (2.0 + 3.0 * i as f64).cos()).collect();
-    let at = |symbol| about.inputs.iter().position(|input| input.symbol == symbol);
+    let at = |symbol| vectors.input(symbol);
     let now = see(model, &evaluator, p, &x, &u);
-    let inner = |symbol| x[about.states.iter().position(|state| state.symbol == symbol).unwrap()];
+    let inner = |symbol| x[vectors.state(symbol).unwrap()];
     let gravity = u[at(Symbol::Gravity(0)).unwrap()];
     let force = |i: u16| at(Symbol::Force(i)).map_or(0.0, |place| u[place]);
     let parameter = |e: Expr| {
@@ -162,7 +164,7 @@ fn a_damper_between_two_springs_is_one_force() {
     b.output(Signal::Motion(lower, Quantity::Position));
     let evaluator = Evaluator::new(&derive(b.build()));
     let about = evaluator.about();
-    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_str()).collect();
+    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_ref()).collect();
     assert_eq!(names, ["z_mass", "vz_mass", "z_upper_offset"]);
 
     let p @ [m, k1, c, k2] = [2.0, 30.0, 4.0, 50.0];

@@ -4,13 +4,13 @@ mod common;
 
 use common::{assert_close, text};
 use nalgebra::Complex;
-use qcar_dsl::about::{Entry, Matrix};
 use qcar_dsl::check::Checked;
+use qcar_dsl::compile::check;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
+use qcar_model::{Entry, Matrix, Model as _};
 
 type C = Complex<f64>;
 
@@ -67,12 +67,12 @@ fn change(place: usize) -> ([f64; 4], [f64; 4]) {
 
 #[test]
 fn a_law_of_two_stretches_has_the_derivatives_of_both() {
-    let checked = check_text(text(&bushing()), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    let checked = check(text(&bushing()), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
     assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
     let compiled = derive(checked);
     let evaluator = Evaluator::new(&compiled);
     let about = evaluator.about();
-    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_str()).collect();
+    let names: Vec<&str> = about.states.iter().map(|state| state.name.as_ref()).collect();
     assert_eq!(names, ["z_body", "x_body", "vz_body", "vx_body"]);
 
     let u = vec![0.0; about.inputs.len()];
@@ -132,7 +132,7 @@ fn a_law_of_two_stretches_has_the_derivatives_of_both() {
     }
     insta::assert_snapshot!("coupled_equations", show(&compiled, Stage::Equations));
     let printed = compiled.model.text().to_string();
-    let again = check_text(text(&printed), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    let again = check(text(&printed), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
     assert_eq!(derive(again).programs, compiled.programs);
 }
 
@@ -154,7 +154,7 @@ fn pair(left: &str, right: &str) -> Result<Checked, Report> {
             }}
         }}"
     );
-    check_text(text(&model), &|_, _| Err(String::new()))
+    check(text(&model), &|_, _| Err(String::new()))
 }
 
 /// What is wrong with them.

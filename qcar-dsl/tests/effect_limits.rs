@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
-use qcar_dsl::evaluate::{Contact, Evaluator};
-use qcar_dsl::front::check_text;
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{NewParameter, ParameterRole, Patch, Patched};
 use qcar_dsl::source::Source;
+use qcar_model::{Contact, Model as _, ResponseMut};
 
 fn read(path: &Path) -> Source {
     let text = std::fs::read_to_string(path).unwrap();
@@ -130,7 +131,7 @@ impl Running {
                     .contact_force(&self.constants, &x, state("s"), state("v")),
             ),
         }
-        about.states.iter().map(|own| own.name.clone()).zip(dx).collect()
+        about.states.iter().map(|own| own.name.to_string()).zip(dx).collect()
     }
 
     /// What each output answers to each excitation at some frequencies: real and imaginary parts.
@@ -141,8 +142,16 @@ impl Running {
         for (excitation, layout) in about.responses.iter().enumerate() {
             let mut re = vec![0.0; layout.outputs.len() * omega.len()];
             let mut im = re.clone();
-            self.evaluator
-                .response(excitation, &self.constants, &omega, &mut re, &mut im, None);
+            self.evaluator.response(
+                excitation,
+                &self.constants,
+                &omega,
+                ResponseMut {
+                    re: &mut re,
+                    im: &mut im,
+                    jacobian: None,
+                },
+            );
             let parts = re.chunks(omega.len()).zip(im.chunks(omega.len()));
             for (output, (re, im)) in layout.outputs.iter().zip(parts) {
                 let name = &about.outputs[usize::from(*output)].name;

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use qcar_dsl::check::Checked;
-use qcar_dsl::front::check_text;
+use qcar_dsl::compile::check;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::patch::{Ordinate, ParameterRole, Patch, Patched};
 use qcar_dsl::source::Source;
@@ -31,7 +31,7 @@ fn load(from: &str, path: &str) -> Result<Source, String> {
 }
 
 fn checked(file: &Path) -> Checked {
-    check_text(read(file), &load).unwrap_or_else(|report| panic!("{report}"))
+    check(read(file), &load).unwrap_or_else(|report| panic!("{report}"))
 }
 
 fn model(name: &str) -> Checked {
@@ -131,7 +131,7 @@ fn a_law_over_time_is_seen_as_time_goes_on() {
             name: "still.axle".into(),
             text: without,
         };
-        let still = check_text(still, &load).unwrap_or_else(|report| panic!("{report}"));
+        let still = check(still, &load).unwrap_or_else(|report| panic!("{report}"));
         assert_eq!(still.unseen().len(), 1, "{name}");
     }
 }
@@ -278,7 +278,7 @@ fn renamed(model: &Checked) -> Checked {
         }
     }
     let name = "renamed.axle".into();
-    check_text(Source { name, text }, &load).unwrap_or_else(|report| panic!("{report}"))
+    check(Source { name, text }, &load).unwrap_or_else(|report| panic!("{report}"))
 }
 
 /// Effects, forms and how often each applies.

@@ -9,30 +9,31 @@ use common::reference::Reference;
 use common::{assert_close, axle_d};
 use nalgebra::{Complex, ComplexField};
 use proptest::prelude::*;
-use qcar_dsl::about::{About, Entry, Matrix};
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
+use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::Symbol;
+use qcar_model::{Entry, Matrix, Model as _};
 
 /// f and h by the reference.
 fn equations<T: ComplexField<RealField = f64> + Copy>(
     model: &Checked,
-    about: &About,
+    vectors: &Vectors,
     p: &[T],
     x: &[T],
     u: &[T],
 ) -> (Vec<T>, Vec<T>) {
-    let given: HashMap<Symbol, T> = about
+    let given: HashMap<Symbol, T> = vectors
         .states
         .iter()
         .map(|state| state.symbol)
-        .chain(about.inputs.iter().map(|input| input.symbol))
+        .chain(vectors.inputs.iter().map(|input| input.symbol))
         .zip(x.iter().chain(u).copied())
         .collect();
     let reference = Reference::new(model, p);
     let instant = reference.at(model, &|symbol| given.get(&symbol).copied().unwrap_or(T::zero()));
-    let rates = about
+    let rates = vectors
         .states
         .iter()
         .map(|state| instant.rate(state.symbol, &reference.inner))
@@ -48,13 +49,13 @@ fn equations<T: ComplexField<RealField = f64> + Copy>(
 }
 
 /// The entries of all four matrices by the reference: a linear model's columns are its equations at unit vectors.
-fn matrices<T: ComplexField<RealField = f64> + Copy>(model: &Checked, about: &About, p: &[T]) -> HashMap<Entry, T> {
-    let (n, m) = (about.states.len(), about.inputs.len());
+fn matrices<T: ComplexField<RealField = f64> + Copy>(model: &Checked, vectors: &Vectors, p: &[T]) -> HashMap<Entry, T> {
+    let (n, m) = (vectors.states.len(), vectors.inputs.len());
     let mut entries = HashMap::new();
     for column in 0..n + m {
         let mut unit = vec![T::zero(); n + m];
         unit[column] = T::one();
-        let (rates, outputs) = equations(model, about, p, &unit[..n], &unit[n..]);
+        let (rates, outputs) = equations(model, vectors, p, &unit[..n], &unit[n..]);
         let (of_rates, of_outputs, column) = if column < n {
             (Matrix::A, Matrix::C, column)
         } else {
@@ -101,13 +102,13 @@ fn judge(model: Checked, p: &[f64]) {
     evaluator.prepare(p, &mut constants);
     evaluator.derivative(&constants, &x, &u, &mut dx);
     evaluator.outputs(&constants, &x, &u, &mut y);
-    let (rates, outputs) = equations(&model, about, p, &x, &u);
+    let (rates, outputs) = equations(&model, &compiled.vectors, p, &x, &u);
     assert_close("f", &dx, &rates, 1e-9, FLOOR);
     assert_close("h", &y, &outputs, 1e-9, FLOOR);
 
     let mut nonzeros = vec![0.0; about.matrices.len()];
     evaluator.matrices(p, &x, &u, &mut nonzeros);
-    let mut want = matrices(&model, about, p);
+    let mut want = matrices(&model, &compiled.vectors, p);
     let listed: Vec<f64> = about.matrices.iter().map(|entry| want.remove(entry).unwrap()).collect();
     assert_close("A, B, C, D", &nonzeros, &listed, 1e-9, FLOOR);
     assert_close(
@@ -118,10 +119,10 @@ fn judge(model: Checked, p: &[f64]) {
         FLOOR,
     );
 
-    judge_sensitivities(&model, &evaluator, p, &x, &u);
+    judge_sensitivities(&model, &compiled.vectors, &evaluator, p, &x, &u);
 }
 
-fn judge_sensitivities(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f64], u: &[f64]) {
+fn judge_sensitivities(model: &Checked, vectors: &Vectors, evaluator: &Evaluator, p: &[f64], x: &[f64], u: &[f64]) {
     let about = evaluator.about();
     let mut of_matrices = vec![0.0; about.sensitivities.len()];
     let mut of_equations = vec![0.0; about.parameter_jacobian.len()];
@@ -130,7 +131,7 @@ fn judge_sensitivities(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f
     let complex = |v: &[f64]| v.iter().map(|&v| Complex::new(v, 0.0)).collect::<Vec<_>>();
     for which in 0..p.len() {
         let p = stepped(p, which);
-        let changes = matrices(model, about, &p);
+        let changes = matrices(model, vectors, &p);
         let listed = about
             .sensitivities
             .iter()
@@ -145,7 +146,7 @@ fn judge_sensitivities(model: &Checked, evaluator: &Evaluator, p: &[f64], x: &[f
         let want: Vec<f64> = entries.iter().map(|entry| changes[entry].im / STEP).collect();
         assert_close("dA, dB, dC, dD", &got, &want, 1e-9, FLOOR);
 
-        let (rates, outputs) = equations(model, about, &p, &complex(x), &complex(u));
+        let (rates, outputs) = equations(model, vectors, &p, &complex(x), &complex(u));
         let mut got = vec![0.0; rates.len() + outputs.len()];
         for (&(is_output, row, p), &value) in about.parameter_jacobian.iter().zip(&of_equations) {
             if usize::from(p) == which {

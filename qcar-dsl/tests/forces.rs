@@ -4,11 +4,12 @@ mod common;
 
 use common::{assert_close, text};
 use nalgebra::Complex;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::{Code, Severity};
 use qcar_dsl::evaluate::Evaluator;
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
+use qcar_model::{Model as _, ResponseMut};
 
 const OMEGA: [f64; 4] = [1.0, 7.0, 30.0, 200.0];
 
@@ -17,7 +18,7 @@ fn response(model: &str, excitation: &str) -> Vec<Complex<f64>> {
     let checked = check_text(text(model), &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
     let evaluator = Evaluator::new(&derive(checked));
     let about = evaluator.about();
-    let value = |of: &qcar_dsl::about::Parameter| match of.default {
+    let value = |of: &qcar_model::Parameter| match of.default {
         qcar_dsl::model::Default::Value(value) => value,
         other => panic!("{other:?}"),
     };
@@ -29,7 +30,16 @@ fn response(model: &str, excitation: &str) -> Vec<Complex<f64>> {
     evaluator.prepare(&p, &mut constants);
     let n = OMEGA.len();
     let (mut re, mut im) = (vec![0.0; n * layout.outputs.len()], vec![0.0; n * layout.outputs.len()]);
-    evaluator.response(place, &constants, &OMEGA, &mut re, &mut im, None);
+    evaluator.response(
+        place,
+        &constants,
+        &OMEGA,
+        ResponseMut {
+            re: &mut re,
+            im: &mut im,
+            jacobian: None,
+        },
+    );
     (row * n..(row + 1) * n).map(|i| Complex::new(re[i], im[i])).collect()
 }
 
@@ -171,7 +181,7 @@ fn a_model_with_forces_of_every_kind_reads_back_and_shows_them() {
         .about
         .inputs
         .iter()
-        .map(|input| (input.name.as_str(), input.unit.to_string()))
+        .map(|input| (input.name.as_ref(), input.unit.to_string()))
         .collect();
     let forces = [
         ("f_wheel", "N"),

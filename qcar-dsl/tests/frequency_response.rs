@@ -11,6 +11,8 @@ use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
+use qcar_dsl::response::sources;
+use qcar_model::{Model as _, ResponseMut};
 
 /// Responses and Jacobians of all excitations: values by output and line, slopes by output, parameter and line.
 struct Responses {
@@ -34,11 +36,22 @@ fn evaluate(evaluator: &Evaluator, excitation: usize, p: &[f64], omega: &[f64]) 
         excitation,
         &constants,
         omega,
-        &mut re,
-        &mut im,
-        Some((&mut d_re, &mut d_im)),
+        ResponseMut {
+            re: &mut re,
+            im: &mut im,
+            jacobian: Some((&mut d_re, &mut d_im)),
+        },
     );
-    evaluator.response(excitation, &constants, omega, &mut alone_re, &mut alone_im, None);
+    evaluator.response(
+        excitation,
+        &constants,
+        omega,
+        ResponseMut {
+            re: &mut alone_re,
+            im: &mut alone_im,
+            jacobian: None,
+        },
+    );
     assert_close("real part", &alone_re, &re, 1e-12, 0.0);
     assert_close("imaginary part", &alone_im, &im, 1e-12, 0.0);
     let zero = Complex::new(0.0, 0.0);
@@ -101,12 +114,12 @@ fn judge(model: Checked, p: &[f64], omega: &[f64], floor: f64) {
 fn judge_some(model: Checked, p: &[f64], omega: &[f64], floor: f64, unseen: f64) {
     let evaluator = Evaluator::new(&derive(model.clone()));
     let reference = Reference::new(&model, p);
-    for (i, excitation) in evaluator.about().excitations.iter().enumerate() {
+    for (i, source) in sources(&model).into_iter().enumerate() {
         let got = evaluate(&evaluator, i, p, omega);
         for which in 0..p.len() {
             let change = change(&model, p, which);
             for (line, &omega) in omega.iter().enumerate() {
-                let want = response(&model, &reference, &change, excitation.source, omega);
+                let want = response(&model, &reference, &change, source, omega);
                 let (value, slope): (Vec<_>, Vec<_>) = want.into_iter().unzip();
                 let values: Vec<_> = got.value.iter().map(|row| row[line]).collect();
                 let slopes: Vec<_> = got.slope.iter().map(|row| row[which][line]).collect();

@@ -5,11 +5,12 @@ mod common;
 use common::{Builder, cases};
 use proptest::prelude::*;
 use qcar_dsl::compile::derive;
-use qcar_dsl::evaluate::{Evaluator, Points};
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{Curve, Function, Graph, Symbol};
 use qcar_dsl::model::{CoordinateKind, Term};
 use qcar_dsl::program::{Op, Program, Value};
 use qcar_dsl::schedule::Compiled;
+use qcar_model::{Model as _, Points};
 
 /// Constants that are prepared, of which a program reads some.
 const PREPARED: usize = 50;
@@ -113,8 +114,8 @@ proptest! {
         given in prop::collection::vec(-2.0..2.0f64, PREPARED + 5 * POINTS),
     ) {
         let mut compiled = car();
-        let states: Vec<Symbol> = compiled.about.states.iter().map(|state| state.symbol).collect();
-        let inputs: Vec<Symbol> = compiled.about.inputs.iter().map(|input| input.symbol).collect();
+        let states: Vec<Symbol> = compiled.vectors.states.iter().map(|state| state.symbol).collect();
+        let inputs: Vec<Symbol> = compiled.vectors.inputs.iter().map(|input| input.symbol).collect();
         let symbols = [&states[..], &inputs].concat();
         let program = program(&symbols, &prepared, &numbers, &steps);
         compiled.programs.derivative = program.clone();

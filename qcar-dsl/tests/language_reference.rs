@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use qcar_dsl::front::{check_members, check_text};
+use qcar_dsl::check::check_members;
+use qcar_dsl::compile::check;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 
@@ -32,7 +33,7 @@ fn the_examples_compile() {
                 .into_iter()
                 .map(|(_, checked)| checked)
                 .collect(),
-            false => vec![check_text(source, &load)],
+            false => vec![check(source, &load)],
         };
         for checked in checked {
             let checked = checked.unwrap_or_else(|report| panic!("{report}"));

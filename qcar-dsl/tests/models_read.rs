@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use qcar_dsl::front::{check_members, check_text, check_tokens};
+use qcar_dsl::check::{check_members, check_tokens};
+use qcar_dsl::compile::check;
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::Source;
 
@@ -38,7 +39,7 @@ fn load(from: &str, path: &str) -> Result<Source, String> {
 #[test]
 fn every_axle_is_accepted() {
     for file in files("axles") {
-        let checked = check_text(read(&file), &load).unwrap_or_else(|report| panic!("{report}"));
+        let checked = check(read(&file), &load).unwrap_or_else(|report| panic!("{report}"));
         assert!(checked.warnings().diagnostics.is_empty(), "{}", checked.warnings());
     }
 }
@@ -71,7 +72,7 @@ fn every_file_prints_as_the_same_tree() {
 #[test]
 fn the_tokens_of_a_macro_give_the_same_model() {
     let file = read(&models().join("axles/quarter_car.axle"));
-    let from_text = check_text(file.clone(), &load).unwrap();
+    let from_text = check(file.clone(), &load).unwrap();
     let from_tokens = check_tokens(file.text.parse().unwrap(), &load).unwrap();
     assert_eq!(from_tokens.text(), from_text.text());
     let lines = |model: &qcar_dsl::model::Model| -> Vec<String> {

@@ -6,7 +6,7 @@ mod effect;
 mod model;
 
 use proptest::prelude::*;
-use qcar_dsl::front::check_members;
+use qcar_dsl::check::check_members;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 

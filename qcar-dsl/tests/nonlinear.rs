@@ -4,12 +4,12 @@ mod common;
 
 use common::{Builder, assert_close};
 use proptest::prelude::*;
-use qcar_dsl::about::Matrix;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
-use qcar_dsl::evaluate::{Contact, Evaluator};
+use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{Function, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
+use qcar_model::{Contact, Matrix, Model as _};
 
 const PARAMETERS: [&str; 9] = ["m_body", "m_wheel", "k", "c", "v0", "f_c", "sigma", "k_tire", "ratio"];
 
@@ -285,7 +285,7 @@ fn a_rolling_tyre_says_where_its_wheel_is() {
     let axes: Vec<_> = contact
         .axes
         .iter()
-        .map(|axis| (axis.axis.as_str(), axis.position, axis.velocity))
+        .map(|axis| (axis.axis.as_ref(), axis.position, axis.velocity))
         .collect();
     assert_eq!(axes, [("z", 1, 5), ("x", 3, 7)]);
 }

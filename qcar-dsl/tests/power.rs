@@ -8,6 +8,7 @@ use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Function, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
+use qcar_model::Model as _;
 
 /// Body and wheel on a lever, a node in series, an inerter, a digressive damper and a hardening spring.
 fn nonlinear_corner() -> Builder {
@@ -102,7 +103,7 @@ fn power(p: &[f64; 11], x: &[f64], u: &[f64]) -> (f64, f64) {
     let about = evaluator.about();
     assert_eq!(about.states.len(), 5);
     assert_eq!(
-        about.inputs.iter().map(|i| i.name.as_str()).collect::<Vec<_>>(),
+        about.inputs.iter().map(|i| i.name.as_ref()).collect::<Vec<_>>(),
         ["z_pad", "vz_pad", "az_pad", "f_wheel", "g"]
     );
     let mut constants = vec![0.0; about.constants];

@@ -1,7 +1,7 @@
 //! The printer writes what the parser reads, also for trees that a program made or changed.
 
 use proptest::prelude::*;
-use qcar_dsl::front::check_text;
+use qcar_dsl::check::check_text;
 use qcar_dsl::model::{Model, Term};
 use qcar_dsl::parse::parse_text;
 use qcar_dsl::source::{Source, Span};

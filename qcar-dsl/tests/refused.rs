@@ -3,8 +3,8 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
+use qcar_dsl::compile::check;
 use qcar_dsl::diagnostic::{Code, Report, Severity};
-use qcar_dsl::front::check_text;
 use qcar_dsl::patch::Patch;
 use qcar_dsl::source::Source;
 
@@ -26,7 +26,7 @@ fn report(code: Code) -> Report {
         let place = rest.lines().next().unwrap().to_string();
         return report_of_effect(source, &place);
     }
-    match check_text(source, &|_, path| self::source(path)) {
+    match check(source, &|_, path| self::source(path)) {
         Ok(checked) => checked.warnings().clone(),
         Err(report) => report,
     }
@@ -34,7 +34,7 @@ fn report(code: Code) -> Report {
 
 /// Of an effect in its file, or else of its application to the model that is kept for it.
 fn report_of_effect(source: Source, place: &str) -> Report {
-    let model = check_text(self::source("models/strut.axle").unwrap(), &|_, path| {
+    let model = check(self::source("models/strut.axle").unwrap(), &|_, path| {
         self::source(path)
     })
     .unwrap();
@@ -122,7 +122,7 @@ fn units_are_looked_at_beside_what_cannot_be_read() {
         name: "half.axle".into(),
         text: text.into(),
     };
-    let report = check_text(source, &|_, _| Err(String::new())).unwrap_err();
+    let report = check(source, &|_, _| Err(String::new())).unwrap_err();
     let found: Vec<Code> = report.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
     assert_eq!(found, [Code::Expected, Code::UnitsDiffer, Code::WrongUnit], "{report}");
 }

@@ -1,7 +1,7 @@
 //! What the rules of structure and visibility accept and refuse, case by case.
 
+use qcar_dsl::compile::check;
 use qcar_dsl::diagnostic::Code::{self, *};
-use qcar_dsl::front::check_text;
 use qcar_dsl::source::Source;
 
 /// The codes that a model earns, in the order of the text; none where it is accepted without a word.
@@ -10,7 +10,7 @@ fn codes(text: &str) -> Vec<Code> {
         name: "case.axle".to_string(),
         text: text.to_string(),
     };
-    let report = match check_text(source, &|_, _| Err("no files".to_string())) {
+    let report = match check(source, &|_, _| Err("no files".to_string())) {
         Ok(checked) => checked.warnings().clone(),
         Err(report) => report,
     };
@@ -222,7 +222,7 @@ fn a_channel_shows_what_it_compares() {
         name: "case.axle".to_string(),
         text: text.to_string(),
     };
-    let checked = check_text(source, &|_, _| Err("no files".to_string())).unwrap();
+    let checked = check(source, &|_, _| Err("no files".to_string())).unwrap();
     let names: Vec<&str> = checked.outputs.iter().map(|output| output.name.as_str()).collect();
     assert_eq!(names, ["z_a_velocity", "z_n_position", "z_l_force"]);
 }
@@ -234,7 +234,7 @@ fn hints_say_what_to_write() {
             name: "case.axle".to_string(),
             text: text.to_string(),
         };
-        let report = check_text(source, &|_, _| Err("no files".to_string())).unwrap_err();
+        let report = check(source, &|_, _| Err("no files".to_string())).unwrap_err();
         report.diagnostics[0].hint.clone()
     };
     assert!(hint("axle case { param k: N/m = 3 in 3..3; }").contains("`= 3`"));

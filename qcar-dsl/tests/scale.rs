@@ -5,8 +5,8 @@
 #[allow(dead_code, reason = "the example measures times")]
 mod chain;
 
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive_wanted;
-use qcar_dsl::front::check_text;
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::show::{Stage, show};

@@ -1,13 +1,14 @@
 //! Tables: the curve of another program, exact derivatives, and the same numbers from every part of the compiler.
 
 use qcar_dsl::check::Checked;
+use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
 use qcar_dsl::diagnostic::Code;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Curve, Expr, Graph, Symbol};
-use qcar_dsl::front::check_text;
 use qcar_dsl::show::{Stage, show};
 use qcar_dsl::source::Source;
+use qcar_model::Model as _;
 
 /// A curve as SciPy 1.17.1 has it: `p = scipy.interpolate.PchipInterpolator(knots, values)`.
 struct Recorded {
@@ -230,7 +231,7 @@ fn the_matrices_are_the_slopes_of_the_equations() {
         let matrices = running.matrices(&P, &x);
         let by = [0, 1].map(|place| slope(x, place, |x| running.rates(&P, x)));
         for (entry, &found) in running.0.about().matrices.iter().zip(&matrices) {
-            if entry.matrix == qcar_dsl::about::Matrix::A {
+            if entry.matrix == qcar_model::Matrix::A {
                 let wanted = by[usize::from(entry.column)][usize::from(entry.row)];
                 near(&format!("{entry:?} at {x:?}"), found, wanted, 1.0);
             }

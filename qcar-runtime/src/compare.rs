@@ -4,6 +4,7 @@ mod comfort;
 mod errors;
 mod histogram;
 
-pub use comfort::{Weighting, rms, vibration_dose};
+pub use crate::mean::rms;
+pub use comfort::{Weighting, vibration_dose};
 pub use errors::{Alignment, CompareError, Errors, Windows, sizes};
 pub use histogram::{Histogram, Summary};

@@ -3,8 +3,13 @@
 //! The modules stand in the order of the data, here and in every list below; a file uses only what is declared above it.
 
 pub use nalgebra;
+/// What a compiled axle model offers: one trait, and its description.
+pub use qcar_model as model;
 
-pub mod model;
+// What records have for a size.
+pub mod mean;
+// Dense matrices of a model at rest.
+pub mod matrices;
 // Loops for every instruction set.
 mod vectors;
 // What generated models stand on.

@@ -7,6 +7,7 @@ use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::matrices::{at_rest, dense};
 use crate::model::{Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 
@@ -115,17 +116,7 @@ fn likeness(first: &Mode, second: &Mode) -> f64 {
 
 /// A at rest.
 pub(crate) fn dynamics(model: &(impl Model + ?Sized), p: &[f64]) -> DMatrix<f64> {
-    let about = model.about();
-    let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
-    let mut nonzeros = vec![0.0; about.matrices.len()];
-    model.matrices(p, &x, &u, &mut nonzeros);
-    let mut a = DMatrix::zeros(x.len(), x.len());
-    for (entry, &value) in about.matrices.iter().zip(&nonzeros) {
-        if entry.matrix == Matrix::A {
-            a[(usize::from(entry.row), usize::from(entry.column))] = value;
-        }
-    }
-    a
+    dense(model.about(), Matrix::A, &at_rest(model, p))
 }
 
 fn mode(model: &(impl Model + ?Sized), a: &DMatrix<f64>, root: Complex<f64>) -> Mode {

@@ -15,7 +15,7 @@ mod control;
 mod fastest;
 // The two methods.
 mod dormand_prince;
-mod rk4;
+pub(crate) mod rk4;
 // For what is linear but for its forces: exponentials of matrices,
 mod matrix;
 // polynomials through past forces,

@@ -28,7 +28,7 @@ pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
 pub fn data(subject: Subject, of: &StateSpace) -> Vec<u8> {
     let parameters = &subject.compiled.about.parameters;
     let value = parameters.iter().zip(subject.values);
-    let values = value.map(|(own, &value)| (own.name.clone(), Array::number(value)));
+    let values = value.map(|(own, &value)| (own.name.to_string(), Array::number(value)));
     let matrix = |name: &str, columns: usize| (name.to_string(), Array::rows(&of.matrices[name], columns));
     let (states, inputs) = (of.states.len(), of.inputs.len());
     let variables = [

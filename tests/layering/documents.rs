@@ -42,6 +42,7 @@ fn words_of_the_code_in_the_glossary_are_there() {
     let text = read(Path::new("ARCHITECTURE.md"));
     let glossary = text.split("## Glossary").nth(1).unwrap();
     let folders = [
+        "qcar-model/src",
         "qcar-dsl/src",
         "qcar-runtime/src",
         "src",

@@ -30,15 +30,11 @@ fn is_judged(scratch: &Scratch, group: &[LinkId]) -> bool {
 fn groups(scratch: &Scratch) -> Vec<Vec<LinkId>> {
     let mut groups: Vec<Vec<LinkId>> = Vec::new();
     for (id, slopes) in (0..).map(LinkId).zip(&scratch.slopes) {
-        for other in &slopes.others {
-            let joined = |group: &Vec<LinkId>| group.contains(&id) || group.contains(&other.link);
+        for &(other, _) in &slopes.others {
+            let joined = |group: &Vec<LinkId>| group.contains(&id) || group.contains(&other);
             let (touched, apart): (Vec<_>, Vec<_>) = groups.into_iter().partition(joined);
             let mut group = touched.concat();
-            group.extend(
-                [id, other.link]
-                    .into_iter()
-                    .filter(|new| !touched.concat().contains(new)),
-            );
+            group.extend([id, other].into_iter().filter(|new| !touched.concat().contains(new)));
             group.sort();
             groups = apart;
             groups.push(group);
@@ -111,7 +107,7 @@ fn forces(scratch: &Scratch, group: &[LinkId]) -> Vec<Expr> {
 /// How the force of a link grows with the stretch of another, where it uses that.
 fn slope(scratch: &Scratch, of: LinkId, by: LinkId) -> Option<Expr> {
     let mut others = scratch.slopes[usize::from(of.0)].others.iter();
-    others.find(|other| other.link == by).map(|other| other.stiffness)
+    others.find(|(link, _)| *link == by).map(|&(_, stiffness)| stiffness)
 }
 
 fn named<'a>(scratch: &Scratch<'a>, group: &[LinkId]) -> Vec<(crate::source::Span, &'a str)> {

@@ -1,7 +1,6 @@
 //! What is held: every mass by something, and against gravity by something that does not give way for ever.
 
 use super::Scratch;
-use super::dual::{Complex, Dual};
 use super::rank::{null_space, support};
 use super::sample::{Kind, Point, Values};
 use super::stiffness::dynamic_stiffness;
@@ -78,9 +77,8 @@ fn carrying(scratch: &Scratch) -> Vec<bool> {
         let point = Point::new(scratch.model, kind, seed);
         let leaf = |symbol| point.leaf(symbol);
         let values = Values::new(&scratch.graph, &leaf);
-        let dual = |e| Dual::constant(Complex::real(values.of(e)));
         for (carries, slopes) in carries.iter_mut().zip(&scratch.slopes) {
-            let stiffness = dynamic_stiffness(slopes, &dual, NEARLY_STATIC).value.abs();
+            let stiffness = dynamic_stiffness(slopes, &|e| values.of(e), NEARLY_STATIC).norm();
             *carries |= stiffness.is_nan() || stiffness > NEARLY_NOTHING;
         }
     }

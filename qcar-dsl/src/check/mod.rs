@@ -1,25 +1,22 @@
-//! The structure: what is held, what is solvable, what can be seen. Each rule is a function; [`check`] lists them.
+//! The structure: what is held, what is solvable, what takes energy. Each rule is a function; [`check`] lists them.
 
 use std::ops::Deref;
 
 use crate::diagnostic::{Diagnostic, Report, Severity, structure, visibility};
-use crate::expr::{Differential, Expr, Graph, Symbol};
-use crate::hash::HashMap;
+use crate::expr::Graph;
 use crate::model::{CoordinateKind, Model};
 use crate::source::Span;
 
 // Numbers to try a model with.
-mod sample;
+pub(crate) mod sample;
 // What parameters can make of an expression.
 mod extremes;
 // Small dense matrices.
-mod dual;
-mod rank;
+pub(crate) mod rank;
+pub(crate) mod solve;
 // Laws about a point.
-mod slopes;
+pub(crate) mod slopes;
 mod stiffness;
-// The model about a point.
-mod response;
 // The rules.
 mod duplicates;
 mod held;
@@ -28,12 +25,13 @@ mod kinetic;
 mod nodes;
 mod passive;
 mod pushed;
-mod visible;
 // The rule of passive links, for several that use each other.
 mod coupled;
+// Text or tokens to a checked model.
+mod text;
 
 use slopes::{Slopes, slopes};
-pub use visible::Unseen;
+pub use text::{Member, check_members, check_text, check_tokens};
 
 /// A model that has passed every rule. Every later stage takes one, and none of them fails.
 #[derive(Clone, Debug)]
@@ -41,7 +39,17 @@ pub struct Checked {
     model: Model,
     text: String,
     warnings: Report,
-    unseen: Vec<Unseen>,
+    /// Known once it is derived.
+    unseen: Option<Vec<Unseen>>,
+}
+
+/// Parameters that no measurement can tell from each other, or at all.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unseen {
+    /// Their names.
+    pub parameters: Vec<String>,
+    /// How many combinations of them the outputs see.
+    pub seen: usize,
 }
 
 impl Checked {
@@ -54,7 +62,7 @@ impl Checked {
             model,
             text: String::new(),
             warnings: Report::default(),
-            unseen: Vec::new(),
+            unseen: None,
         }
     }
 
@@ -68,9 +76,22 @@ impl Checked {
         Checked { text, ..self }
     }
 
-    /// Parameters that no measurement can tell from each other, or at all.
+    /// Parameters that no measurement can tell from each other, or at all; empty as long as nobody has looked
+    /// ([`crate::derive::visible`]).
     pub fn unseen(&self) -> &[Unseen] {
-        &self.unseen
+        self.unseen.as_deref().unwrap_or_default()
+    }
+
+    /// True where it is known what is unseen.
+    pub(crate) fn is_looked_at(&self) -> bool {
+        self.unseen.is_some()
+    }
+
+    /// The same model with what is unseen, and warnings of it.
+    pub(crate) fn with_unseen(mut self, unseen: Vec<Unseen>, warnings: Vec<Diagnostic>) -> Self {
+        self.unseen = Some(unseen);
+        self.warnings.add(warnings);
+        self
     }
 
     /// What is likely not meant, though it compiles.
@@ -95,7 +116,7 @@ impl Deref for Checked {
 /// Holds a model against every rule. Warnings come with the checked model; an error refuses it.
 ///
 /// # Errors
-/// Every mistake that is found. What can be seen is asked only of a model that is sound otherwise.
+/// Every mistake that is found.
 pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>> {
     let scratch = Scratch::new(&model);
     let mut found = something_is_seen(&model);
@@ -112,10 +133,7 @@ pub fn check(model: Model) -> Result<(Checked, Vec<Diagnostic>), Vec<Diagnostic>
     if refuses(&found) {
         return Err(found);
     }
-    let (unseen, warnings): (Vec<_>, Vec<_>) = visible::parameters_are_seen(&scratch).into_iter().unzip();
-    found.extend(warnings);
-    let checked = Checked::trust(model);
-    Ok((Checked { unseen, ..checked }, found))
+    Ok((Checked::trust(model), found))
 }
 
 fn refuses(found: &[Diagnostic]) -> bool {
@@ -181,59 +199,12 @@ struct Scratch<'a> {
     graph: Graph,
     /// Of each link.
     slopes: Vec<Slopes>,
-    /// The derivatives by the parameters of everything that a response depends on.
-    gradients: HashMap<Expr, Vec<(u16, Expr)>>,
 }
 
 impl<'a> Scratch<'a> {
     fn new(model: &'a Model) -> Scratch<'a> {
         let mut graph = model.graph.clone();
         let slopes = slopes(model, &mut graph);
-        let gradients = gradients(&mut graph, &expressions(model, &slopes), model.parameters.len() as u16);
-        Scratch {
-            model,
-            graph,
-            slopes,
-            gradients,
-        }
+        Scratch { model, graph, slopes }
     }
-
-    /// The derivatives of an expression by the parameters in it.
-    fn gradient(&self, e: Expr) -> &[(u16, Expr)] {
-        self.gradients.get(&e).map(Vec::as_slice).unwrap_or_default()
-    }
-}
-
-/// Everything that a response depends on.
-fn expressions(model: &Model, slopes: &[Slopes]) -> Vec<Expr> {
-    let laws = slopes.iter().flat_map(Slopes::all);
-    let rates = model
-        .links
-        .iter()
-        .flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
-    let stretches = model.links.iter().map(|link| &link.stretch);
-    let stretches = stretches.chain(model.forces.iter().map(|force| &force.on));
-    let stretches = stretches.chain(model.points.iter().map(|point| &point.combination));
-    let stretches = stretches.flatten().map(|(_, coefficient)| *coefficient);
-    let inertias = model.coordinates.iter().filter_map(|coordinate| match coordinate.kind {
-        CoordinateKind::Mass(inertia) => Some(inertia),
-        _ => None,
-    });
-    laws.chain(rates).chain(stretches).chain(inertias).collect()
-}
-
-fn gradients(graph: &mut Graph, expressions: &[Expr], parameters: u16) -> HashMap<Expr, Vec<(u16, Expr)>> {
-    let by = |graph: &mut Graph, index| Differential::by(graph, Symbol::Parameter(index));
-    let mut by_each: Vec<Differential> = (0..parameters).map(|index| by(graph, index)).collect();
-    let mut gradients = HashMap::default();
-    for &e in expressions {
-        let mut gradient = Vec::new();
-        for symbol in graph.symbols([e]) {
-            if let Symbol::Parameter(index) = symbol {
-                gradient.push((index, by_each[usize::from(index)].of(graph, e)));
-            }
-        }
-        gradients.insert(e, gradient);
-    }
-    gradients
 }

@@ -2,7 +2,6 @@
 //! outweigh it.
 
 use super::Scratch;
-use super::dual::{Complex, Dual};
 use super::extremes::extreme;
 use super::kinetic;
 use super::sample::{Values, bounds, uniform};
@@ -81,10 +80,9 @@ fn feeds_vibrations(scratch: &Scratch, link: &Link, id: LinkId) -> Option<Diagno
         let parameters = drawn(scratch, &laws, trial)?;
         let leaf = |symbol| parameters(symbol).unwrap_or(0.0);
         let values = Values::new(&scratch.graph, &leaf);
-        let constant = |e| Dual::constant(Complex::real(values.of(e)));
         let feeds = |frequency: &&f64| {
-            let stiffness = dynamic_stiffness(slopes, &constant, **frequency).value;
-            stiffness.im < -1e-9 * stiffness.abs()
+            let stiffness = dynamic_stiffness(slopes, &|e| values.of(e), **frequency);
+            stiffness.im < -1e-9 * stiffness.norm()
         };
         let frequency = FREQUENCIES.iter().find(feeds)?;
         Some(structure::law_feeds_vibrations(

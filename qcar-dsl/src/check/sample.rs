@@ -133,6 +133,10 @@ pub fn tag(symbol: Symbol) -> u64 {
         Symbol::Rate(link) => (3, link.0, 0),
         Symbol::Inner(link, index) => (4, link.0, index),
         Symbol::Force(input) => (6, input, 0),
+        Symbol::Position(c) => (7, c.0, 0),
+        Symbol::Velocity(c) => (8, c.0, 0),
+        Symbol::Acceleration(c) => (9, c.0, 0),
+        Symbol::Offset(c) => (10, c.0, 0),
         _ => (5, 0, 0),
     };
     (kind << 32) | (u64::from(first) << 16) | u64::from(second)

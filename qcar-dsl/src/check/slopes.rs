@@ -16,10 +16,8 @@ pub struct Slopes {
     pub inertance: Expr,
     /// The inner states.
     pub inner: Vec<InnerSlopes>,
-    /// By the stretches and rates of other links that the law uses.
-    pub others: Vec<OtherSlopes>,
-    /// ∂force/∂u of each force input that the law uses, by its place in `Model::forces`.
-    pub inputs: Vec<(u16, Expr)>,
+    /// ∂force/∂s of the other links whose stretch or rate the law uses.
+    pub others: Vec<(LinkId, Expr)>,
     /// The force at rest: a preload.
     pub rest: Expr,
     /// Neither the force nor a rate is linear in the motion.
@@ -30,21 +28,15 @@ impl Slopes {
     /// Every expression.
     pub fn all(&self) -> Vec<Expr> {
         let inner = self.inner.iter().flat_map(InnerSlopes::all);
-        let inputs = self.inputs.iter().map(|(_, slope)| *slope);
-        let others = self.others.iter().flat_map(OtherSlopes::all);
-        [self.force, self.rest, self.stiffness, self.damping, self.inertance]
-            .into_iter()
-            .chain(inner)
-            .chain(inputs)
-            .chain(others)
-            .collect()
+        let direct = [self.force, self.rest, self.stiffness, self.damping, self.inertance];
+        direct.into_iter().chain(inner).collect()
     }
 }
 
 impl InnerSlopes {
     fn all(&self) -> Vec<Expr> {
         let first = [self.force, self.by_stretch, self.by_rate];
-        [&first, self.by_inner.as_slice(), self.by_inputs.as_slice()].concat()
+        [&first, self.by_inner.as_slice()].concat()
     }
 }
 
@@ -58,26 +50,6 @@ pub struct InnerSlopes {
     pub by_rate: Expr,
     /// ∂(dz/dt)/∂z of each state.
     pub by_inner: Vec<Expr>,
-    /// ∂(dz/dt)/∂u of each force input, in the order of [`Slopes::inputs`].
-    pub by_inputs: Vec<Expr>,
-}
-
-/// A law by the stretch and the rate of another link.
-pub struct OtherSlopes {
-    /// Which.
-    pub link: LinkId,
-    /// ∂force/∂s
-    pub stiffness: Expr,
-    /// ∂force/∂v
-    pub damping: Expr,
-    /// ∂(dz/dt)/∂s and ∂(dz/dt)/∂v of each inner state.
-    pub inner: Vec<[Expr; 2]>,
-}
-
-impl OtherSlopes {
-    fn all(&self) -> Vec<Expr> {
-        [&[self.stiffness, self.damping], self.inner.as_flattened()].concat()
-    }
 }
 
 /// The slopes of every link, in the order of the model.
@@ -94,31 +66,15 @@ fn of_link(model: &Model, g: &mut Graph, id: LinkId) -> Slopes {
     let states: Vec<Symbol> = (0..law.inner.len() as u16)
         .map(|index| Symbol::Inner(id, index))
         .collect();
-    let inputs = law.force_inputs(g);
     let inner = law.inner.iter().zip(&states).map(|(inner, &state)| InnerSlopes {
         force: by(g, force, state),
         by_stretch: by(g, inner.rate, Symbol::Stretch(id)),
         by_rate: by(g, inner.rate, Symbol::Rate(id)),
         by_inner: states.iter().map(|&other| by(g, inner.rate, other)).collect(),
-        by_inputs: inputs
-            .iter()
-            .map(|&input| by(g, inner.rate, Symbol::Force(input)))
-            .collect(),
     });
     let inner = inner.collect();
-    let inputs = inputs.iter().map(|&input| (input, by(g, force, Symbol::Force(input))));
-    let inputs = inputs.collect();
-    let others = law.other_links(g, id).into_iter().map(|link| {
-        let leaves = [Symbol::Stretch(link), Symbol::Rate(link)];
-        let [stiffness, damping] = leaves.map(|leaf| by(g, force, leaf));
-        let inner = law.inner.iter().map(|inner| leaves.map(|leaf| by(g, inner.rate, leaf)));
-        OtherSlopes {
-            link,
-            stiffness,
-            damping,
-            inner: inner.collect(),
-        }
-    });
+    let others = law.other_links(g, id).into_iter();
+    let others = others.map(|link| (link, by(g, force, Symbol::Stretch(link))));
     let others = others.collect();
     let (stiffness, damping) = (by(g, force, Symbol::Stretch(id)), by(g, force, Symbol::Rate(id)));
     let mut slopes = Slopes {
@@ -128,7 +84,6 @@ fn of_link(model: &Model, g: &mut Graph, id: LinkId) -> Slopes {
         inertance,
         inner,
         others,
-        inputs,
         rest: at_rest(g, force),
         nonlinear: false,
     };
@@ -153,7 +108,7 @@ fn at_rest(g: &mut Graph, e: Expr) -> Expr {
 /// Twice the motion does not give twice the change, or the opposite motion not the opposite one.
 fn is_nonlinear(g: &mut Graph, e: Expr) -> bool {
     let rest = at_rest(g, e);
-    let change = g.sub(e, rest);
+    let change = g.of(e - rest);
     let value = |seed: u64, size: f64| {
         let leaf = |symbol| match symbol {
             Symbol::Parameter(_) => 0.5 + uniform(1, tag(symbol)),
@@ -177,16 +132,10 @@ pub fn summed(terms: &[Term], g: &mut Graph, id: LinkId) -> (Expr, Expr) {
     let (mut force, mut inertance) = (g.constant(0.0), g.constant(0.0));
     for &term in terms {
         match term {
-            Term::Inerter(b) => inertance = g.add(inertance, b),
-            Term::Spring(k) => {
-                let term = g.mul(k, s);
-                force = g.add(force, term);
-            }
-            Term::Damper(c) => {
-                let term = g.mul(c, v);
-                force = g.add(force, term);
-            }
-            Term::Force(law) => force = g.add(force, law),
+            Term::Inerter(b) => inertance = g.of(inertance + b),
+            Term::Spring(k) => force = g.of(force + k * s),
+            Term::Damper(c) => force = g.of(force + c * v),
+            Term::Force(law) => force = g.of(force + law),
         }
     }
     (force, inertance)

@@ -1,6 +1,8 @@
 //! Mistakes are a catalogue: every diagnostic has a code, a message, labels at its places and a hint that says what to
 //! write instead. The constructors stand in one file for each stage of the front end.
 
+use std::collections::BTreeSet;
+
 use crate::source::{Source, Span};
 
 mod code;
@@ -113,6 +115,19 @@ impl Report {
         self.diagnostics
             .iter()
             .any(|diagnostic| diagnostic.severity == Severity::Error)
+    }
+
+    /// Adds what was found, each once, and brings all in the order of the texts.
+    pub(crate) fn add(&mut self, found: Vec<Diagnostic>) {
+        let place = |diagnostic: &Diagnostic| {
+            let span = diagnostic.labels.first().map(|label| label.span).unwrap_or_default();
+            (span.source, span.start)
+        };
+        let mut told = BTreeSet::new();
+        self.diagnostics.extend(found);
+        self.diagnostics
+            .retain(|diagnostic| told.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
+        self.diagnostics.sort_by_key(place);
     }
 }
 

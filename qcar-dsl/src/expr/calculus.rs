@@ -10,16 +10,16 @@ type Slope = fn(&mut Graph, Expr, Expr) -> Expr;
 #[rustfmt::skip]
 fn law(f: Function) -> (fn(f64) -> f64, Slope) {
     match f {
-        Function::Abs  => (f64::abs,  |g, x, _| g.call(Function::Sign, x)),
-        Function::Sign => (sign,      |g, _, _| g.constant(0.0)),
-        Function::Sqrt => (f64::sqrt, |g, _, y| { let half = g.constant(0.5); g.div(half, y) }),
-        Function::Exp  => (f64::exp,  |_, _, y| y),
-        Function::Ln   => (f64::ln,   |g, x, _| { let one = g.constant(1.0); g.div(one, x) }),
-        Function::Sin  => (f64::sin,  |g, x, _| g.call(Function::Cos, x)),
-        Function::Cos  => (f64::cos,  |g, x, _| { let sine = g.call(Function::Sin, x); g.neg(sine) }),
-        Function::Tan  => (f64::tan,  |g, _, y| { let one = g.constant(1.0); let square = g.powi(y, 2); g.add(one, square) }),
-        Function::Atan => (f64::atan, |g, x, _| { let one = g.constant(1.0); let square = g.powi(x, 2); let d = g.add(one, square); g.div(one, d) }),
-        Function::Tanh => (f64::tanh, |g, _, y| { let one = g.constant(1.0); let square = g.powi(y, 2); g.sub(one, square) }),
+        Function::Abs  => (f64::abs,  |g, x, _| g.of(Function::Sign.at(x))),
+        Function::Sign => (sign,      |g, _, _| g.of(0.0)),
+        Function::Sqrt => (f64::sqrt, |g, _, y| g.of(0.5 / y)),
+        Function::Exp  => (f64::exp,  |g, _, y| g.of(y)),
+        Function::Ln   => (f64::ln,   |g, x, _| g.of(1.0 / x)),
+        Function::Sin  => (f64::sin,  |g, x, _| g.of(Function::Cos.at(x))),
+        Function::Cos  => (f64::cos,  |g, x, _| g.of(-Function::Sin.at(x))),
+        Function::Tan  => (f64::tan,  |g, _, y| g.of(1.0 + y.power(2))),
+        Function::Atan => (f64::atan, |g, x, _| g.of(1.0 / (1.0 + x.power(2)))),
+        Function::Tanh => (f64::tanh, |g, _, y| g.of(1.0 - y.power(2))),
     }
 }
 
@@ -106,38 +106,31 @@ impl Differential {
             }
             Node::Mul(a, b) => {
                 let (da, db) = (self.of(g, a), self.of(g, b));
-                let (left, right) = (g.mul(da, b), g.mul(a, db));
-                g.add(left, right)
+                g.of(da * b + a * db)
             }
             Node::Div(a, b) => self.quotient(g, e, a, b),
             Node::Powi(a, n) => {
                 let da = self.of(g, a);
-                let (factor, power) = (g.constant(f64::from(n)), g.powi(a, n - 1));
-                let slope = g.mul(factor, power);
-                g.mul(slope, da)
+                g.of(f64::from(n) * a.power(n - 1) * da)
             }
             Node::Pow(a, b) => {
                 let (da, db) = (self.of(g, a), self.of(g, b));
-                let logarithm = g.call(Function::Ln, a);
-                let (growth, relative) = (g.mul(db, logarithm), g.div(da, a));
-                let scaled = g.mul(b, relative);
-                let sum = g.add(growth, scaled);
-                g.mul(e, sum)
+                g.of(e * (db * Function::Ln.at(a) + b * (da / a)))
             }
             Node::Min(a, b) => {
                 let (da, db) = (self.of(g, a), self.of(g, b));
-                let test = g.sub(b, a);
+                let test = g.of(b - a);
                 g.select(test, da, db)
             }
             Node::Max(a, b) => {
                 let (da, db) = (self.of(g, a), self.of(g, b));
-                let test = g.sub(a, b);
+                let test = g.of(a - b);
                 g.select(test, da, db)
             }
             Node::Call(f, a) => {
                 let da = self.of(g, a);
                 let slope = law(f).1(g, a, e);
-                g.mul(slope, da)
+                g.of(slope * da)
             }
             Node::Select(test, a, b) => {
                 let (da, db) = (self.of(g, a), self.of(g, b));
@@ -160,14 +153,10 @@ impl Differential {
     fn quotient(&mut self, g: &mut Graph, e: Expr, a: Expr, b: Expr) -> Expr {
         let da = self.of(g, a);
         if let (Node::Powi(base, n), Some(0.0)) = (g.node(b), g.as_constant(da)) {
-            let (rate, order) = (self.of(g, base), g.constant(-f64::from(n)));
-            let relative = g.div(e, base);
-            let change = g.mul(relative, rate);
-            return g.mul(order, change);
+            let rate = self.of(g, base);
+            return g.of(-f64::from(n) * (e / base * rate));
         }
         let db = self.of(g, b);
-        let carried = g.mul(e, db);
-        let change = g.sub(da, carried);
-        g.div(change, b)
+        g.of((da - e * db) / b)
     }
 }

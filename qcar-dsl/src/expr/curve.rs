@@ -68,8 +68,8 @@ impl Curve<Expr> {
     pub fn monotone(g: &mut Graph, knots: &[f64], values: Vec<Expr>) -> Self {
         let widths: Vec<f64> = knots.windows(2).map(|pair| pair[1] - pair[0]).collect();
         let rises = values.windows(2).zip(&widths).map(|(pair, &width)| {
-            let rise = g.sub(pair[1], pair[0]);
-            scaled(g, 1.0 / width, rise)
+            let rise = g.of(pair[1] - pair[0]);
+            g.of(1.0 / width * rise)
         });
         let pieces: Vec<Piece> = rises
             .collect::<Vec<_>>()
@@ -114,10 +114,10 @@ fn slopes(g: &mut Graph, pieces: &[Piece]) -> Vec<Expr> {
 /// The weighted harmonic mean of the secants on both sides; 0 where one rises and the other does not.
 fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
     let (of_before, of_after) = (before.width + 2.0 * after.width, 2.0 * before.width + after.width);
-    let product = g.mul(before.secant, after.secant);
-    let (left, right) = (scaled(g, of_after, before.secant), scaled(g, of_before, after.secant));
-    let (above, below) = (scaled(g, of_before + of_after, product), g.add(left, right));
-    let (mean, zero) = (g.div(above, below), g.constant(0.0));
+    let product = g.of(before.secant * after.secant);
+    let (left, right) = (g.of(of_after * before.secant), g.of(of_before * after.secant));
+    let mean = g.of((of_before + of_after) * product / (left + right));
+    let zero = g.constant(0.0);
     g.select(product, mean, zero)
 }
 
@@ -125,16 +125,13 @@ fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
 /// times the secant where the curve turns behind it.
 fn end_slope(g: &mut Graph, own: Piece, next: Piece) -> Expr {
     let share = own.width / (own.width + next.width);
-    let (near, far) = (scaled(g, 1.0 + share, own.secant), scaled(g, share, next.secant));
-    let (parabola, steepest) = (g.sub(near, far), scaled(g, 3.0, own.secant));
-    let (rises, most) = (g.mul(parabola, own.secant), g.mul(steepest, own.secant));
-    let (excess, same_way, zero) = (g.sub(rises, most), g.mul(own.secant, next.secant), g.constant(0.0));
+    let parabola = g.of((1.0 + share) * own.secant - share * next.secant);
+    let steepest = g.of(3.0 * own.secant);
+    let rises = g.of(parabola * own.secant);
+    let excess = g.of(rises - steepest * own.secant);
+    let same_way = g.of(own.secant * next.secant);
+    let zero = g.constant(0.0);
     let held = g.select(excess, steepest, parabola);
     let slope = g.select(same_way, parabola, held);
     g.select(rises, slope, zero)
-}
-
-fn scaled(g: &mut Graph, factor: f64, e: Expr) -> Expr {
-    let factor = g.constant(factor);
-    g.mul(factor, e)
 }

@@ -6,11 +6,11 @@ use super::rewrite::{self, binary, named};
 use super::terms::is_term;
 use super::{Made, Signal, SignalChange, refused};
 use crate::diagnostic::effects;
-use crate::source::Span;
-use crate::syntax::{
+use crate::front::syntax::{
     Change, Dotted, EffectParameter, Expression, ExpressionKind, LawStatement, Let, Link, Name, Operator, Parameter,
     PlaceKind, Statement,
 };
+use crate::source::Span;
 
 /// A model under change.
 pub struct Patching<'a> {

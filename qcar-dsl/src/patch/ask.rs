@@ -3,10 +3,10 @@
 use super::base::Base;
 use crate::diagnostic::{Diagnostic, effects};
 use crate::expr::Symbol;
+use crate::front::resolve::options::take;
+use crate::front::resolve::resolve;
+use crate::front::syntax::{Expression, Let, Name, Statement};
 use crate::model::{Default, Model};
-use crate::resolve::options::take;
-use crate::resolve::resolve;
-use crate::syntax::{Expression, Let, Name, Statement};
 
 /// What somebody knows: values of the model's parameters by name, and of its
 /// [reference values](super::Scale) by theirs.

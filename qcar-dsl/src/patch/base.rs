@@ -2,12 +2,12 @@
 
 use super::rewrite;
 use crate::check::Checked;
-use crate::parse::parse_text;
-use crate::source::Source;
-use crate::syntax::{
+use crate::front::parse::parse_text;
+use crate::front::syntax::{
     Axle, AxleKind, Coordinate, CoordinateKind, Direction, Element, Expression, ExpressionKind, File, Item,
     LawStatement, Link, Name, Operator, Statement,
 };
+use crate::source::Source;
 
 /// The tree of a plain axle.
 #[derive(Clone, Debug)]
@@ -243,7 +243,7 @@ fn without(e: &Expression, name: &str, zero: &Expression) -> Expression {
             _ => rewrite::binary(*operator, without(a, name, zero), without(b, name, zero)),
         };
     }
-    let mut rename = |own: &crate::syntax::Dotted| {
+    let mut rename = |own: &crate::front::syntax::Dotted| {
         let found = own.to_string() == name;
         Ok::<_, std::convert::Infallible>(found.then(|| zero.clone()))
     };

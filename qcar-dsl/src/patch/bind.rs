@@ -11,7 +11,7 @@ use super::stretch::{lever, lower, upper};
 use super::terms::is_term;
 use super::{Made, refused};
 use crate::diagnostic::effects;
-use crate::syntax::{
+use crate::front::syntax::{
     CoordinateKind, Dotted, Effect, Expression, ExpressionKind, LawStatement, Link, Name, Number, Operator, PlaceKind,
 };
 
@@ -285,7 +285,7 @@ fn in_travel_of_point(
 }
 
 fn travel(new: &str, own: &str, lever: &Expression) -> LawStatement {
-    LawStatement::Let(crate::syntax::Let {
+    LawStatement::Let(crate::front::syntax::Let {
         name: Name::new(new),
         value: binary(Operator::Divide, named(own), lever.clone()),
         doc: String::new(),

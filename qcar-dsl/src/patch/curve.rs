@@ -1,6 +1,6 @@
 //! The curves of an effect: the tables in its laws, and which of its parameters are points of them.
 
-use crate::syntax::{Change, Effect, Expression, ExpressionKind, LawStatement, Operator, Table};
+use crate::front::syntax::{Change, Effect, Expression, ExpressionKind, LawStatement, Operator, Table};
 
 /// A table in a law.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,7 +4,7 @@ use super::base::{Base, coordinates, links};
 use super::roles::Roles;
 use super::stretch::upper;
 use super::terms::has_terms;
-use crate::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind, Statement};
+use crate::front::syntax::{Coordinate, CoordinateKind, Direction, Name, Pattern, PlaceKind, Statement};
 
 /// A place of a model where an effect may apply.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -1,6 +1,6 @@
 //! Trees with other names in them.
 
-use crate::syntax::{
+use crate::front::syntax::{
     Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, List, Logic, Table,
 };
 
@@ -112,11 +112,11 @@ pub fn made(kind: ExpressionKind) -> Expression {
 /// A name as an expression.
 pub fn named(name: &str) -> Expression {
     made(ExpressionKind::Name(Dotted {
-        names: vec![crate::syntax::Name::new(name)],
+        names: vec![crate::front::syntax::Name::new(name)],
     }))
 }
 
 /// `a operator b`
-pub fn binary(operator: crate::syntax::Operator, a: Expression, b: Expression) -> Expression {
+pub fn binary(operator: crate::front::syntax::Operator, a: Expression, b: Expression) -> Expression {
     made(ExpressionKind::Binary(operator, Box::new(a), Box::new(b)))
 }

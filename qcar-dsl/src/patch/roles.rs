@@ -9,7 +9,7 @@ use super::ask::{Values, numbers};
 use super::base::{Base, coordinates, links};
 use super::rewrite::names_in;
 use super::stretch::{levered, lower, upper};
-use crate::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
+use crate::front::syntax::{CoordinateKind, Direction, Dotted, Expression, Link};
 
 /// The words for links, as `role tire` has them.
 pub const OF_LINKS: [&str; 6] = ["tire", "suspension", "mount", "hanger", "pivot_mount", "wheel_bushing"];

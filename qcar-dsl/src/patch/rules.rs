@@ -4,9 +4,9 @@ use super::Made;
 use super::roles::{OF_LINKS, OF_MASSES};
 use super::terms::{LINEAR, WORDS};
 use crate::diagnostic::{Diagnostic, Severity, effects, names, reading};
-use crate::parse::parse_text;
+use crate::front::parse::parse_text;
+use crate::front::syntax::{Change, Effect, EffectParameter, Item, Name, PlaceKind, Role};
 use crate::source::{Source, Span};
-use crate::syntax::{Change, Effect, EffectParameter, Item, Name, PlaceKind, Role};
 
 /// The only effect of a file.
 pub fn effect_of(source: &Source) -> Made<Effect> {

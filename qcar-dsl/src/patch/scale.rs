@@ -1,6 +1,6 @@
 //! How far, how fast and how hard a place is moved in a campaign: what the range of an effect may be measured by.
 
-use crate::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
+use crate::front::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
 
 /// A reference value of a place: its largest amplitude in the runs of a campaign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,34 +3,21 @@
 
 use std::collections::BTreeMap;
 
+use qcar_model::ParameterRole;
+
 use super::ask::{Values, question, value, with_questions};
 use super::base::Base;
 use super::rewrite::{made, names_in};
 use super::scale::Scale;
+
 use super::{NewParameter, Refused};
 use crate::diagnostic::{Diagnostic, effects};
-use crate::model::Model;
-use crate::syntax::{
+use crate::front::syntax::{
     Change, Effect, EffectParameter, Expression, ExpressionKind, Name, Number, Parameter, ParameterDefault, Role,
     Statement, VanishesAt,
 };
+use crate::model::Model;
 use crate::units::Unit;
-
-/// What a parameter is to its effect, in numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParameterRole {
-    /// As it goes to a value, the model becomes what it was before the patch.
-    Strength {
-        /// 0, another value in SI, or infinity.
-        vanishes_at: f64,
-    },
-    /// It says where the effect acts, over travel, speed or frequency.
-    Shape,
-    /// It is the time since a run began, in s or, without a unit, in parts of the run: each run gives it.
-    Clock,
-    /// None of these.
-    Other,
-}
 
 /// A parameter of an effect with its expressions in the names of the model.
 pub struct Asked<'a> {

@@ -2,7 +2,7 @@
 
 use super::base::Base;
 use super::rewrite::binary;
-use crate::syntax::{Expression, ExpressionKind, Link, Operator};
+use crate::front::syntax::{Expression, ExpressionKind, Link, Operator};
 
 /// A summand of a stretch: a point as it is written, its factor (`None` for one), and whether it is subtracted.
 struct Part {
@@ -66,8 +66,9 @@ fn parts(base: &Base, direction: &str, stretch: &Expression) -> Vec<Part> {
         }
         ExpressionKind::Binary(Operator::Multiply, a, b) => scaled(parts(base, direction, a), |own| times(own, b)),
         ExpressionKind::Binary(Operator::Divide, a, b) => scaled(parts(base, direction, a), |own| {
-            let own =
-                own.unwrap_or_else(|| super::rewrite::made(ExpressionKind::Number(crate::syntax::Number::new(1.0))));
+            let own = own.unwrap_or_else(|| {
+                super::rewrite::made(ExpressionKind::Number(crate::front::syntax::Number::new(1.0)))
+            });
             binary(Operator::Divide, own, (**b).clone())
         }),
         _ => vec![],

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::rewrite::names_in;
-use crate::syntax::{Expression, ExpressionKind, LawStatement, Name};
+use crate::front::syntax::{Expression, ExpressionKind, LawStatement, Name};
 
 /// The words for what a law may have.
 pub const WORDS: [&str; 5] = ["spring", "damper", "inerter", "damping", "law"];

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use super::base::Base;
 use super::rewrite::names_in;
-use crate::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault, Statement};
+use crate::front::syntax::{Dotted, Expression, ExpressionKind, ParameterDefault, Statement};
 
 /// Removes parameters, derived quantities and points that nothing uses, until each of them is used.
 pub fn tidy(tree: &mut Base) {

@@ -2,10 +2,10 @@
 
 use super::base::{Base, coordinates, links};
 use crate::check::Checked;
+use crate::check::check_text;
 use crate::diagnostic::Report;
-use crate::front::check_text;
+use crate::front::syntax::{CoordinateKind, Direction, Dotted, Name, Statement};
 use crate::source::Source;
-use crate::syntax::{CoordinateKind, Direction, Dotted, Name, Statement};
 
 /// The model with the stretch and the force of every link and the acceleration of every mass among its outputs.
 ///

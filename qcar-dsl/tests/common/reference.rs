@@ -3,7 +3,7 @@
 //! Over complex numbers the same code gives derivatives by a complex step, exact to rounding.
 
 use nalgebra::{Complex, ComplexField, DMatrix, DVector};
-use qcar_dsl::about::Source;
+use qcar_dsl::derive::vectors::Source;
 use qcar_dsl::expr::{Expr, Graph, LinkId, Node, Symbol};
 use qcar_dsl::model::{CoordinateKind, Model, Quantity, Signal, Term};
 

@@ -14,11 +14,6 @@ pub enum Weighting {
     Wd,
 }
 
-/// Root mean square of a record.
-pub fn rms(record: &[f64]) -> f64 {
-    (record.iter().map(|a| a * a).sum::<f64>() / record.len().max(1) as f64).sqrt()
-}
-
 /// Vibration dose value `(∫ a⁴ dt)^(1/4)` of a weighted acceleration (m/s²) at `sample_rate` (Hz), m/s^1.75.
 pub fn vibration_dose(weighted: &[f64], sample_rate: f64) -> f64 {
     (weighted.iter().map(|a| a.powi(4)).sum::<f64>() / sample_rate).powf(0.25)

@@ -1,5 +1,7 @@
 //! Peak and after-shake errors after alignment at the wheel's peak (thesis sections 2.1 and 3.6.2).
 
+use crate::mean::mean_square;
+
 /// Which parts of a run are compared, in s after its onset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windows {
@@ -166,8 +168,4 @@ fn cut(record: &[f64], from: isize, to: isize) -> &[f64] {
 
 fn magnitude(record: &[f64]) -> f64 {
     record.iter().fold(0.0, |largest, a| largest.max(a.abs()))
-}
-
-fn mean_square(record: &[f64]) -> f64 {
-    record.iter().map(|a| a * a).sum::<f64>() / record.len().max(1) as f64
 }

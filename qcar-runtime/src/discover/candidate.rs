@@ -4,6 +4,7 @@
 use super::noise::Form;
 use crate::campaign::Axis;
 use crate::model::Model;
+pub use crate::model::ParameterRole;
 
 /// Something that might be missing, at a place.
 pub struct Candidate {
@@ -56,22 +57,6 @@ pub struct Added {
     pub known: bool,
     /// What it is to its effect.
     pub role: ParameterRole,
-}
-
-/// What a parameter is to its effect.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum ParameterRole {
-    /// As it goes to a value, the model becomes what it was without the effect.
-    Strength {
-        /// 0, another value in SI, or infinity.
-        vanishes_at: f64,
-    },
-    /// It says where the effect acts, over travel, speed or frequency.
-    Shape,
-    /// It is the time since a run began: each run gives it.
-    Clock,
-    /// None of these.
-    Other,
 }
 
 impl Candidate {

@@ -6,6 +6,7 @@
 
 use nalgebra::{Complex, DMatrix, DVector};
 
+use crate::matrices::{at_rest, dense};
 use crate::model::{About, Contact, InputKind, Matrix, Model, StateKind};
 use crate::response::parameters::Values;
 use crate::roles::{OnRig, state};
@@ -177,18 +178,8 @@ impl<'a> Rig<'a> {
         let position = state(about, StateKind::Position, &on.wheel, axis)?;
         let moved = state(about, StateKind::Velocity, &on.wheel, axis)?;
         state(about, StateKind::Position, &on.body, axis)?;
-        let (states, inputs) = (about.states.len(), about.inputs.len());
-        let mut nonzeros = vec![0.0; about.matrices.len()];
-        model.matrices(p, &vec![0.0; states], &vec![0.0; inputs], &mut nonzeros);
-        let (mut a, mut b) = (DMatrix::zeros(states, states), DMatrix::zeros(states, inputs));
-        for (entry, value) in about.matrices.iter().zip(nonzeros) {
-            let place = (usize::from(entry.row), usize::from(entry.column));
-            match entry.matrix {
-                Matrix::A => a[place] = Complex::from(value),
-                Matrix::B => b[place] = Complex::from(value),
-                Matrix::C | Matrix::D => {}
-            }
-        }
+        let nonzeros = at_rest(model, p);
+        let [a, b] = [Matrix::A, Matrix::B].map(|which| dense(about, which, &nonzeros).map(Complex::from));
         let states = about.states.iter().enumerate();
         let prescribed = states.map(|(at, state)| {
             if at == position {

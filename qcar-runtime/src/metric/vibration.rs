@@ -3,6 +3,7 @@
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
 
+use crate::matrices::sensitivities_at_rest;
 use crate::model::{Matrix, Model};
 use crate::modes::{dynamics, eigenvector, vibrations};
 
@@ -46,10 +47,8 @@ fn slope(root: Complex<f64>, moved: Complex<f64>) -> [f64; 2] {
 /// The derivative of A at rest along a direction.
 fn change(model: &dyn Model, p: &[f64], direction: &[f64]) -> DMatrix<f64> {
     let about = model.about();
-    let (x, u) = (vec![0.0; about.states.len()], vec![0.0; about.inputs.len()]);
-    let mut nonzeros = vec![0.0; about.sensitivities.len()];
-    model.sensitivities(p, &x, &u, &mut nonzeros);
-    let mut change = DMatrix::zeros(x.len(), x.len());
+    let nonzeros = sensitivities_at_rest(model, p);
+    let mut change = DMatrix::zeros(about.states.len(), about.states.len());
     for ((entry, parameter), &value) in about.sensitivities.iter().zip(&nonzeros) {
         if entry.matrix == Matrix::A {
             change[(usize::from(entry.row), usize::from(entry.column))] += value * direction[usize::from(*parameter)];

@@ -9,7 +9,6 @@ pub struct Rk4 {
     most_steps: usize,
     x: Vec<f64>,
     x_end: Vec<f64>,
-    stage: Vec<f64>,
     /// The stages' derivatives, and that at the end of the step, which the dense output needs.
     k: [Vec<f64>; 5],
     watch: Watch,
@@ -28,7 +27,6 @@ impl Rk4 {
             most_steps,
             x: row(),
             x_end: row(),
-            stage: row(),
             k: std::array::from_fn(|_| row()),
             watch: Watch::new(states, events),
             effort: Effort::default(),
@@ -101,20 +99,10 @@ impl Rk4 {
 
     /// One step to `x_end` with its slope there. False where it is not finite.
     fn advance<S: System>(&mut self, system: &mut S, t: f64, h: f64) -> bool {
-        for (stage, c) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
-            for ((out, x), k) in self.stage.iter_mut().zip(&self.x).zip(&self.k[stage - 1]) {
-                *out = x + c * h * k;
-            }
-            system.derivative(t + c * h, &self.stage, &mut self.k[stage]);
-        }
-        let states = self.x.len();
-        let [k0, k1, k2, k3, k_end] = &mut self.k;
-        for (i, out) in self.x_end.iter_mut().enumerate() {
-            *out = self.x[i] + h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
-        }
-        system.derivative(t + h, &self.x_end, k_end);
+        let derivative = |c: f64, x: &[f64], k: &mut [f64]| system.derivative(t + c * h, x, k);
+        step(derivative, h, &self.x, &mut self.k, &mut self.x_end);
         self.effort.evaluations += 4;
-        all_finite(&self.x_end) && all_finite(&k_end[..states])
+        all_finite(&self.x_end) && all_finite(&self.k[4][..self.x.len()])
     }
 
     /// Makes a step the past, up to the first event that ends it: what follows, which event, and when.
@@ -146,4 +134,26 @@ impl Rk4 {
         }
         cut.map(|(after, crossing)| (after, crossing.index, crossing.time))
     }
+}
+
+/// One step of length `h` from `x`, where the slope is `k[0]`, to `x_end`, where it is `k[4]`; `derivative` is told which part of
+/// the step has passed.
+pub(crate) fn step(
+    mut derivative: impl FnMut(f64, &[f64], &mut [f64]),
+    h: f64,
+    x: &[f64],
+    k: &mut [Vec<f64>; 5],
+    x_end: &mut [f64],
+) {
+    for (stage, c) in [(1, 0.5), (2, 0.5), (3, 1.0)] {
+        for ((out, x), k) in x_end.iter_mut().zip(x).zip(&k[stage - 1]) {
+            *out = x + c * h * k;
+        }
+        derivative(c, x_end, &mut k[stage]);
+    }
+    let [k0, k1, k2, k3, k_end] = k;
+    for (i, out) in x_end.iter_mut().enumerate() {
+        *out = x[i] + h / 6.0 * (k0[i] + 2.0 * k1[i] + 2.0 * k2[i] + k3[i]);
+    }
+    derivative(1.0, x_end, k_end);
 }

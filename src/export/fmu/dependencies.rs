@@ -1,8 +1,8 @@
 //! Which inputs and states a derivative, an output or a kink depends on, from the programs: what is zero in a Jacobian may
 //! depend still, by a sign.
 
-use qcar_dsl::about::About;
 use qcar_dsl::c::motion_kinks;
+use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::expr::Symbol;
 use qcar_dsl::program::{Op, Program};
 
@@ -19,21 +19,21 @@ pub struct Dependencies {
 impl Dependencies {
     /// Those of a model.
     pub fn of(subject: Subject, variables: &Variables) -> Self {
-        let (about, programs) = (&subject.compiled.about, &subject.compiled.programs);
+        let (vectors, programs) = (&subject.compiled.vectors, &subject.compiled.programs);
         Dependencies {
-            derivatives: of(about, variables, &programs.derivative),
-            outputs: of(about, variables, &programs.outputs),
-            kinks: of(about, variables, &motion_kinks(subject.compiled)),
+            derivatives: of(vectors, variables, &programs.derivative),
+            outputs: of(vectors, variables, &programs.outputs),
+            kinks: of(vectors, variables, &motion_kinks(subject.compiled)),
         }
     }
 }
 
-fn of(about: &About, variables: &Variables, program: &Program) -> Vec<Vec<usize>> {
+fn of(vectors: &Vectors, variables: &Variables, program: &Program) -> Vec<Vec<usize>> {
     let of = |&output| {
         let needed = program.needed(&[output]);
         let ops = program.ops.iter().zip(needed).filter(|(_, needed)| *needed);
         let references = ops.filter_map(|(op, _)| match *op {
-            Op::Input(symbol) => reference(about, variables, symbol),
+            Op::Input(symbol) => reference(vectors, variables, symbol),
             _ => None,
         });
         let mut references: Vec<usize> = references.collect();
@@ -43,9 +43,7 @@ fn of(about: &About, variables: &Variables, program: &Program) -> Vec<Vec<usize>
     program.outputs.iter().map(of).collect()
 }
 
-fn reference(about: &About, variables: &Variables, symbol: Symbol) -> Option<usize> {
-    let input = about.inputs.iter().position(|input| input.symbol == symbol);
-    let state = about.states.iter().position(|state| state.symbol == symbol);
-    let input = input.map(|place| variables.first_input() + place);
-    input.or_else(|| Some(variables.first_state() + state?))
+fn reference(vectors: &Vectors, variables: &Variables, symbol: Symbol) -> Option<usize> {
+    let input = vectors.input(symbol).map(|place| variables.first_input() + place);
+    input.or_else(|| Some(variables.first_state() + vectors.state(symbol)?))
 }

@@ -6,6 +6,7 @@ use std::collections::HashSet;
 use qcar_dsl::about::{About, InputKind};
 use qcar_dsl::c::motion_kinks;
 use qcar_dsl::model::Quantity;
+use qcar_dsl::schedule::Compiled;
 use qcar_dsl::units::Unit;
 
 use crate::export::Subject;
@@ -56,12 +57,15 @@ pub struct Variables {
 impl Variables {
     /// Those of a model.
     pub fn of(subject: Subject) -> Self {
-        let about = &subject.compiled.about;
+        let (compiled, about) = (subject.compiled, &subject.compiled.about);
         let kinks = motion_kinks(subject.compiled).outputs.len();
-        let mut all: Vec<Variable> = parameters(subject).chain(inputs(about)).chain(states(about)).collect();
+        let mut all: Vec<Variable> = parameters(subject)
+            .chain(inputs(compiled))
+            .chain(states(compiled))
+            .collect();
         all.extend(
-            derivatives(about)
-                .chain(outputs(about))
+            derivatives(compiled)
+                .chain(outputs(compiled))
                 .chain((1..=kinks).map(kink))
                 .chain([time()]),
         );
@@ -124,12 +128,13 @@ fn parameters(subject: Subject) -> impl Iterator<Item = Variable> {
     })
 }
 
-fn inputs(about: &About) -> impl Iterator<Item = Variable> {
-    about.inputs.iter().map(|input| Variable {
-        name: input.name.clone(),
+fn inputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
+    let inputs = compiled.about.inputs.iter().zip(&compiled.vectors.inputs);
+    inputs.map(|(input, own)| Variable {
+        name: input.name.to_string(),
         role: Role::Input,
-        description: meaning(about, input.kind),
-        unit: (input.unit.to_string(), input.unit),
+        description: meaning(&compiled.about, input.kind),
+        unit: (input.unit.to_string(), own.unit),
         start: Some(0.0),
     })
 }
@@ -156,19 +161,21 @@ fn meaning(about: &About, kind: InputKind) -> String {
     }
 }
 
-fn states(about: &About) -> impl Iterator<Item = Variable> {
-    about.states.iter().map(|state| Variable {
-        name: state.name.clone(),
+fn states(compiled: &Compiled) -> impl Iterator<Item = Variable> {
+    let states = compiled.about.states.iter().zip(&compiled.vectors.states);
+    states.map(|(state, own)| Variable {
+        name: state.name.to_string(),
         role: Role::State,
         description: format!("State of {} along {}", state.location, state.axis),
-        unit: (state.unit.to_string(), state.unit),
+        unit: (state.unit.to_string(), own.unit),
         start: Some(0.0),
     })
 }
 
-fn derivatives(about: &About) -> impl Iterator<Item = Variable> {
-    about.states.iter().enumerate().map(|(place, state)| {
-        let unit = state.unit.per(Unit::SECOND);
+fn derivatives(compiled: &Compiled) -> impl Iterator<Item = Variable> {
+    let states = compiled.about.states.iter().zip(&compiled.vectors.states);
+    states.enumerate().map(|(place, (state, own))| {
+        let unit = own.unit.per(Unit::SECOND);
         Variable {
             name: format!("der_{}", state.name),
             role: Role::Derivative(place),
@@ -179,12 +186,13 @@ fn derivatives(about: &About) -> impl Iterator<Item = Variable> {
     })
 }
 
-fn outputs(about: &About) -> impl Iterator<Item = Variable> {
-    about.outputs.iter().map(|output| Variable {
-        name: output.name.clone(),
+fn outputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
+    let outputs = compiled.about.outputs.iter().zip(&compiled.vectors.outputs);
+    outputs.map(|(output, &unit)| Variable {
+        name: output.name.to_string(),
         role: Role::Output,
         description: format!("Signal of {} along {}", output.signal.location, output.signal.axis),
-        unit: (output.unit.to_string(), output.unit),
+        unit: (output.unit.to_string(), unit),
         start: None,
     })
 }

@@ -12,6 +12,7 @@ use qcar_runtime::transmissibility::{Point, signal};
 use serde::Serialize;
 
 use crate::failure::Failure;
+use qcar_runtime::mean::{deviation, rms};
 
 /// A run, measured and simulated.
 pub(super) struct Record {
@@ -120,11 +121,8 @@ fn record(
 }
 
 fn error(run: &Run, sensor: &Point, measured: &[f64], simulated: &[f64]) -> RecordError {
-    let mean = measured.iter().sum::<f64>() / measured.len() as f64;
-    let rms =
-        |values: &mut dyn Iterator<Item = f64>| (values.map(|y| y * y).sum::<f64>() / measured.len() as f64).sqrt();
-    let measured_rms = rms(&mut measured.iter().map(|y| y - mean));
-    let rms_error = rms(&mut measured
+    let measured_rms = deviation(measured);
+    let rms_error = rms(measured
         .iter()
         .zip(simulated)
         .map(|(measured, simulated)| simulated - measured));

@@ -1,6 +1,11 @@
 //! The equations of motion of one corner, in z and x, written out by hand.
 
-use crate::axle::{Axle, GRAVITY, Mount};
+// The tyre beyond its point of contact.
+mod tire;
+// Forces to accelerations.
+mod accelerations;
+
+use crate::axle::{Axle, Mount};
 use crate::hidden::Laws;
 use crate::other_law::{INNER, Other};
 
@@ -121,79 +126,10 @@ impl Corner<'_> {
         dy
     }
 
-    /// Sidewall, resonator, and the state of the relaxing branch.
-    fn tire_inside(&self, y: &State, push: Push, f: &mut Forces, dy: &mut State) {
-        let v = &y[COORDINATES..];
-        if let Some(belt) = self.laws.belt {
-            let force = belt.k_sidewall * (y[WHEEL] - y[BELT]) + belt.c_sidewall * (v[WHEEL] - v[BELT]);
-            f[WHEEL] -= force;
-            f[BELT] += force;
-        }
-        if let Some(r) = self.laws.resonator {
-            let force = r.k_resonator * (y[RESONATOR] - y[WHEEL]) + r.c_resonator * (v[RESONATOR] - v[WHEEL]);
-            f[RESONATOR] -= force;
-            f[WHEEL] += force;
-        }
-        if let Some(t) = self.laws.tire_relaxation {
-            let k = (t.stiffness_ratio - 1.0) * self.axle.k_tire;
-            let rate = std::f64::consts::TAU * t.relaxation_frequency;
-            dy[TIRE_BRANCH] = k * push.compression_rate - rate * y[TIRE_BRANCH];
-        }
-        if let Some(law) = self.laws.other {
-            let inner = &y[OTHER_LAW..];
-            law.tire_relaxes(self.axle.k_tire, push.compression_rate, inner, &mut dy[OTHER_LAW..]);
-        }
-    }
-
     /// Force of a law in another form that has states, N.
     fn remembered(&self, y: &State, dy: &mut State, force: impl Fn(&Other, &[f64], &mut [f64]) -> f64) -> f64 {
         let law = self.laws.other.as_ref();
         law.map_or(0.0, |law| force(law, &y[OTHER_LAW..], &mut dy[OTHER_LAW..]))
-    }
-
-    /// What relaxes in the tyre, N, positive in compression.
-    pub fn tire_memory(&self, y: &State) -> f64 {
-        y[TIRE_BRANCH] + self.laws.other.map_or(0.0, |law| law.tire_memory(&y[OTHER_LAW..]))
-    }
-
-    /// Force of the standing tyre for a compression of its tread from rest, N, positive on the ring.
-    pub fn tire_force(&self, y: &State, compression: f64, rate: f64) -> f64 {
-        let whole = self.whole_tire(compression, |s| self.standing(s));
-        let memory = if self.laws.rolling_only {
-            0.0
-        } else {
-            self.tire_memory(y)
-        };
-        self.standing(whole) + self.axle.c_tire * rate + memory
-    }
-
-    /// Elastic force of the whole standing tyre for a compression from rest, N.
-    fn standing(&self, compression: f64) -> f64 {
-        let a = self.axle;
-        let linear = a.k_tire * compression;
-        if self.laws.rolling_only {
-            return linear;
-        }
-        let growth = self.laws.tire_increase.unwrap_or(0.0) / (2.0 * a.static_tire_def);
-        let other = self.laws.other.map_or(0.0, |law| law.tire(a.k_tire, compression));
-        linear + a.k_tire * growth * compression * compression + other
-    }
-
-    /// How far the whole tyre is compressed where its tread is, m, by Newton's method. Tread and sidewalls in series have
-    /// the elastic `force` that the whole tyre was measured to have.
-    pub fn whole_tire(&self, tread: f64, force: impl Fn(f64) -> f64) -> f64 {
-        let Some(belt) = self.laws.belt else { return tread };
-        let tread_of = |whole: f64| whole - force(whole) / belt.k_sidewall;
-        let mut whole = tread;
-        for _ in 0..20 {
-            let slope = (tread_of(whole + 1e-6) - tread_of(whole)) / 1e-6;
-            let missing = (tread - tread_of(whole)) / slope;
-            whole += missing;
-            if missing.abs() < 1e-12 {
-                break;
-            }
-        }
-        whole
     }
 
     fn pivot(&self, y: &State) -> (f64, f64) {
@@ -390,126 +326,5 @@ impl Corner<'_> {
         let beyond = (s.abs() - law.linear_travel).max(0.0);
         let curvature = self.axle.k_wheel_x * law.rate_increase_at_twice_travel / (2.0 * law.linear_travel);
         s.signum() * curvature * beyond * beyond
-    }
-
-    fn accelerate(&self, y: &State, f: &Forces, gravity: bool, dy: &mut State) {
-        let (a, l) = (self.axle, self.laws);
-        let g = if gravity { GRAVITY } else { 0.0 };
-        let acceleration = &mut dy[COORDINATES..FRICTION];
-        let mut falls = |i: usize, m: f64, there: bool| {
-            if there {
-                acceleration[i] = f[i] / m - g;
-            }
-        };
-        let powertrain = a.layout.powertrain != Mount::None;
-        falls(BODY, self.body(), true);
-        falls(TM, a.m_tm, a.layout.top_mount);
-        falls(SF, a.m_sf, a.layout.subframe);
-        falls(PWT, a.m_pwt, powertrain);
-        falls(BELT, l.belt.map_or(1.0, |b| b.m_belt), l.belt.is_some());
-        falls(
-            RESONATOR,
-            l.resonator.map_or(1.0, |r| r.m_resonator),
-            l.resonator.is_some(),
-        );
-        let gear = l.inertance.unwrap_or(0.0);
-        falls(WHEEL, a.m_wheel - l.belt.map_or(0.0, |b| b.m_belt), true);
-        if gear > 0.0 {
-            self.couple_by_inerter(gear, f, g, acceleration);
-        }
-        if let Some(apparent) = l.apparent {
-            self.couple_by_body(apparent, f, g, acceleration);
-        }
-        if let Some(mode) = l.flexible {
-            let elastic = mode.omega * (mode.omega * y[FLEX] + 2.0 * mode.damping * y[COORDINATES + FLEX]);
-            acceleration[FLEX] = f[BODY] / (mode.generalised() * self.body()) - elastic;
-            acceleration[BODY] += acceleration[FLEX];
-        }
-        if let Some(pitch) = l.pitch {
-            acceleration[PITCH] = f[PITCH] / pitch.inertia;
-        }
-        if let Some(h) = l.hydraulic {
-            acceleration[FLUID] = f[FLUID] / h.inertance;
-        }
-        let m_sf = if a.layout.subframe { a.m_sf } else { 0.0 };
-        let m_pwt = if powertrain { a.m_pwt } else { 0.0 };
-        acceleration[X_WHEEL] = f[X_WHEEL] / a.m_wheel;
-        acceleration[X_BODY] = f[X_BODY] / (a.m_half_vehicle - a.m_wheel - m_sf - m_pwt - a.m_wheel_other_axle);
-        acceleration[X_OTHER] = f[X_OTHER] / a.m_wheel_other_axle;
-        if a.layout.subframe {
-            acceleration[X_SF] = f[X_SF] / a.m_sf;
-        }
-        if powertrain {
-            acceleration[X_PWT] = f[X_PWT] / a.m_pwt;
-        }
-    }
-
-    /// An inerter beside the damper couples the masses at its two ends (upright layouts only).
-    fn couple_by_inerter(&self, b: f64, f: &Forces, g: f64, acceleration: &mut [f64]) {
-        let a = self.axle;
-        let (top, m_top) = if a.layout.top_mount {
-            (TM, a.m_tm)
-        } else {
-            (BODY, self.body())
-        };
-        let (m1, m2) = (m_top + b, a.m_wheel + b);
-        let (f1, f2) = (f[top] - m_top * g, f[WHEEL] - a.m_wheel * g);
-        let det = m1 * m2 - b * b;
-        acceleration[top] = (m2 * f1 + b * f2) / det;
-        acceleration[WHEEL] = (b * f1 + m1 * f2) / det;
-    }
-
-    /// A rigid body over both axles: the mass matrix of its heights above them.
-    fn couple_by_body(&self, apparent: crate::hidden::Apparent, f: &Forces, g: f64, acceleration: &mut [f64]) {
-        let a = self.axle;
-        let here = self.body();
-        let there = a.m_half_vehicle - a.m_corner - a.m_wheel_other_axle;
-        let total = here + there;
-        // Distances of the centre of gravity as shares of the wheelbase, which cancels.
-        let (from_here, from_there) = (there / total, here / total);
-        let radius = apparent.dynamic_index * from_here * from_there;
-        let m11 = total * (from_there * from_there + radius);
-        let m22 = total * (from_here * from_here + radius);
-        let m12 = total * (from_here * from_there - radius);
-        let f1 = f[BODY] - here * g;
-        let f2 = f[OTHER] - there * g;
-        let det = m11 * m22 - m12 * m12;
-        acceleration[BODY] = (m22 * f1 - m12 * f2) / det;
-        acceleration[OTHER] = (m11 * f2 - m12 * f1) / det;
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::axle::Layout;
-    use crate::hidden::Hidden;
-
-    /// Pressed slowly, the tread gives way by its own law and the sidewalls beside it: together by that of the tyre.
-    #[test]
-    fn a_belt_leaves_the_tyre_its_static_stiffness() {
-        let layout = Layout {
-            top_mount: true,
-            subframe: false,
-            powertrain: Mount::None,
-        };
-        let axle = Axle::draw(layout, 1);
-        let (k_sidewall, growth) = (700e3, 0.4);
-        let belt = [("m_belt", 7.0), ("k_sidewall", k_sidewall), ("c_sidewall", 200.0)];
-        let stiffening = [("tangent_increase_at_twice_static", growth)];
-        let laws = Laws::of(&[
-            Hidden::new("tire_belt", "tire", &belt),
-            Hidden::new("tire_progressive_stiffness", "tire", &stiffening),
-        ]);
-        let corner = Corner {
-            axle: &axle,
-            laws: &laws,
-        };
-        for tread in [-4e-3, 1e-3, 5e-3] {
-            let force = corner.tire_force(&[0.0; STATES], tread, 0.0);
-            let whole = tread + force / k_sidewall;
-            let parabola = axle.k_tire * (whole + growth / (2.0 * axle.static_tire_def) * whole * whole);
-            assert!((force - parabola).abs() < 1e-3, "{force} N, not {parabola} N");
-        }
     }
 }

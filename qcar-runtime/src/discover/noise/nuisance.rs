@@ -11,6 +11,7 @@ use nalgebra::Complex;
 use super::calibration::{Form, SENSOR};
 use crate::campaign::{Axis, Role};
 use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
+use crate::mean::mean;
 use crate::model::{About, State};
 use crate::transmissibility::Point;
 
@@ -176,6 +177,5 @@ fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
 
 /// Root of the mean square; zero of nothing.
 pub(super) fn rms<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> f64 {
-    let (power, count) = values.fold((0.0, 0), |(power, count), value| (power + value.norm_sqr(), count + 1));
-    (power / f64::from(count.max(1))).sqrt()
+    mean(values.map(Complex::norm_sqr)).sqrt()
 }

@@ -7,6 +7,7 @@ use super::refit::Refit;
 use super::residual::scaled;
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind, PredictError, Series, predict_sides, unsteady};
+use crate::mean;
 use crate::model::Model;
 use crate::transmissibility::Point;
 
@@ -84,8 +85,11 @@ impl Gap {
 
 /// Root of the mean square; NaN of nothing.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
-    let (sum, count) = values.fold((0.0, 0usize), |(sum, count), value| (sum + value * value, count + 1));
-    (sum / count as f64).sqrt()
+    let mut values = values.peekable();
+    match values.peek() {
+        Some(_) => mean::rms(values),
+        None => f64::NAN,
+    }
 }
 
 /// Tiles of an octave.

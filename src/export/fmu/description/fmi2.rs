@@ -17,9 +17,9 @@ pub fn description(subject: Subject, variables: &Variables, token: &str, compile
     let about = &subject.compiled.about;
     let attributes = [
         ("fmiVersion", "2.0".into()),
-        ("modelName", about.name.clone()),
+        ("modelName", about.name.to_string()),
         ("guid", token.into()),
-        ("description", about.doc.clone()),
+        ("description", about.doc.to_string()),
         ("generationTool", TOOL.into()),
         ("variableNamingConvention", "flat".into()),
         ("numberOfEventIndicators", variables.kinks.to_string()),

@@ -14,9 +14,9 @@ pub fn description(subject: Subject, variables: &Variables, token: &str) -> Stri
     let about = &subject.compiled.about;
     let attributes = [
         ("fmiVersion", "3.0".into()),
-        ("modelName", about.name.clone()),
+        ("modelName", about.name.to_string()),
         ("instantiationToken", token.into()),
-        ("description", about.doc.clone()),
+        ("description", about.doc.to_string()),
         ("generationTool", TOOL.into()),
         ("variableNamingConvention", "flat".into()),
     ];

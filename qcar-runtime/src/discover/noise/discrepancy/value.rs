@@ -2,6 +2,7 @@
 
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::{Evidence, Kind, Series};
+use crate::mean::rms;
 
 /// A value of a group.
 pub struct Value {
@@ -93,10 +94,6 @@ fn nearest(at: &[f64], wanted: f64) -> usize {
     } else {
         after
     }
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }
 
 /// Number of runs that values are of.

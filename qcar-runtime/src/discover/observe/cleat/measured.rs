@@ -7,6 +7,7 @@ use crate::discover::observe::run::PATIENT;
 use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
 use crate::error::InputError;
+use crate::mean::rms;
 use crate::model::About;
 use crate::response::signal::output_of;
 use crate::road::Road;
@@ -178,8 +179,4 @@ fn obstacle(road: &Road) -> f64 {
 
 fn envelope(values: &[f64], k: usize) -> f64 {
     rms(&values[k.saturating_sub(AROUND)..(k + AROUND + 1).min(values.len())])
-}
-
-fn rms(values: &[f64]) -> f64 {
-    (values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64).sqrt()
 }

@@ -5,6 +5,7 @@
 //! section II.4). How often each step was halved is kept: where parameters move by a difference, the steps stay.
 
 use crate::model::Model;
+use crate::solver::rk4;
 
 /// Error of a step that is allowed, over the largest value that a state had.
 const TOLERANCE: f64 = 1e-3;
@@ -127,16 +128,11 @@ impl<'a> Stepper<'a> {
         } else {
             model.derivative(constants, x, inputs[0], &mut k[0]);
         }
-        for (stage, input, share) in [(1, 1, 0.5), (2, 1, 0.5), (3, 2, 1.0)] {
-            for ((to, x), k) in self.x.iter_mut().zip(&*x).zip(&k[stage - 1]) {
-                *to = x + share * h * k;
-            }
-            model.derivative(constants, &self.x, inputs[input], &mut k[stage]);
-        }
-        for (i, x) in x.iter_mut().enumerate() {
-            *x += h / 6.0 * (k[0][i] + 2.0 * k[1][i] + 2.0 * k[2][i] + k[3][i]);
-        }
-        model.derivative(constants, x, inputs[2], &mut k[4]);
+        let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
+            model.derivative(constants, x, inputs[(2.0 * part) as usize], k);
+        };
+        rk4::step(derivative, h, x, k, &mut self.x);
+        x.copy_from_slice(&self.x);
         self.knows_slope = true;
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());

@@ -9,6 +9,7 @@ use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::series::LEAST_NOISE;
 use crate::discover::observe::{Band, Evidence, Kind, Recordings, Run, Series, Spread, Stimulus, excitation_of};
 use crate::error::{InputError, Place, Problem};
+use crate::mean::deviation;
 use crate::model::About;
 use crate::transmissibility::{Point, signal};
 
@@ -92,7 +93,7 @@ impl Evidence {
         self.runs.push(Run {
             name: run.name.clone(),
             role: run.role,
-            level: rms(&first.1),
+            level: deviation(&first.1),
             stimulus: Stimulus::History {
                 restarts,
                 inputs: Recordings {
@@ -164,8 +165,8 @@ fn series(
         run,
         sensor,
         kind: Kind::Time,
-        sigma: vec![noise.hypot(FLOOR * rms(samples)); at.len()],
-        noise: vec![noise.hypot(LEAST_NOISE * rms(samples)); at.len()],
+        sigma: vec![noise.hypot(FLOOR * deviation(samples)); at.len()],
+        noise: vec![noise.hypot(LEAST_NOISE * deviation(samples)); at.len()],
         least_discrepancy: FLOOR,
         at,
         value: inside.map(|k| Complex::from(samples[k])).collect(),
@@ -177,8 +178,3 @@ fn series(
 
 /// Values in half a period of a record's mean frequency: they hold its first eight harmonics, and more say the same.
 const IN_HALF_A_PERIOD: f64 = 8.0;
-
-fn rms(samples: &[f64]) -> f64 {
-    let mean = samples.iter().sum::<f64>() / samples.len() as f64;
-    (samples.iter().map(|sample| (sample - mean).powi(2)).sum::<f64>() / samples.len() as f64).sqrt()
-}

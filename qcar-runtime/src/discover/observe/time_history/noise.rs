@@ -7,6 +7,7 @@
 
 use std::f64::consts::LN_2;
 
+use crate::mean::rms;
 use crate::spectrum::{Trend, Window, transform};
 
 /// Share of the spectrum, its highest part, that is taken for noise.
@@ -84,7 +85,7 @@ fn at_rest(samples: &[f64], inputs: &[&[f64]]) -> Option<f64> {
 fn scatter(samples: &[f64], trend: Trend) -> f64 {
     let mut about = samples.to_vec();
     trend.remove(&mut about);
-    (about.iter().map(|y| y * y).sum::<f64>() / about.len() as f64).sqrt()
+    rms(&about)
 }
 
 /// The standard deviation of white noise with the power of the highest part of the spectrum.

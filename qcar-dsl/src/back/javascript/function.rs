@@ -1,0 +1,105 @@
+//! A straight-line program as a function of JavaScript: one operation a line, a result stored where it is computed.
+
+use super::RESERVED;
+use crate::back::straight::{FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, Straight, Written};
+use crate::expr;
+use crate::program::Value;
+
+/// The text of a function.
+pub fn text(function: &Function, straight: &Straight) -> String {
+    let cut = Pieces::whole(function.program);
+    let arguments: Vec<&str> = function.arguments.iter().copied().map(passed).collect();
+    let read = |leaf: Leaf| straight.local(leaf, function.arguments);
+    let names = Names::beside(RESERVED.iter().copied().chain(arguments.iter().copied()));
+    let locals = Locals::new(function, &cut, 0, names, &read);
+    let written = Written {
+        language: &JavaScript,
+        program: function.program,
+        locals: &locals,
+    };
+    let store = |place: usize, value: Value| {
+        let result = function.results.get(place).filter(|result| !result.is_empty());
+        let remark = result.map_or(String::new(), |result| format!(" // {result}"));
+        format!("out[{place}] = {};{remark}", written.operand(value))
+    };
+    let leaves = cut.read(0).into_iter().map(|(leaf, value)| {
+        let from = read(leaf);
+        let (name, argument) = (locals.name(value), passed(from.argument));
+        format!("const {name} = {argument}{};", from.at)
+    });
+    let stored = cut.stored(0).into_iter().map(|(place, value)| store(place, value));
+    let computed = cut.pieces[0].iter().flat_map(|&value| {
+        let computed = format!("const {} = {};", locals.name(value), written.operation(value));
+        let results = locals.results(value).map(move |place| store(place, value));
+        [computed].into_iter().chain(results)
+    });
+    let lines = leaves.chain(stored).chain(computed);
+    let body: String = lines.map(|statement| format!("  {statement}\n")).collect();
+    format!(
+        "function {}({}) {{\n  const out = [];\n{body}  return out;\n}}\n",
+        function.name,
+        arguments.join(", ")
+    )
+}
+
+/// What an argument is called: a name that no leaf of the program has.
+fn passed(argument: &str) -> &str {
+    if argument == FREQUENCIES {
+        "angular_frequency"
+    } else {
+        argument
+    }
+}
+
+/// How JavaScript writes.
+struct JavaScript;
+
+impl Language for JavaScript {
+    /// A negative number in parentheses, since `--` is an operator.
+    fn number(&self, number: f64) -> String {
+        match number {
+            _ if number.is_nan() => "NaN".into(),
+            f64::INFINITY => "Infinity".into(),
+            f64::NEG_INFINITY => "(-Infinity)".into(),
+            _ if number.is_sign_negative() => format!("({number:?})"),
+            _ => format!("{number:?}"),
+        }
+    }
+
+    fn call(&self, function: expr::Function, a: &str) -> String {
+        let name = match function {
+            expr::Function::Abs => "abs",
+            expr::Function::Sign => "sign",
+            expr::Function::Sqrt => "sqrt",
+            expr::Function::Exp => "exp",
+            expr::Function::Ln => "log",
+            expr::Function::Sin => "sin",
+            expr::Function::Cos => "cos",
+            expr::Function::Tan => "tan",
+            expr::Function::Atan => "atan",
+            expr::Function::Tanh => "tanh",
+        };
+        format!("Math.{name}({a})")
+    }
+
+    fn power(&self, a: &str, b: &str) -> String {
+        format!("Math.pow({a}, {b})")
+    }
+
+    fn smaller(&self, a: &str, b: &str) -> String {
+        format!("Math.min({a}, {b})")
+    }
+
+    fn larger(&self, a: &str, b: &str) -> String {
+        format!("Math.max({a}, {b})")
+    }
+
+    fn choice(&self, test: &str, a: &str, b: &str) -> String {
+        format!("{test} > 0 ? {a} : {b}")
+    }
+
+    fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String {
+        let rows = rows.map(|entries| format!("[{}]", entries.join(", ")));
+        format!("curve_at({order}, {x}, {})", rows.join(", "))
+    }
+}

@@ -1,0 +1,57 @@
+//! Names that are free of Rust's keywords.
+
+use crate::back::straight::Names;
+
+/// What a function refers to beside its own variables.
+const RESERVED: &[&str] = &[
+    "CONSTANTS",
+    "INPUTS",
+    "LINES",
+    "PARAMETERS",
+    "STATES",
+    "f64",
+    "kept",
+    "line",
+    "out",
+    "seam",
+    "sign",
+];
+
+/// The names of local variables beside these arguments.
+pub fn names(arguments: &[&'static str]) -> Names {
+    let taken = KEYWORDS.iter().chain(RESERVED).chain(arguments);
+    Names::beside(taken.copied())
+}
+
+/// A name that can stand where Rust expects an identifier of ours, such as a field.
+pub fn identifier(name: &str) -> String {
+    if is_keyword(name) {
+        format!("{name}_")
+    } else {
+        name.to_string()
+    }
+}
+
+/// `axle_d` as `AxleD`.
+pub fn camel(name: &str) -> String {
+    let capital = |part: &str| {
+        let mut letters = part.chars();
+        letters
+            .next()
+            .map(|first| first.to_uppercase().chain(letters).collect::<String>())
+            .unwrap_or_default()
+    };
+    name.split('_').map(capital).collect()
+}
+
+fn is_keyword(name: &str) -> bool {
+    KEYWORDS.contains(&name)
+}
+
+/// Strict and reserved keywords of all editions, and the underscore.
+const KEYWORDS: &[&str] = &[
+    "Self", "_", "abstract", "as", "async", "await", "become", "box", "break", "const", "continue", "crate", "do",
+    "dyn", "else", "enum", "extern", "false", "final", "fn", "for", "gen", "if", "impl", "in", "let", "loop", "macro",
+    "match", "mod", "move", "mut", "override", "priv", "pub", "ref", "return", "self", "static", "struct", "super",
+    "trait", "true", "try", "type", "typeof", "unsafe", "unsized", "use", "virtual", "where", "while", "yield",
+];

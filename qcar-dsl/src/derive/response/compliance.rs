@@ -1,0 +1,117 @@
+//! What moves under which forces.
+
+use std::collections::BTreeMap;
+
+use super::functional::along;
+use super::load::{Load, through_load};
+use crate::check::Checked;
+use crate::derive::complex::Complex;
+use crate::derive::elimination::{Factors, Scalar, Symmetric};
+use crate::expr::{CoordinateId, Expr, Graph};
+use crate::model::CoordinateKind;
+
+/// Up to so many unknowns, every entry is taken from the inverse: it is about as much work as a solution for each output, and all
+/// outputs and their adjoints share it. Its work grows as the square of the unknowns, that of a solution as their number.
+const FEW_UNKNOWNS: usize = 24;
+
+/// What moves under which forces; what is prescribed does not.
+pub(super) struct Compliance {
+    /// Of the impedance of the unknowns.
+    factors: Factors<Complex>,
+    /// The coordinates that they are.
+    unknowns: Vec<usize>,
+    /// How many coordinates there are.
+    coordinates: usize,
+    /// The amplitude of each coordinate for a unit force on each.
+    inverse: Option<Vec<Vec<Complex>>>,
+}
+
+impl Compliance {
+    /// How the impedance makes the coordinates move that are not prescribed. Adjoints of many outputs take their entries from the
+    /// inverse.
+    pub(super) fn of(model: &Checked, g: &mut Graph, impedance: &Symmetric<Complex>, adjoints: bool) -> Self {
+        let coordinates = model.coordinates.len();
+        let prescribed = |c: usize| {
+            let kind = model.coordinates[c].kind;
+            matches!(kind, CoordinateKind::Road | CoordinateKind::Motion)
+        };
+        let unknowns: Vec<usize> = (0..coordinates).filter(|&c| !prescribed(c)).collect();
+        let factors = Factors::of(g, impedance.restricted(&unknowns));
+        let mut compliance = Compliance {
+            factors,
+            unknowns,
+            coordinates,
+            inverse: None,
+        };
+        if adjoints || compliance.is_small() {
+            compliance.inverse = Some(compliance.inverse(g));
+        }
+        compliance
+    }
+
+    fn is_small(&self) -> bool {
+        self.unknowns.len() <= FEW_UNKNOWNS
+    }
+
+    fn inverse(&self, g: &mut Graph) -> Vec<Vec<Complex>> {
+        let inverse = self.factors.inverse(g);
+        let mut entries = vec![vec![Complex::zero(g); self.coordinates]; self.coordinates];
+        for (row, &i) in self.unknowns.iter().enumerate() {
+            for (column, &j) in self.unknowns.iter().enumerate() {
+                entries[i][j] = inverse[row][column];
+            }
+        }
+        entries
+    }
+
+    /// The inverse, where all amplitudes come from it.
+    fn dense(&self) -> Option<&Vec<Vec<Complex>>> {
+        self.inverse.as_ref().filter(|_| self.is_small())
+    }
+
+    /// Whether adjoints are at hand.
+    pub(super) fn has_adjoints(&self) -> bool {
+        self.inverse.is_some()
+    }
+
+    /// The amplitudes of all coordinates under forces.
+    pub(super) fn apply(&self, g: &mut Graph, forces: &[(usize, Complex)]) -> Vec<Complex> {
+        if let Some(rows) = self.dense() {
+            return rows.iter().map(|row| through_load(g, row, forces)).collect();
+        }
+        let forces: BTreeMap<usize, Complex> = forces.iter().copied().collect();
+        let zero = Complex::zero(g);
+        let right = self.unknowns.iter().map(|c| forces.get(c).copied().unwrap_or(zero));
+        let solution = self.factors.solve(g, right.collect());
+        let mut amplitudes = vec![zero; self.coordinates];
+        let unknowns = self.unknowns.iter().zip(solution);
+        unknowns.for_each(|(&c, amplitude)| amplitudes[c] = amplitude);
+        amplitudes
+    }
+
+    /// The amplitudes when one coordinate moves by one, whose motion the others resist by these forces.
+    pub(super) fn moved_by(&self, g: &mut Graph, moved: usize, forces: &Load) -> Vec<Complex> {
+        let one = Complex::one(g);
+        let Some(rows) = self.dense() else {
+            let pushed: Load = forces.iter().map(|&(c, force)| (c, force.neg(g))).collect();
+            let mut amplitudes = self.apply(g, &pushed);
+            amplitudes[moved] = one;
+            return amplitudes;
+        };
+        let mut amplitudes = Vec::with_capacity(rows.len());
+        for (c, row) in rows.iter().enumerate() {
+            let start = if c == moved { one } else { Complex::zero(g) };
+            amplitudes.push(forces.iter().fold(start, |sum, &(k, force)| {
+                let share = row[k].mul(g, force);
+                sum.sub(g, share)
+            }));
+        }
+        amplitudes
+    }
+
+    /// The response of a combination to a unit force on each coordinate; nothing where no adjoint is at hand.
+    pub(super) fn adjoint(&self, g: &mut Graph, combination: &[(CoordinateId, Expr)]) -> Option<Vec<Complex>> {
+        let rows = self.inverse.as_ref()?;
+        Some(rows.iter().map(|row| along(g, combination, row)).collect())
+    }
+}

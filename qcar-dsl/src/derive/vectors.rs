@@ -1,0 +1,45 @@
+//! Which symbol of the equations stands at which place of the vectors `x` and `u`, and in which unit, and that of `y`.
+
+use crate::expr::{CoordinateId, Symbol};
+use crate::units::Unit;
+
+/// What excites a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// A prescribed motion: the response is per m or rad.
+    Motion(CoordinateId),
+    /// A force input, by its place in `Model::forces`: the response is per N or N m.
+    Force(u16),
+}
+
+/// The vectors of a model in the terms of its equations; its description names their entries.
+#[derive(Clone, Debug, PartialEq, Default)]
+pub struct Vectors {
+    /// `x`: positions of the masses, their velocities, positions of the nodes, inner states.
+    pub states: Vec<Component>,
+    /// `u`: of each direction its motions, its forces, its gravity.
+    pub inputs: Vec<Component>,
+    /// The units of `y`.
+    pub outputs: Vec<Unit>,
+}
+
+/// An entry of a vector.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Component {
+    /// What it is in the equations.
+    pub symbol: Symbol,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+impl Vectors {
+    /// The place of a symbol in `x`.
+    pub fn state(&self, symbol: Symbol) -> Option<usize> {
+        self.states.iter().position(|state| state.symbol == symbol)
+    }
+
+    /// The place of a symbol in `u`.
+    pub fn input(&self, symbol: Symbol) -> Option<usize> {
+        self.inputs.iter().position(|input| input.symbol == symbol)
+    }
+}

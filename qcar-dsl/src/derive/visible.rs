@@ -1,0 +1,231 @@
+//! What an output can see: a parameter that changes no response, or only together with others, cannot be estimated
+//! from any measurement. Decided by the rank of the derivatives of all responses at points that look random.
+
+// Values with their derivatives.
+mod seen;
+// Laws by their forces.
+mod forces;
+// Outputs and channels by their responses.
+mod responses;
+
+use std::collections::BTreeSet;
+
+use num_complex::Complex64;
+
+use crate::check::rank::{null_space_of_scale, support};
+use crate::check::sample::{Kind, Point};
+use crate::check::{Checked, Unseen};
+use crate::derive::linear::{Linear, linearise};
+use crate::derive::motion::{self, Motion};
+use crate::diagnostic::{Diagnostic, visibility};
+use crate::expr::{Expr, Graph, Symbol};
+use crate::model::{Model, Quantity, Signal, Term};
+
+use forces::Forces;
+use responses::Derived;
+use seen::Seen;
+
+/// How many motions a nonlinear model is seen in at first, and where that leaves something unseen: each piece of a curve
+/// is met by few motions.
+const FEW_MOTIONS: u64 = 4;
+const MANY_MOTIONS: u64 = 64;
+
+/// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
+struct Set {
+    parameters: Vec<f64>,
+    rows: Vec<Vec<f64>>,
+    scale: f64,
+}
+
+/// A model with what its outputs do not see, and warnings of it; as it is where that is known.
+pub fn look(model: Checked) -> Checked {
+    if model.is_looked_at() {
+        return model;
+    }
+    let mut graph = model.graph.clone();
+    let motion = motion::derive(&model, &mut graph);
+    let linear = linearise(&model, &motion, &mut graph);
+    look_at_derived(model, graph, &motion, &linear)
+}
+
+/// The same with the equations at hand, and the graph in which they live.
+pub fn look_at_derived(model: Checked, graph: Graph, motion: &Motion, linear: &Linear) -> Checked {
+    if model.is_looked_at() {
+        return model;
+    }
+    let (unseen, warnings) = parameters_are_seen(&model, graph, motion, linear).into_iter().unzip();
+    model.with_unseen(unseen, warnings)
+}
+
+/// Parameters that no output sees, and groups of which it sees a combination only, each with a warning: such a model has
+/// a response, but cannot be fitted.
+fn parameters_are_seen(
+    model: &Checked,
+    mut graph: Graph,
+    motion: &Motion,
+    linear: &Linear,
+) -> Vec<(Unseen, Diagnostic)> {
+    let estimated = estimated(model);
+    let forces = Forces::of(model, motion, &mut graph, &estimated);
+    let derived = Derived {
+        model,
+        graph: &graph,
+        motion,
+        linear,
+        forces,
+        estimated: &estimated,
+    };
+    let set = |kind, seed, motions| set(&derived, Point::new(model, kind, seed), motions);
+    let first = set(Kind::Plain, 1, FEW_MOTIONS);
+    let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
+    if hidden.is_empty() || first.rows.is_empty() {
+        return vec![];
+    }
+    // What one set does not see, the others must not see either: a law may be out of its range there.
+    let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS));
+    let sets: Vec<Set> = [first].into_iter().chain(others).collect();
+    let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
+    let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
+    let groups = merged(groups.collect());
+    let describe = |group: &Vec<usize>| describe(model, &estimated, group, &sets);
+    groups.iter().map(describe).collect()
+}
+
+/// The parameters that a measurement is to tell: not the known ones, and not those that the law or the states of a
+/// rolling tyre contain, since rolling over a profile shows more than the responses here do, nor those of a constant force
+/// where a position or a force is an output: its mean shows them.
+fn estimated(model: &Model) -> Vec<u16> {
+    let tyres = || model.links.iter().filter(|link| link.rolling.is_some());
+    let rolling = tyres().flat_map(|link| link.rolling.iter().flatten());
+    let rates = tyres().flat_map(|link| link.law.inner.iter().map(|inner| inner.rate));
+    let value = |term: &Term| match *term {
+        Term::Spring(e) | Term::Damper(e) | Term::Inerter(e) | Term::Force(e) => e,
+    };
+    let expressions: Vec<Expr> = rolling.map(value).chain(rates).collect();
+    let rolls: BTreeSet<Symbol> = model.graph.symbols(expressions);
+    let constant = constant_forces(model);
+    let counts = |index: &u16| {
+        let known = model.parameters[usize::from(*index)].known;
+        !known && !rolls.contains(&Symbol::Parameter(*index)) && !constant.contains(&Symbol::Parameter(*index))
+    };
+    (0..model.parameters.len() as u16).filter(counts).collect()
+}
+
+/// The parameters that stand in forces which nothing changes, where an output shows a mean.
+fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
+    let shows_mean = |signal: &Signal| match signal {
+        Signal::Motion(_, quantity) | Signal::Point(_, quantity) => *quantity == Quantity::Position,
+        Signal::LinkForce(_) | Signal::LinkStretch(_) => true,
+    };
+    if !model.outputs.iter().any(|output| shows_mean(&output.signal)) {
+        return BTreeSet::new();
+    }
+    let terms = model.links.iter().flat_map(|link| &link.law.terms);
+    let contents = terms.filter_map(|term| match *term {
+        Term::Force(force) => Some(model.graph.symbols([force])),
+        _ => None,
+    });
+    let is_constant = |symbols: &BTreeSet<Symbol>| symbols.iter().all(|symbol| matches!(symbol, Symbol::Parameter(_)));
+    contents.filter(is_constant).flatten().collect()
+}
+
+fn set(derived: &Derived, point: Point, motions: u64) -> Set {
+    let parameters: Vec<f64> = derived
+        .estimated
+        .iter()
+        .map(|&index| point.leaf(Symbol::Parameter(index)))
+        .collect();
+    let rows: Vec<Vec<f64>> = derived
+        .seen(point, motions)
+        .into_iter()
+        .flat_map(|Seen { value, gradient }| {
+            let size = value.norm().max(f64::MIN_POSITIVE);
+            let changes = || gradient.iter().zip(&parameters);
+            let relative =
+                |part: fn(&Complex64) -> f64| -> Vec<f64> { changes().map(|(by, p)| part(by) * p / size).collect() };
+            [relative(|z| z.re), relative(|z| z.im)]
+        })
+        .filter(|row| row.iter().all(|entry| entry.is_finite()) && row.iter().any(|entry| *entry != 0.0))
+        .collect();
+    let scale = rows
+        .iter()
+        .flatten()
+        .fold(0.0_f64, |scale, entry| scale.max(entry.abs()));
+    Set {
+        parameters,
+        rows,
+        scale,
+    }
+}
+
+/// Groups that share a parameter are one.
+fn merged(groups: Vec<Vec<usize>>) -> Vec<Vec<usize>> {
+    let mut merged: Vec<Vec<usize>> = Vec::new();
+    for group in groups {
+        let shares = |other: &Vec<usize>| other.iter().any(|column| group.contains(column));
+        let (mut one, others): (Vec<_>, Vec<_>) = merged.into_iter().partition(shares);
+        one.push(group);
+        let columns: BTreeSet<usize> = one.into_iter().flatten().collect();
+        merged = others;
+        merged.push(columns.into_iter().collect());
+    }
+    merged
+}
+
+/// How many independent changes of a group the responses at a set leave unseen.
+fn hidden_changes(set: &Set, group: &[usize]) -> usize {
+    let rows: Vec<Vec<f64>> = set
+        .rows
+        .iter()
+        .map(|row| group.iter().map(|&column| row[column]).collect())
+        .collect();
+    null_space_of_scale(rows, group.len(), set.scale).len()
+}
+
+fn describe(model: &Model, estimated: &[u16], group: &[usize], sets: &[Set]) -> (Unseen, Diagnostic) {
+    let parameter = |column: &usize| &model.parameters[usize::from(estimated[*column])];
+    let named: Vec<_> = group
+        .iter()
+        .map(parameter)
+        .map(|p| (p.declared.span, p.name.as_str()))
+        .collect();
+    let hidden = sets.iter().map(|set| hidden_changes(set, group)).min();
+    let unseen = Unseen {
+        parameters: named.iter().map(|(_, name)| name.to_string()).collect(),
+        seen: group.len() - hidden.unwrap_or_default(),
+    };
+    let warning = match named.as_slice() {
+        [(span, name)] => visibility::parameter_not_seen(*span, name),
+        _ => visibility::only_together(&named, unseen.seen, combination(group, sets, &named).as_deref()),
+    };
+    (unseen, warning)
+}
+
+/// The combination of two parameters that stays as it is along the unseen change, at every set.
+fn combination(group: &[usize], sets: &[Set], named: &[(crate::source::Span, &str)]) -> Option<String> {
+    let [(_, a), (_, b)] = named else { return None };
+    let unseen = |set: &Set| {
+        let rows = set
+            .rows
+            .iter()
+            .map(|row| group.iter().map(|&column| row[column]).collect())
+            .collect();
+        let null = null_space_of_scale(rows, 2, set.scale);
+        let change = null.first().map_or([0.0; 2], |change| [change[0], change[1]]);
+        let absolute = [
+            change[0] * set.parameters[group[0]],
+            change[1] * set.parameters[group[1]],
+        ];
+        (change[0] / change[1], absolute[0] / absolute[1])
+    };
+    let ratios: Vec<(f64, f64)> = sets.iter().map(unseen).collect();
+    let always = |of: fn(&(f64, f64)) -> f64, ratio: f64| ratios.iter().all(|pair| (of(pair) - ratio).abs() < 1e-5);
+    let (relative, absolute) = (|pair: &(f64, f64)| pair.0, |pair: &(f64, f64)| pair.1);
+    match () {
+        _ if always(relative, -1.0) => Some(format!("{a}*{b}")),
+        _ if always(relative, 1.0) => Some(format!("{a}/{b}")),
+        _ if always(absolute, -1.0) => Some(format!("{a} + {b}")),
+        _ if always(absolute, 1.0) => Some(format!("{a} - {b}")),
+        _ => None,
+    }
+}

@@ -1,0 +1,244 @@
+//! The responses of a derived model at points of its motion, with their derivatives by the parameters.
+//!
+//! `y = (C R B + D) u` with `R = (jω - A)⁻¹`, and its derivative by a parameter is
+//! `C R (A' R B + B') u + (C' R B + D') u`, in which `C R` is the adjoint of the outputs.
+
+use num_complex::Complex64;
+use qcar_model::{Entry, Matrix};
+
+use super::forces::Forces;
+use super::seen::Seen;
+use crate::check::Checked;
+use crate::check::sample::{Kind, Point, Values};
+use crate::check::solve::solve;
+use crate::derive::linear::Linear;
+use crate::derive::motion::Motion;
+use crate::derive::response::sources;
+use crate::derive::vectors::Source;
+use crate::expr::{Graph, Symbol};
+use crate::hash::HashMap;
+use crate::model::{CoordinateKind, Quantity, Reference, Signal};
+
+/// Angular frequencies for numbers near 1.
+const PLAIN: [f64; 6] = [0.3, 0.7, 1.1, 1.9, 3.1, 5.3];
+/// Angular frequencies for declared values, rad/s.
+const DECLARED: [f64; 6] = [5.0, 11.0, 23.0, 47.0, 80.0, 160.0];
+
+/// Responses below this part of the largest are roundoff.
+const ROUNDOFF: f64 = 1e-12;
+
+/// A model with its equations, and the parameters of interest.
+pub struct Derived<'a> {
+    /// The model.
+    pub model: &'a Checked,
+    /// Where all expressions live.
+    pub graph: &'a Graph,
+    /// Its equations.
+    pub motion: &'a Motion,
+    /// Its matrices.
+    pub linear: &'a Linear,
+    /// What shows of laws that are not linear.
+    pub forces: Forces,
+    /// The places of the parameters, in order.
+    pub estimated: &'a [u16],
+}
+
+impl Derived<'_> {
+    /// Everything that can be seen at one parameter set: responses of outputs and channels to each input, and for laws that
+    /// are not linear the change of the force itself, in so many motions.
+    pub fn seen(&self, point: Point, motions: u64) -> Vec<Seen> {
+        let has_clock = self.model.parameters.iter().any(|parameter| parameter.clock);
+        let motions = if self.forces.bends || has_clock { motions } else { 1 };
+        let frequencies = if point.kind == Kind::Plain { PLAIN } else { DECLARED };
+        let mut seen = Vec::new();
+        for motion in 0..motions {
+            let point = point.moved(motion);
+            let known = HashMap::default().into();
+            let leaf = |symbol: Symbol| defined(&known, symbol).unwrap_or_else(|| point.leaf(symbol));
+            let values = Values::new(self.graph, &leaf);
+            for &(symbol, value) in &self.motion.definitions {
+                let value = values.of(value);
+                known.borrow_mut().insert(symbol, value);
+            }
+            let matrices = Matrices::of(self, &values);
+            for frequency in frequencies {
+                matrices.look(frequency, &mut seen);
+            }
+            seen.extend(self.forces.seen(self.graph, &point, self.estimated.len()));
+        }
+        seen
+    }
+}
+
+fn defined(known: &std::cell::RefCell<HashMap<Symbol, f64>>, symbol: Symbol) -> Option<f64> {
+    known.borrow().get(&symbol).copied()
+}
+
+/// The matrices at a point, nonzeros only.
+struct Matrices<'a> {
+    derived: &'a Derived<'a>,
+    entries: Vec<(Entry, f64)>,
+    /// Their derivatives, with the place of the parameter among the estimated ones.
+    changes: Vec<(Entry, usize, f64)>,
+}
+
+/// What one excitation does: the inputs, the states, the outputs.
+struct Excited {
+    inputs: Vec<Complex64>,
+    states: Vec<Complex64>,
+    outputs: Vec<Seen>,
+}
+
+impl<'a> Matrices<'a> {
+    fn of(derived: &'a Derived<'a>, values: &Values) -> Self {
+        let entries = derived.linear.matrices.iter();
+        let changes = derived
+            .linear
+            .sensitivities
+            .iter()
+            .filter_map(|&(entry, parameter, e)| {
+                let place = derived.estimated.binary_search(&parameter).ok()?;
+                Some((entry, place, values.of(e)))
+            });
+        Matrices {
+            derived,
+            entries: entries.map(|&(entry, e)| (entry, values.of(e))).collect(),
+            changes: changes.collect(),
+        }
+    }
+
+    /// Adds what is seen at a frequency.
+    fn look(&self, frequency: f64, seen: &mut Vec<Seen>) {
+        let model = self.derived.model;
+        for (source, excited) in self.excite(frequency) {
+            add_relative(excited.outputs.clone(), seen);
+            let signal = |signal| self.signal(signal, source, &excited, frequency);
+            let ratios = model.channels.iter().filter_map(|channel| {
+                let above = signal(&channel.numerator)?;
+                match &channel.denominator {
+                    Reference::Signal(below) => Some(above.over(&signal(below)?)),
+                    Reference::Force(place) => (source == Source::Force(*place)).then_some(above),
+                }
+            });
+            add_relative(ratios.collect(), seen);
+        }
+    }
+
+    /// The answers to a unit of each excitation.
+    fn excite(&self, frequency: f64) -> Vec<(Source, Excited)> {
+        let motion = self.derived.motion;
+        let inputs = |source| motion.inputs.iter().map(move |&input| share(source, input, frequency));
+        let sources: Vec<(Source, Vec<Complex64>)> = sources(self.derived.model)
+            .into_iter()
+            .map(|source| (source, inputs(source).collect()))
+            .collect();
+        let zeros = vec![Complex64::default(); motion.states.len()];
+        let mut resists = vec![zeros.clone(); motion.states.len()];
+        (0..motion.states.len()).for_each(|own| resists[own][own].im = frequency);
+        let mut adjoints = vec![zeros.clone(); motion.outputs.len()];
+        let mut pushed = vec![zeros; sources.len()];
+        for &(Entry { matrix, row, column }, value) in &self.entries {
+            let (row, column) = (usize::from(row), usize::from(column));
+            match matrix {
+                Matrix::A => resists[row][column] -= value,
+                Matrix::B => (pushed.iter_mut().zip(&sources))
+                    .for_each(|(pushed, (_, inputs))| pushed[row] += value * inputs[column]),
+                Matrix::C => adjoints[row][column] += value,
+                Matrix::D => {}
+            }
+        }
+        let adjoints = solve(transposed(&resists), adjoints);
+        let states = solve(resists, pushed);
+        let excited = |((source, inputs), states): ((Source, Vec<Complex64>), Vec<Complex64>)| {
+            let excited = Excited {
+                inputs,
+                states,
+                outputs: vec![],
+            };
+            let outputs = self.outputs(&excited, &adjoints);
+            (source, Excited { outputs, ..excited })
+        };
+        sources.into_iter().zip(states).map(excited).collect()
+    }
+
+    /// The outputs under one excitation, with their derivatives.
+    fn outputs(&self, excited: &Excited, adjoints: &[Vec<Complex64>]) -> Vec<Seen> {
+        let still = Seen {
+            value: Complex64::default(),
+            gradient: vec![Complex64::default(); self.derived.estimated.len()],
+        };
+        let moves = |entry: &Entry| match entry.matrix {
+            Matrix::A | Matrix::C => excited.states[usize::from(entry.column)],
+            Matrix::B | Matrix::D => excited.inputs[usize::from(entry.column)],
+        };
+        let mut outputs = vec![still; adjoints.len()];
+        for (entry, value) in &self.entries {
+            if let Matrix::C | Matrix::D = entry.matrix {
+                outputs[usize::from(entry.row)].value += value * moves(entry);
+            }
+        }
+        for (entry, place, change) in &self.changes {
+            let (row, change) = (usize::from(entry.row), change * moves(entry));
+            match entry.matrix {
+                Matrix::C | Matrix::D => outputs[row].gradient[*place] += change,
+                Matrix::A | Matrix::B => (outputs.iter_mut().zip(adjoints))
+                    .for_each(|(output, adjoint)| output.gradient[*place] += adjoint[row] * change),
+            }
+        }
+        outputs
+    }
+
+    /// A signal of a channel: a prescribed motion, or what follows from an output.
+    fn signal(&self, signal: &Signal, source: Source, excited: &Excited, frequency: f64) -> Option<Seen> {
+        let model = self.derived.model;
+        if let Signal::Motion(c, quantity) = *signal
+            && let CoordinateKind::Road | CoordinateKind::Motion = model.coordinates[usize::from(c.0)].kind
+        {
+            return Some(Seen {
+                value: share(source, Symbol::of_motion(c, quantity), frequency),
+                gradient: vec![Complex64::default(); self.derived.estimated.len()],
+            });
+        }
+        let mut outputs = model.outputs.iter().zip(&excited.outputs);
+        outputs.find_map(|(output, seen)| {
+            let orders = orders(&output.signal, signal)?;
+            Some(seen.scaled(Complex64::new(0.0, frequency).powi(orders)))
+        })
+    }
+}
+
+/// What an input is under a unit of an excitation.
+fn share(source: Source, input: Symbol, frequency: f64) -> Complex64 {
+    match (source, input) {
+        (Source::Motion(own), Symbol::Position(c)) if own == c => 1.0.into(),
+        (Source::Motion(own), Symbol::Velocity(c)) if own == c => Complex64::new(0.0, frequency),
+        (Source::Motion(own), Symbol::Acceleration(c)) if own == c => (-frequency * frequency).into(),
+        (Source::Force(own), Symbol::Force(place)) if own == place => 1.0.into(),
+        _ => Complex64::default(),
+    }
+}
+
+/// How many time derivatives lead from a signal to another of the same point.
+fn orders(from: &Signal, to: &Signal) -> Option<i32> {
+    let order = |quantity: &Quantity| *quantity as i32;
+    match (from, to) {
+        (Signal::Motion(a, from), Signal::Motion(b, to)) if a == b => Some(order(to) - order(from)),
+        (Signal::Point(a, from), Signal::Point(b, to)) if a == b => Some(order(to) - order(from)),
+        _ => (from == to).then_some(0),
+    }
+}
+
+fn transposed(matrix: &[Vec<Complex64>]) -> Vec<Vec<Complex64>> {
+    let column = |place: usize| matrix.iter().map(|row| row[place]).collect();
+    (0..matrix.len()).map(column).collect()
+}
+
+/// Responses that are not roundoff against the largest, which would say nothing.
+fn add_relative(responses: Vec<Seen>, seen: &mut Vec<Seen>) {
+    let finite = |response: &Seen| response.value.norm().is_finite();
+    let responses: Vec<Seen> = responses.into_iter().filter(finite).collect();
+    let largest = responses.iter().map(|response| response.value.norm());
+    let largest = largest.fold(0.0_f64, f64::max);
+    let heard = |response: &Seen| response.value.norm() > ROUNDOFF * largest;
+    seen.extend(responses.into_iter().filter(heard));
+}

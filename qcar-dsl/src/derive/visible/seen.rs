@@ -1,0 +1,32 @@
+//! What can be seen of a model, and how it changes with parameters.
+
+use num_complex::Complex64;
+
+/// How something that can be seen changes with the estimated parameters.
+#[derive(Clone)]
+pub struct Seen {
+    /// What it is.
+    pub value: Complex64,
+    /// Its derivatives.
+    pub gradient: Vec<Complex64>,
+}
+
+impl Seen {
+    /// Times a number.
+    pub fn scaled(&self, factor: Complex64) -> Seen {
+        Seen {
+            value: self.value * factor,
+            gradient: self.gradient.iter().map(|change| change * factor).collect(),
+        }
+    }
+
+    /// Over another.
+    pub fn over(&self, other: &Seen) -> Seen {
+        let value = self.value / other.value;
+        let changes = self.gradient.iter().zip(&other.gradient);
+        Seen {
+            value,
+            gradient: changes.map(|(a, b)| (a - value * b) / other.value).collect(),
+        }
+    }
+}

@@ -1,0 +1,200 @@
+//! Expressions with no more brackets than they need.
+
+use std::fmt::{self, Display, Formatter};
+
+use crate::front::syntax::{
+    Comparison, Expression, ExpressionKind, List, Logic, Number, Operator, OptionTest, Order, UnitFactor, UnitText,
+};
+use crate::units;
+
+/// How tightly an expression holds together.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Rank {
+    Sum,
+    Product,
+    Sign,
+    Power,
+    Atom,
+}
+
+fn rank(expression: &Expression) -> Rank {
+    match &expression.kind {
+        ExpressionKind::Binary(Operator::Add | Operator::Subtract, ..) => Rank::Sum,
+        ExpressionKind::Binary(Operator::Multiply | Operator::Divide, ..) => Rank::Product,
+        ExpressionKind::Negative(_) => Rank::Sign,
+        ExpressionKind::Number(number) if number.digits.starts_with('-') => Rank::Sign,
+        // Its unit would take the exponent.
+        ExpressionKind::Number(number) if !number.unit.factors.is_empty() => Rank::Power,
+        ExpressionKind::Binary(Operator::Power, ..) => Rank::Power,
+        ExpressionKind::Number(_) | ExpressionKind::Name(_) | ExpressionKind::Call(..) => Rank::Atom,
+        ExpressionKind::Table(_) | ExpressionKind::If(..) => Rank::Atom,
+    }
+}
+
+fn at_least(needed: Rank, expression: &Expression) -> String {
+    if rank(expression) < needed {
+        format!("({expression})")
+    } else {
+        expression.to_string()
+    }
+}
+
+impl Display for Expression {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match &self.kind {
+            ExpressionKind::Number(number) => write!(f, "{number}"),
+            ExpressionKind::Name(name) => write!(f, "{name}"),
+            ExpressionKind::Negative(operand) => write!(f, "-{}", at_least(Rank::Sign, operand)),
+            ExpressionKind::Binary(operator, left, right) => f.write_str(&binary(*operator, left, right)),
+            ExpressionKind::Call(name, arguments) => {
+                let arguments: Vec<String> = arguments.iter().map(ToString::to_string).collect();
+                write!(f, "{}({})", name.text, arguments.join(", "))
+            }
+            ExpressionKind::Table(table) => write!(f, "table({}, {}, {})", table.x, table.knots, table.values),
+            ExpressionKind::If(condition, then, otherwise) => match otherwise.kind {
+                ExpressionKind::If(..) => write!(f, "if {condition} {{ {then} }} else {otherwise}"),
+                _ => write!(f, "if {condition} {{ {then} }} else {{ {otherwise} }}"),
+            },
+        }
+    }
+}
+
+impl Display for List {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let entries: Vec<String> = self.entries.iter().map(ToString::to_string).collect();
+        write!(f, "[{}]", entries.join(", "))
+    }
+}
+
+fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
+    match operator {
+        Operator::Add => format!("{} + {}", at_least(Rank::Sum, left), at_least(Rank::Product, right)),
+        Operator::Subtract => format!("{} - {}", at_least(Rank::Sum, left), at_least(Rank::Product, right)),
+        Operator::Multiply => format!("{}*{}", at_least(Rank::Product, left), at_least(Rank::Sign, right)),
+        Operator::Divide => quotient(left, right),
+        Operator::Power => format!("{}^{}", at_least(Rank::Atom, left), at_least(Rank::Sign, right)),
+    }
+}
+
+/// A name behind `/` would be read as a unit where a number with a unit stands before it.
+fn quotient(left: &Expression, right: &Expression) -> String {
+    let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
+    if ends_in_unit(left) && begins_like_unit(right) {
+        format!("{above}/({below})")
+    } else {
+        format!("{above}/{below}")
+    }
+}
+
+fn ends_in_unit(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Number(number) => !number.unit.factors.is_empty(),
+        ExpressionKind::Negative(last) | ExpressionKind::Binary(_, _, last) => ends_in_unit(last),
+        _ => false,
+    }
+}
+
+fn begins_like_unit(expression: &Expression) -> bool {
+    match &expression.kind {
+        ExpressionKind::Name(name) => units::symbol(&name.names[0].text).is_some(),
+        ExpressionKind::Binary(Operator::Power, base, _) => begins_like_unit(base),
+        _ => false,
+    }
+}
+
+impl Display for Comparison {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let order = match self.order {
+            Order::Less => "<",
+            Order::LessEqual => "<=",
+            Order::Greater => ">",
+            Order::GreaterEqual => ">=",
+        };
+        write!(f, "{} {order} {}", self.left, self.right)
+    }
+}
+
+impl Display for OptionTest {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let order = if self.equal { "==" } else { "!=" };
+        write!(f, "{} {order} {}", self.option.text, self.value.text)
+    }
+}
+
+impl<Test: Display> Display for Logic<Test> {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let bracketed = |part: &Logic<Test>, needs: bool| if needs { format!("({part})") } else { part.to_string() };
+        let is_or = |part: &Logic<Test>| matches!(part, Logic::Or(..));
+        let is_and = |part: &Logic<Test>| matches!(part, Logic::And(..));
+        match self {
+            Logic::Test(test) => write!(f, "{test}"),
+            Logic::Not(part) => write!(f, "!({part})"),
+            Logic::And(a, b) => {
+                write!(
+                    f,
+                    "{} && {}",
+                    bracketed(a, is_or(a)),
+                    bracketed(b, is_or(b) || is_and(b))
+                )
+            }
+            Logic::Or(a, b) => write!(f, "{a} || {}", bracketed(b, is_or(b))),
+        }
+    }
+}
+
+impl Display for Number {
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        match self.unit.factors.is_empty() {
+            true => write!(f, "{}", self.digits),
+            false => write!(f, "{} {}", self.digits, self.unit),
+        }
+    }
+}
+
+impl UnitText {
+    /// What people call the coherent unit that is written here: `Hz` where it is written so, since a cycle is no radian.
+    pub fn name(&self, unit: units::Unit) -> String {
+        let written = self.to_string();
+        if written == "Hz" { written } else { unit.to_string() }
+    }
+}
+
+impl Display for UnitText {
+    /// Positive exponents first, the rest behind one `/`.
+    fn fmt(&self, f: &mut Formatter) -> fmt::Result {
+        let raised = |above: bool| -> Vec<String> {
+            self.factors
+                .iter()
+                .filter(|factor| (factor.numerator > 0) == above)
+                .map(raised)
+                .collect()
+        };
+        let (above, below) = (raised(true), raised(false));
+        match (above.as_slice(), below.as_slice()) {
+            ([], []) => f.write_str("1"),
+            ([], _) => f.write_str(&spelled_out(&self.factors)),
+            (_, []) => f.write_str(&above.join(" ")),
+            (_, [one]) => write!(f, "{}/{one}", above.join(" ")),
+            _ => write!(f, "{}/({})", above.join(" "), below.join(" ")),
+        }
+    }
+}
+
+/// Without a numerator, behind a number: `5 s^-1`.
+fn spelled_out(factors: &[UnitFactor]) -> String {
+    let spelled = |factor: &UnitFactor| match factor.denominator {
+        1 => format!("{}^{}", factor.symbol.text, factor.numerator),
+        below => format!("{}^({}/{below})", factor.symbol.text, factor.numerator),
+    };
+    factors.iter().map(spelled).collect::<Vec<_>>().join(" ")
+}
+
+/// A symbol to the size of its exponent.
+fn raised(factor: &UnitFactor) -> String {
+    let symbol = &factor.symbol.text;
+    match (factor.numerator.abs(), factor.denominator) {
+        (1, 1) => symbol.clone(),
+        (above, 1) => format!("{symbol}^{above}"),
+        (above, below) => format!("{symbol}^({above}/{below})"),
+    }
+}

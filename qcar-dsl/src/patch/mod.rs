@@ -1,0 +1,363 @@
+//! Effects: patches of models, read from files, and made at the places where they apply.
+//!
+//! A patch is a change of the syntax tree, so that the new model is a file that reads, and compiles, like any other.
+//! Everything that an effect says about the model is bound to the model as it was before: `l.damper` is the coefficient
+//! that stood there, and stays what it was when the term is replaced.
+
+// Trees with other names in them.
+mod rewrite;
+// The model as a tree.
+mod base;
+// What expressions are worth in it.
+mod ask;
+// What all its parts do.
+mod watch;
+// How far and how hard a place is moved.
+mod scale;
+// What a link connects.
+mod stretch;
+// What stands in its law.
+mod terms;
+// What the parts of a model do.
+mod roles;
+// Where an effect may apply.
+mod place;
+// What its names mean there.
+mod bind;
+// Its changes.
+mod apply;
+mod tidy;
+// Its curves.
+mod curve;
+// Its numbers.
+mod start;
+// What it must say.
+mod rules;
+// Two models side by side.
+pub mod difference;
+
+pub use ask::Values;
+pub(crate) use base::Base;
+use bind::Bindings;
+pub use curve::{Curve, Ordinate};
+use place::Place;
+pub use qcar_model::ParameterRole;
+use roles::Roles;
+pub use scale::Scale;
+pub use watch::watched;
+
+use crate::check::Checked;
+use crate::check::check_text;
+use crate::derive::visible;
+use crate::diagnostic::{Diagnostic, Report, Severity, effects};
+use crate::front::syntax::{Effect, File, Item, Name};
+use crate::source::Source;
+
+/// Why something cannot be made.
+pub(crate) type Refused = Vec<Diagnostic>;
+
+/// Something, or why it cannot be made.
+pub(crate) type Made<Thing> = Result<Thing, Refused>;
+
+fn refused(mistake: Diagnostic) -> Refused {
+    vec![mistake]
+}
+
+/// An effect that was read from a file. Of several forms, the first is its usual one: that is what is applied.
+#[derive(Clone, Debug)]
+pub struct Patch {
+    effect: Effect,
+    source: Source,
+}
+
+/// A model with an effect in it.
+#[derive(Clone, Debug)]
+pub struct Patched {
+    /// The effect.
+    pub effect: String,
+    /// The label of its place.
+    pub place: String,
+    /// Which of its forms; `None` where it has only one.
+    pub form: Option<String>,
+    /// The model, checked; its name says the effect, `axle_c_with_coulomb_friction`.
+    pub model: Checked,
+    /// The parameters of the effect, in the order of its file.
+    pub parameters: Vec<NewParameter>,
+    /// What the effect does to measured signals; the equations know nothing of it.
+    pub signals: Vec<SignalChange>,
+    comments: Vec<String>,
+}
+
+/// A parameter of an effect in a patched model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NewParameter {
+    /// Its name in the model.
+    pub name: String,
+    /// Its name in the effect: another one where the model had used that name.
+    pub effect_name: String,
+    /// What people call its coherent SI unit.
+    pub unit: String,
+    /// Where a search begins, in SI.
+    pub start: f64,
+    /// What is plausible, in SI, lower below upper.
+    pub range: (f64, f64),
+    /// Given, not to be estimated.
+    pub known: bool,
+    /// The sentence.
+    pub doc: String,
+    /// What it is to its effect.
+    pub role: ParameterRole,
+    /// False for a shared one that the model had already.
+    pub is_new: bool,
+}
+
+/// What is wrong with a measured signal.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SignalChange {
+    /// The location of the sensor.
+    pub location: String,
+    /// Its axis.
+    pub axis: String,
+    /// What is wrong.
+    pub kind: Signal,
+    /// The parameter that says how much.
+    pub parameter: String,
+}
+
+/// What may be wrong with a measured signal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Signal {
+    /// It comes late, by a parameter in s.
+    Delay,
+    /// It is too large, by a factor.
+    Gain,
+}
+
+impl Patch {
+    /// Reads the file of an effect.
+    ///
+    /// # Errors
+    /// The report of every mistake that shows without a model.
+    pub fn read(source: Source) -> Result<Patch, Report> {
+        rules::effect_of(&source)
+            .map(|effect| Patch {
+                effect,
+                source: source.clone(),
+            })
+            .map_err(|diagnostics| Report {
+                sources: vec![source],
+                diagnostics,
+            })
+    }
+
+    /// The effect as its file says it.
+    pub fn effect(&self) -> &Effect {
+        &self.effect
+    }
+
+    /// The names of its forms, the usual one first; none where there is only one.
+    pub fn forms(&self) -> impl Iterator<Item = &str> {
+        self.effect.forms.iter().map(|form| form.name.text.as_str())
+    }
+
+    /// The effect in one of its forms alone; `None` where it has no form of this name.
+    pub fn in_form(&self, name: &str) -> Option<Patch> {
+        let form = self.effect.forms.iter().find(|form| form.name.text == name)?;
+        let mut patch = self.clone();
+        patch.effect.forms = vec![form.clone()];
+        Some(patch)
+    }
+
+    /// The curves of its usual form whose points are numbers or parameters, in the order of its text.
+    pub fn curves(&self) -> Vec<Curve> {
+        curve::curves(&self.effect)
+    }
+
+    /// The effect as a file in which these parameters start at numbers, whatever model it is put into.
+    pub fn text_at(&self, parameters: &[NewParameter]) -> String {
+        let mut effect = self.effect.clone();
+        start::begin(&mut effect, parameters);
+        let items = vec![Item::Effect(Box::new(effect))];
+        File { items }.to_string()
+    }
+
+    /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.
+    pub fn places(&self, model: &Checked) -> Vec<String> {
+        let patched = self.candidates(model, &|_| None).into_iter();
+        let mut places: Vec<String> = patched.map(|patched| patched.place).collect();
+        places.dedup();
+        places
+    }
+
+    /// The model with the effect at each place where it applies, in the order of the model's text, and in each form:
+    /// where the pattern fits, the model has all that the effect asks for, and the compiler accepts what comes out.
+    pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
+        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
+        let forms = if forms.is_empty() {
+            std::slice::from_ref(self)
+        } else {
+            &forms
+        };
+        let base = Base::of(model);
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let at = |place: &Place| -> Vec<Patched> {
+            let made = forms.iter().map(|form| form.made(model, &base, &roles, place, values));
+            made.filter_map(Result::ok).collect()
+        };
+        places.iter().flat_map(at).collect()
+    }
+
+    /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
+    /// at `values`, where these know none at the defaults, and else in the middle of the ranges.
+    ///
+    /// # Errors
+    /// A place where the effect does not apply, names that the model has already, every rule of the compiler that the
+    /// patched model breaks, and parameters that no output of it can tell apart, since effects are there to be found.
+    pub fn apply(&self, model: &Checked, place: &str, values: Values) -> Result<Patched, Report> {
+        let base = Base::of(model);
+        let roles = Roles::of(&base, values);
+        let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let Some(place) = places.iter().find(|own| own.label == place) else {
+            let labels: Vec<&str> = places.iter().map(|place| place.label.as_str()).collect();
+            let (name, model) = (&self.effect.name, &base.axle.name.text);
+            let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
+            return Err(self.report(refused(mistake)));
+        };
+        self.made(model, &base, &roles, place, values)
+    }
+
+    fn report(&self, diagnostics: Refused) -> Report {
+        Report {
+            sources: vec![self.source.clone()],
+            diagnostics,
+        }
+    }
+
+    fn made(
+        &self,
+        before: &Checked,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Result<Patched, Report> {
+        let made = self.tree(base, roles, place, values);
+        let (tree, parameters, signals) = made.map_err(|refused| self.report(refused))?;
+        let text = Source {
+            name: format!("{}.axle", tree.axle.name.text),
+            text: tree.file().to_string(),
+        };
+        let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
+        let model = visible::look(model);
+        let seen_before = visible::look(before.clone());
+        let seen_before = seen_before.unseen();
+        if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
+            let mut report = model.warnings().clone();
+            report
+                .diagnostics
+                .iter_mut()
+                .for_each(|found| found.severity = Severity::Error);
+            return Err(report);
+        }
+        Ok(Patched {
+            effect: self.effect.name.text.clone(),
+            place: place.label.clone(),
+            form: self.forms().next().map(str::to_string),
+            model,
+            parameters,
+            signals,
+            comments: self.comments(&place.label),
+        })
+    }
+
+    fn tree(
+        &self,
+        base: &Base,
+        roles: &Roles,
+        place: &Place,
+        values: Values,
+    ) -> Made<(Base, Vec<NewParameter>, Vec<SignalChange>)> {
+        self.form_fits(base, place)?;
+        let mut patching = apply::apply(Bindings::new(base, roles, &self.effect, place))?;
+        let mut asked = Vec::new();
+        for (declared, name) in &patching.parameters {
+            let expressions = start::expressions(declared).map(|e| patching.meaning(e));
+            asked.push(start::Asked {
+                declared,
+                name: name.clone(),
+                expressions: expressions.collect::<Made<_>>()?,
+            });
+        }
+        let (parameters, declared): (Vec<NewParameter>, Vec<_>) =
+            start::evaluate(base, &asked, values)?.into_iter().unzip();
+        patching.declare_parameters(declared);
+        let mut tree = patching.tree;
+        tidy::tidy(&mut tree);
+        self.rename(&mut tree, &place.label);
+        // What this model has no use for.
+        let used = |own: &NewParameter| {
+            let sensed = patching.signals.iter().any(|signal| signal.parameter == own.name);
+            sensed || tree.global(&own.name).is_some()
+        };
+        let parameters = parameters.into_iter().filter(used).collect();
+        Ok((tree, parameters, patching.signals))
+    }
+
+    /// What its form asks of the place beyond what all forms do.
+    fn form_fits(&self, base: &Base, place: &Place) -> Made<()> {
+        let (Some(form), Some(link)) = (self.effect.forms.first(), base.link(&place.direction, &place.name)) else {
+            return Ok(());
+        };
+        match form
+            .terms
+            .iter()
+            .find(|term| !terms::has_terms(&link.body, std::slice::from_ref(term)))
+        {
+            Some(term) => Err(refused(effects::place_lacks(term.span, &term.text, &place.name))),
+            None => Ok(()),
+        }
+    }
+
+    /// Says in name and sentence of a model what has been added.
+    fn rename(&self, tree: &mut Base, label: &str) {
+        let (effect, axle) = (&self.effect.name.text, &mut tree.axle);
+        let joint = if axle.name.text.contains("_with_") {
+            "and"
+        } else {
+            "with"
+        };
+        axle.name = Name::new(format!("{}_{joint}_{effect}", axle.name.text));
+        let doc = if axle.doc.is_empty() {
+            String::new()
+        } else {
+            format!("{}, ", axle.doc)
+        };
+        let form = self
+            .forms()
+            .next()
+            .map_or_else(String::new, |form| format!(", {}", form.replace('_', " ")));
+        axle.doc = format!("{doc}{joint} {effect} at {label}{form}");
+    }
+
+    fn comments(&self, label: &str) -> Vec<String> {
+        let effect = &self.effect;
+        let form = effect.forms.first().map(|form| format!("{}.", form.doc));
+        let what = format!("{} at {label}: {}.", effect.name.text, effect.doc);
+        [what]
+            .into_iter()
+            .chain(form)
+            .chain([format!("Source: {}.", effect.source)])
+            .collect()
+    }
+}
+
+impl Patched {
+    /// The model file, with comments that say what was added and what speaks for it; one comment line for each line of
+    /// `evidence`.
+    pub fn text(&self, evidence: &str) -> String {
+        let comments = self.comments.iter().map(String::as_str).chain(evidence.lines());
+        let comments: String = comments.map(|line| format!("// {line}\n")).collect();
+        format!("{comments}{}", self.model.text())
+    }
+}

@@ -1,0 +1,181 @@
+//! Programs interpreted at run time: the operations of the generated code, in an order of their own.
+
+// What it reads.
+mod given;
+// Which operation comes after which.
+mod order;
+// One program.
+mod code;
+
+use qcar_model::{About, Contact, Model, Points, ResponseMut};
+
+use crate::program::schedule::Compiled;
+use code::Code;
+use given::{Given, Part};
+
+/// A compiled model, ready to be evaluated.
+///
+/// Slices have the lengths that [`About`] states; a shorter one panics.
+#[derive(Clone, Debug)]
+pub struct Evaluator {
+    about: About,
+    prepare: Code,
+    derivative: Code,
+    outputs: Code,
+    matrices: Code,
+    sensitivities: Code,
+    parameter_jacobian: Code,
+    responses: Vec<ResponseCode>,
+    rolling: Option<RollingCode>,
+}
+
+#[derive(Clone, Debug)]
+struct ResponseCode {
+    value: Code,
+    with_jacobian: Code,
+}
+
+#[derive(Clone, Debug)]
+struct RollingCode {
+    contact_force: Code,
+    derivative: Code,
+    outputs: Code,
+}
+
+/// At several points.
+fn sweep(code: &Code, given: &Given, count: usize, into: &mut [f64]) {
+    code.sweep(given, &[Part::States, Part::Inputs], count, &mut [into]);
+}
+
+/// In the order of the part that programs read.
+fn entries(contact: &Contact) -> [f64; 4] {
+    [contact.s, contact.v, contact.force[0], contact.force[1]]
+}
+
+impl Evaluator {
+    /// Binds the programs of a model to its vectors.
+    pub fn new(compiled: &Compiled) -> Self {
+        let programs = &compiled.programs;
+        let code = |program| Code::new(&compiled.vectors, program);
+        let responses = programs.responses.iter();
+        Evaluator {
+            prepare: code(&programs.prepare),
+            derivative: code(&programs.derivative),
+            outputs: code(&programs.outputs),
+            matrices: code(&programs.matrices),
+            sensitivities: code(&programs.sensitivities),
+            parameter_jacobian: code(&programs.parameter_jacobian),
+            responses: responses
+                .map(|response| ResponseCode {
+                    value: code(&response.value),
+                    with_jacobian: code(&response.with_jacobian),
+                })
+                .collect(),
+            rolling: programs.rolling.as_ref().map(|rolling| RollingCode {
+                contact_force: code(&rolling.contact_force),
+                derivative: code(&rolling.derivative),
+                outputs: code(&rolling.outputs),
+            }),
+            about: compiled.about.clone(),
+        }
+    }
+}
+
+impl Model for Evaluator {
+    fn about(&self) -> &About {
+        &self.about
+    }
+
+    fn prepare(&self, p: &[f64], constants: &mut [f64]) {
+        self.prepare.run(&Given::default().with(Part::Parameters, p), constants);
+    }
+
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {
+        self.derivative.run(&prepared(constants, x, u), dx);
+    }
+
+    fn derivative_at(&self, constants: &[f64], at: &Points, dx: &mut [f64]) {
+        sweep(&self.derivative, &prepared(constants, at.x, at.u), at.count, dx);
+    }
+
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]) {
+        self.outputs.run(&prepared(constants, x, u), y);
+    }
+
+    fn outputs_at(&self, constants: &[f64], at: &Points, y: &mut [f64]) {
+        sweep(&self.outputs, &prepared(constants, at.x, at.u), at.count, y);
+    }
+
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        self.matrices.run(&unprepared(p, x, u), nonzeros);
+    }
+
+    fn matrices_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        sweep(&self.matrices, &unprepared(p, at.x, at.u), at.count, nonzeros);
+    }
+
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        self.sensitivities.run(&unprepared(p, x, u), nonzeros);
+    }
+
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        self.parameter_jacobian.run(&unprepared(p, x, u), nonzeros);
+    }
+
+    fn parameter_jacobian_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        sweep(&self.parameter_jacobian, &unprepared(p, at.x, at.u), at.count, nonzeros);
+    }
+
+    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>) {
+        let Some(response) = self.responses.get(excitation) else {
+            return;
+        };
+        let given = Given::default()
+            .with(Part::Constants, constants)
+            .with(Part::Frequency, omega);
+        let sweep = |code: &Code, into: &mut [&mut [f64]]| code.sweep(&given, &[Part::Frequency], omega.len(), into);
+        let ResponseMut { re, im, jacobian } = into;
+        match jacobian {
+            None => sweep(&response.value, &mut [re, im]),
+            Some((d_re, d_im)) => sweep(&response.with_jacobian, &mut [re, im, d_re, d_im]),
+        }
+    }
+
+    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
+        let mut force = [0.0];
+        if let Some(rolling) = &self.rolling {
+            let contact = [s, v];
+            let given = prepared(constants, x, &[]).with(Part::Contact, &contact);
+            rolling.contact_force.run(&given, &mut force);
+        }
+        force[0]
+    }
+
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
+        let rolling = self.rolling.as_ref().map(|rolling| &rolling.derivative);
+        let contact = entries(contact);
+        let given = prepared(constants, x, u).with(Part::Contact, &contact);
+        rolling.unwrap_or(&self.derivative).run(&given, dx);
+    }
+
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
+        let rolling = self.rolling.as_ref().map(|rolling| &rolling.outputs);
+        let contact = entries(contact);
+        let given = prepared(constants, x, u).with(Part::Contact, &contact);
+        rolling.unwrap_or(&self.outputs).run(&given, y);
+    }
+}
+
+/// What a program reads that sees the parameters through what was prepared of them.
+fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    moving(x, u).with(Part::Constants, constants)
+}
+
+/// What a program reads that sees the parameters themselves.
+fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    moving(x, u).with(Part::Parameters, p)
+}
+
+fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    Given::default().with(Part::States, x).with(Part::Inputs, u)
+}

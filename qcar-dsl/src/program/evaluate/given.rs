@@ -1,0 +1,104 @@
+//! What the leaves of a program are read from.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use crate::derive::vectors::Vectors;
+use crate::expr::Symbol;
+use crate::program::{Op, Program};
+
+/// A part of what is given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Part {
+    Parameters,
+    Constants,
+    States,
+    Inputs,
+    /// Stretch, rate and forces of a rolling tyre.
+    Contact,
+    Frequency,
+}
+
+/// What the leaves of a program are read from: the entries of each part, none unless they are given.
+#[derive(Clone, Copy, Default)]
+pub struct Given<'a>([&'a [f64]; 6]);
+
+impl<'a> Given<'a> {
+    /// The same with a part.
+    pub fn with(mut self, part: Part, entries: &'a [f64]) -> Self {
+        self.0[part as usize] = entries;
+        self
+    }
+
+    /// The entries of a part.
+    pub fn part(&self, part: Part) -> &'a [f64] {
+        self.0[part as usize]
+    }
+}
+
+/// The entries of a part that a program reads, in order; they stand together in the registers, from `first`.
+#[derive(Clone, Debug)]
+pub struct Read {
+    pub part: Part,
+    pub entries: Vec<usize>,
+    pub first: usize,
+}
+
+impl Read {
+    /// The registers that it fills.
+    pub fn registers(&self) -> Range<usize> {
+        self.first..self.first + self.entries.len()
+    }
+
+    /// The register of an entry, if it is among these.
+    fn register(&self, (part, entry): (Part, usize)) -> Option<usize> {
+        let place = self.entries.binary_search(&entry).ok()?;
+        (self.part == part).then_some(self.first + place)
+    }
+}
+
+/// What a program reads, in registers from the first, part by part.
+pub fn reads(vectors: &Vectors, program: &Program) -> Vec<Read> {
+    let leaves = program.ops.iter().filter_map(|op| place(vectors, op));
+    let leaves: Vec<(Part, usize)> = leaves.collect::<BTreeSet<_>>().into_iter().collect();
+    let mut first = 0;
+    let parts = leaves.chunk_by(|one, next| one.0 == next.0).map(|leaves| {
+        first += leaves.len();
+        Read {
+            part: leaves[0].0,
+            entries: leaves.iter().map(|leaf| leaf.1).collect(),
+            first: first - leaves.len(),
+        }
+    });
+    parts.collect()
+}
+
+/// The register of a leaf that is given; `None` of a number and of an operation.
+pub fn register(vectors: &Vectors, reads: &[Read], op: &Op) -> Option<usize> {
+    let place = place(vectors, op)?;
+    reads.iter().find_map(|read| read.register(place))
+}
+
+/// The part and place of a leaf in what is given.
+fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
+    match *op {
+        Op::Prepared(place) => Some((Part::Constants, place as usize)),
+        Op::Input(symbol) => place_of(vectors, symbol),
+        _ => None,
+    }
+}
+
+/// The part and place of a symbol in what is given.
+fn place_of(vectors: &Vectors, symbol: Symbol) -> Option<(Part, usize)> {
+    match symbol {
+        Symbol::Frequency => Some((Part::Frequency, 0)),
+        Symbol::Parameter(p) => Some((Part::Parameters, p.into())),
+        Symbol::Stretch(_) => Some((Part::Contact, 0)),
+        Symbol::Rate(_) => Some((Part::Contact, 1)),
+        Symbol::ContactForce(axis) => Some((Part::Contact, 2 + usize::from(axis))),
+        _ => {
+            let state = vectors.state(symbol).map(|place| (Part::States, place));
+            state.or_else(|| Some((Part::Inputs, vectors.input(symbol)?)))
+        }
+    }
+}

@@ -1,0 +1,77 @@
+//! Where a model is evaluated, and where its results go.
+
+/// What a tyre that rolls over a profile gives to its model.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contact {
+    /// Equivalent stretch, m: minus the deflection on a flat road that would have the same contact.
+    pub s: f64,
+    /// Its rate, m/s.
+    pub v: f64,
+    /// The force on the wheel along [`crate::ContactAbout::axes`], N.
+    pub force: [f64; 2],
+}
+
+/// How many parameter sets, or lines of a frequency response, are computed together.
+pub const LANES: usize = 8;
+
+/// One value of each of several parameter sets.
+pub type Lanes = [f64; LANES];
+
+/// Lets `work` find from the values of each set what stands there in the rows `into`.
+pub(crate) fn one_by_one(
+    from: [&[Lanes]; 3],
+    into: &mut [Lanes],
+    mut work: impl FnMut(&[f64], &[f64], &[f64], &mut [f64]),
+) {
+    let mut of_set = from.map(|rows| vec![0.0; rows.len()]);
+    let mut found = vec![0.0; into.len()];
+    for set in 0..LANES {
+        for (values, rows) in of_set.iter_mut().zip(from) {
+            values.iter_mut().zip(rows).for_each(|(value, row)| *value = row[set]);
+        }
+        let [a, b, c] = &of_set;
+        work(a, b, c, &mut found);
+        into.iter_mut().zip(&found).for_each(|(row, value)| row[set] = *value);
+    }
+}
+
+/// States and inputs at several points: structure of arrays, so that a model may work on many points at once.
+#[derive(Clone, Copy, Debug)]
+pub struct Points<'a> {
+    /// How many.
+    pub count: usize,
+    /// A row of `count` points for each state.
+    pub x: &'a [f64],
+    /// A row of `count` points for each input.
+    pub u: &'a [f64],
+}
+
+impl Points<'_> {
+    /// Lets `work` find from the states and inputs of each point what stands there in the rows `into`.
+    pub(crate) fn one_by_one(&self, into: &mut [f64], mut work: impl FnMut(&[f64], &[f64], &mut [f64])) {
+        let room = |rows: &[f64]| vec![0.0; rows.len() / self.count.max(1)];
+        let (mut x, mut u, mut found) = (room(self.x), room(self.u), room(into));
+        let take = |rows: &[f64], point: usize, column: &mut [f64]| {
+            let rows = rows.iter().skip(point).step_by(self.count);
+            column.iter_mut().zip(rows).for_each(|(value, row)| *value = *row);
+        };
+        for point in 0..self.count {
+            take(self.x, point, &mut x);
+            take(self.u, point, &mut u);
+            work(&x, &u, &mut found);
+            for (row, value) in into.chunks_exact_mut(self.count).zip(&found) {
+                row[point] = *value;
+            }
+        }
+    }
+}
+
+/// Where a frequency response is written: structure of arrays, a row of `omega.len()` lines for each entry.
+pub struct ResponseMut<'a> {
+    /// Real parts, row after row, in the order of [`crate::ResponseLayout::outputs`].
+    pub re: &'a mut [f64],
+    /// Imaginary parts.
+    pub im: &'a mut [f64],
+    /// Real and imaginary parts of the parameter Jacobian, in the order of [`crate::ResponseLayout::jacobian`], where wanted.
+    pub jacobian: Option<(&'a mut [f64], &'a mut [f64])>,
+}

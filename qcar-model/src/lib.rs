@@ -1,0 +1,122 @@
+//! The seam between compiler and workbench: what a compiled axle model offers.
+//!
+//! Generated types and the run-time evaluator implement [`Model`]; the workbench knows nothing else of an axle.
+//! All quantities are SI. Slices have the lengths that [`About`] states; a shorter one is a caller's bug and panics
+//! once, at the top of the call, so that no bounds check is left in the straight-line code below it.
+
+// What there is to know of a model.
+mod about;
+// What it is evaluated at.
+mod evaluation;
+// What an effect's parameters are to it.
+mod role;
+
+pub use about::{
+    About, Channel, Clock, ContactAbout, ContactAxis, Default, Entry, Excitation, Input, InputKind, Link, Mass, Matrix,
+    Output, Parameter, Quantity, ResponseLayout, Signal, SignalKind, State, StateKind,
+};
+use evaluation::one_by_one;
+pub use evaluation::{Contact, LANES, Lanes, Points, ResponseMut};
+pub use role::ParameterRole;
+
+/// A compiled axle model.
+pub trait Model: Send + Sync {
+    /// Names, units, sizes and sparsity.
+    fn about(&self) -> &About;
+
+    /// Computes once what depends on the parameters alone: `p` (one value a parameter) to `constants`.
+    fn prepare(&self, p: &[f64], constants: &mut [f64]);
+
+    /// The equations of motion `dx = f(x, u)` for a prepared parameter set.
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]);
+
+    /// The outputs `y = h(x, u)` for a prepared parameter set.
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]);
+
+    /// Nonzeros of A = ∂f/∂x, B = ∂f/∂u, C = ∂h/∂x, D = ∂h/∂u, in the order of [`About::matrices`].
+    ///
+    /// A linear model ignores `x` and `u`.
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// Nonzeros of the parameter Jacobians of A, B, C and D, in the order of [`About::sensitivities`].
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// Nonzeros of ∂f/∂p and ∂h/∂p, in the order of [`About::parameter_jacobian`].
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]);
+
+    /// [`Model::derivative`] at several points, a row of them for each entry of `dx`.
+    fn derivative_at(&self, constants: &[f64], points: &Points, dx: &mut [f64]) {
+        points.one_by_one(dx, |x, u, dx| self.derivative(constants, x, u, dx));
+    }
+
+    /// [`Model::outputs`] at several points, a row of them for each output.
+    fn outputs_at(&self, constants: &[f64], points: &Points, y: &mut [f64]) {
+        points.one_by_one(y, |x, u, y| self.outputs(constants, x, u, y));
+    }
+
+    /// [`Model::matrices`] at several points, a row of them for each nonzero.
+    fn matrices_at(&self, p: &[f64], points: &Points, nonzeros: &mut [f64]) {
+        points.one_by_one(nonzeros, |x, u, nonzeros| self.matrices(p, x, u, nonzeros));
+    }
+
+    /// [`Model::parameter_jacobian`] at several points, a row of them for each nonzero.
+    fn parameter_jacobian_at(&self, p: &[f64], points: &Points, nonzeros: &mut [f64]) {
+        points.one_by_one(nonzeros, |x, u, nonzeros| self.parameter_jacobian(p, x, u, nonzeros));
+    }
+
+    /// [`Model::prepare`] of several parameter sets at once, each row one value of all of them.
+    fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
+        one_by_one([p, &[], &[]], constants, |p, _, _, constants| {
+            self.prepare(p, constants)
+        });
+    }
+
+    /// [`Model::derivative`] of several prepared parameter sets, each at a state and input of its own.
+    fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
+        one_by_one([constants, x, u], dx, |constants, x, u, dx| {
+            self.derivative(constants, x, u, dx)
+        });
+    }
+
+    /// [`Model::matrices`] of several parameter sets, each at a state and input of its own. The bits are the same.
+    fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.matrices(p, x, u, nonzeros)
+        });
+    }
+
+    /// [`Model::sensitivities`] of several parameter sets, each at a state and input of its own.
+    fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {
+            self.sensitivities(p, x, u, nonzeros)
+        });
+    }
+
+    /// The frequency response of a linear model to one excitation, and where asked for its parameter Jacobian.
+    ///
+    /// See [`ResponseLayout`] for what is written where. A nonlinear model has no excitation to ask for.
+    fn response(&self, excitation: usize, _constants: &[f64], _omega: &[f64], _into: ResponseMut<'_>) {
+        panic!(
+            "excitation {excitation} of {}, which has no frequency response",
+            self.about().name
+        );
+    }
+
+    /// The resisting force (N, positive in tension) of the tyre link while it rolls, at stretch `s` (m, negative in
+    /// compression) and rate `v` (m/s), with the inner states in `x`. Zero without [`About::contact`].
+    fn contact_force(&self, _constants: &[f64], _x: &[f64], _s: f64, _v: f64) -> f64 {
+        0.0
+    }
+
+    /// The equations of motion with the tyre rolling over a profile: its link is taken out, the forces of `contact`
+    /// act on its wheel instead, and its inner states follow `contact.s` and `contact.v`. Without
+    /// [`About::contact`] it is [`Model::derivative`].
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, dx: &mut [f64]) {
+        self.derivative(constants, x, u, dx);
+    }
+
+    /// The outputs with the tyre rolling over a profile. Without [`About::contact`] it is [`Model::outputs`].
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, y: &mut [f64]) {
+        self.outputs(constants, x, u, y);
+    }
+}

@@ -1,0 +1,159 @@
+//! The fit of a nonlinear model as text and JSON.
+
+use qcar_runtime::discover::select::Minimum;
+use qcar_runtime::fit::report::{Correlation, ParameterFit};
+use serde::Serialize;
+
+use super::Nonlinear;
+use crate::json::{self, Ordered};
+use crate::left;
+use crate::table::{Table, number};
+use crate::verbs::fit::render;
+
+/// Residuals of more standard deviations than this are not chance: three of a normal distribution.
+const MUCH: f64 = 3.0;
+
+/// As JSON.
+#[derive(Serialize)]
+struct Fitted<'a> {
+    campaign: &'a str,
+    model: &'a str,
+    parameters: Ordered<&'a ParameterFit>,
+    all_correlations: Vec<Correlation>,
+    gap: Of<Option<f64>>,
+    left: Vec<Left>,
+    stopped: &'a str,
+    converged: bool,
+    starts: usize,
+    other_minima: Vec<Other<'a>>,
+    notices: &'a [String],
+    seconds: f64,
+}
+
+/// A value for the runs that were fitted, and one for those that no fit has seen.
+#[derive(Serialize)]
+struct Of<T> {
+    fit: T,
+    held_out: T,
+}
+
+/// A minimum that is less probable than the answer.
+#[derive(Serialize)]
+struct Other<'a> {
+    log_odds: f64,
+    parameters: Ordered<&'a f64>,
+}
+
+/// What is left of a sensor in a kind of run.
+#[derive(Serialize)]
+struct Left {
+    channel: String,
+    kind: &'static str,
+    percent: f64,
+}
+
+impl Nonlinear {
+    pub(super) fn json(&self) -> String {
+        let refit = &self.found.explanation.refit;
+        let finite = |value: f64| value.is_finite().then_some(value);
+        let named = self.parameters.iter().map(|own| (own.name.clone(), own));
+        json::line(&Fitted {
+            campaign: &self.campaign.name,
+            model: &self.model,
+            parameters: named.collect(),
+            all_correlations: self.correlations(),
+            gap: Of {
+                fit: finite(self.found.explanation.gap.fit),
+                held_out: finite(self.found.explanation.gap.held_out),
+            },
+            left: self.left(),
+            stopped: refit.stop.sentence(),
+            converged: refit.stop.converged(),
+            starts: self.starts,
+            other_minima: self.found.others.iter().map(|own| self.other(own)).collect(),
+            notices: &self.campaign.notices,
+            seconds: self.seconds,
+        })
+    }
+
+    /// A minimum by the parameters that are fitted.
+    fn other<'a>(&self, of: &'a Minimum) -> Other<'a> {
+        let fitted = self.parameters.iter().filter(|own| own.fitted);
+        let value = |own: &ParameterFit| Some((own.name.clone(), of.named.get(&own.name)?));
+        Other {
+            log_odds: of.log_odds,
+            parameters: fitted.filter_map(value).collect(),
+        }
+    }
+
+    /// Of every two parameters that the runs see.
+    fn correlations(&self) -> Vec<Correlation> {
+        let refit = &self.found.explanation.refit;
+        let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
+        let seen = |k: &usize| self.parameters[refit.free[*k].parameter].stderr.is_some();
+        let between = |a: usize, b: usize| {
+            let of = &refit.covariance;
+            let value = of[(a, b)] / (of[(a, a)] * of[(b, b)]).sqrt();
+            let between = (name(a), name(b));
+            value.is_finite().then_some(Correlation { between, value })
+        };
+        let pairs = (0..refit.free.len()).flat_map(|b| (0..b).map(move |a| (a, b)));
+        pairs
+            .filter(|(a, b)| seen(a) && seen(b))
+            .filter_map(|(a, b)| between(a, b))
+            .collect()
+    }
+
+    fn left(&self) -> Vec<Left> {
+        let left = left::left(&self.evidence, [&self.found.explanation; 2]);
+        let own = |left: left::Left| Left {
+            channel: left.channel,
+            kind: left.kind,
+            percent: left.after_percent,
+        };
+        left.into_iter().map(own).collect()
+    }
+
+    pub(super) fn text(&self) -> String {
+        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.gap);
+        let ended = if refit.stop.converged() {
+            "converged"
+        } else {
+            "did not converge"
+        };
+        let mut out = format!(
+            "{} fitted to {}: {ended}, {}\nresidual over its uncertainty: {} of the fitted runs",
+            self.model,
+            self.campaign.name,
+            refit.stop.sentence(),
+            number(gap.fit, 3),
+        );
+        if gap.held_out.is_finite() {
+            out += &format!(", {} of those held out", number(gap.held_out, 3));
+        }
+        out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
+        if gap.fit > MUCH {
+            out += "note: the residuals are far above their uncertainty, which the standard errors do not account for: the model \
+                    lacks something (`qcar discover` looks for it)\n";
+        }
+        out.extend(self.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
+        let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
+        for left in self.left() {
+            table.row(vec![left.channel, left.kind.into(), number(left.percent, 3)]);
+        }
+        format!("{out}\n{}\n{}", render::parameters(&self.parameters), table.text())
+    }
+
+    fn other_minima(&self) -> String {
+        match &self.found.others[..] {
+            [] => "which met no other minimum".into(),
+            [next, others @ ..] => {
+                let odds = number(next.log_odds, 2);
+                format!(
+                    "which met {} other minima, against the next of which the log odds are {odds}",
+                    1 + others.len()
+                )
+            }
+        }
+    }
+}

@@ -1,0 +1,125 @@
+//! What must hold between parameters.
+
+use qcar_runtime::target::{Coupling, Knob, Move};
+use toml::Spanned;
+
+use super::Planner;
+use crate::verbs::target::file;
+
+impl Planner<'_, '_> {
+    /// What must hold between parameters: those that follow are moved, sums are limits.
+    pub(super) fn couplings(&mut self, knobs: &[Knob], moves: &mut Vec<Move>) -> Vec<(String, Coupling)> {
+        let mut couplings = Vec::new();
+        for own in &self.read.file.couplings {
+            match own {
+                file::Coupling {
+                    parameter: Some(parameter),
+                    follows: Some(follows),
+                    sum: None,
+                    at_most: None,
+                    ..
+                } => {
+                    let followed = self.parameter_knob(follows, "coupling.follows", knobs);
+                    let place = self.parameter(parameter, "coupling.parameter");
+                    let (Some(knob), Some(place)) = (followed, place) else {
+                        continue;
+                    };
+                    if moves.iter().any(|own| own.parameter == place) {
+                        let found = "a parameter that moves already";
+                        self.wrong(
+                            parameter,
+                            "coupling.parameter",
+                            found,
+                            "one that follows nothing else",
+                            "remove one of both",
+                        );
+                        continue;
+                    }
+                    let ratio = self.values().as_slice()[place] / knobs[knob].today;
+                    let factor = own.factor.unwrap_or(ratio);
+                    let leader = (&knobs[knob], moves[knob].parameter);
+                    if let Err((found, expected)) = self.can_follow(place, leader, factor) {
+                        let remedy = "correct the factor, or narrow the range of what it follows";
+                        self.wrong(parameter, "coupling.parameter", &found, &expected, remedy);
+                        continue;
+                    }
+                    moves.push(Move {
+                        knob,
+                        parameter: place,
+                        factor,
+                        constant: 0.0,
+                    });
+                }
+                file::Coupling {
+                    parameter: None,
+                    follows: None,
+                    sum: Some(sum),
+                    at_most: Some(most),
+                    factor: None,
+                } => {
+                    if !most.is_finite() || !sum.get_ref().values().all(|factor| factor.is_finite()) {
+                        let (found, expected) =
+                            ("a number that is not finite", "finite factors and a finite `at_most`");
+                        self.wrong(sum, "coupling.sum", found, expected, "correct the numbers");
+                        continue;
+                    }
+                    let mut factors = vec![0.0; knobs.len()];
+                    for (name, factor) in sum.get_ref() {
+                        let named = Spanned::new(sum.span(), name.clone());
+                        if let Some(knob) = self.parameter_knob(&named, "coupling.sum", knobs) {
+                            factors[knob] = *factor;
+                        }
+                    }
+                    let words: Vec<String> = sum
+                        .get_ref()
+                        .iter()
+                        .map(|(name, factor)| format!("{factor} {name}"))
+                        .collect();
+                    couplings.push((words.join(" + "), Coupling { factors, most: *most }));
+                }
+                _ => {
+                    let at = &self.read.file.subject;
+                    let expected = "`parameter` and `follows`, or `sum` and `at_most`";
+                    self.wrong(
+                        at,
+                        "coupling",
+                        "a [[coupling]] of another kind",
+                        expected,
+                        "docs/targets.md shows both",
+                    );
+                }
+            }
+        }
+        couplings
+    }
+
+    /// Checks a parameter that is a factor times a knob, at both ends of its range; else what was found and expected.
+    fn can_follow(&self, place: usize, (knob, leader): (&Knob, usize), factor: f64) -> Result<(), (String, String)> {
+        let (model, about) = (&self.subject.model, self.subject.model.about());
+        let own = &about.parameters[place];
+        if !factor.is_finite() {
+            return Err((
+                format!("`{}` at {factor} times `{}`", own.name, knob.name),
+                "a finite factor".into(),
+            ));
+        }
+        for end in [knob.lower, knob.upper] {
+            let value = factor * end;
+            let found = format!("`{}` at {value} {} where `{}` is {end}", own.name, own.unit, knob.name);
+            if let Some((least, most)) = own.range.filter(|(least, most)| value < *least || value > *most) {
+                let valid = format!(
+                    "{least} to {most} {}, for which model `{}` is valid",
+                    own.unit, about.name
+                );
+                return Err((found, valid));
+            }
+            let mut moved = self.values().clone();
+            moved.set(leader, end);
+            moved.set(place, value);
+            if let Err(error) = model.check_inertias(moved.as_slice()) {
+                return Err((format!("{found}: {error}"), "masses above zero".into()));
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,146 @@
+//! What may move: parameters with their ranges, steps and costs.
+
+use qcar_runtime::target::{Knob, Move};
+use toml::Spanned;
+
+use super::Planner;
+use crate::verbs::target::file::{self, Amount};
+
+impl Planner<'_, '_> {
+    /// What may move, with its unit and what it moves.
+    pub(super) fn knobs(&mut self) -> (Vec<Knob>, Vec<String>, Vec<Move>) {
+        let (mut knobs, mut units, mut moves): (Vec<Knob>, Vec<String>, Vec<Move>) = Default::default();
+        for own in &self.read.file.parameters {
+            let Some(place) = self.parameter(&own.name, "parameter.name") else {
+                continue;
+            };
+            if knobs.iter().any(|knob| knob.name == *own.name.get_ref()) {
+                self.wrong(
+                    &own.name,
+                    "parameter.name",
+                    "a parameter for the second time",
+                    "each parameter once",
+                    "remove one",
+                );
+                continue;
+            }
+            let Some((knob, unit)) = self.knob(own, place) else {
+                continue;
+            };
+            moves.push(Move {
+                knob: knobs.len(),
+                parameter: place,
+                factor: 1.0,
+                constant: 0.0,
+            });
+            knobs.push(knob);
+            units.push(unit);
+        }
+        if self.read.file.parameters.is_empty() {
+            let remedy = "add a table [[parameter]] with name and range for each that may";
+            self.wrong(
+                &self.read.file.subject,
+                "parameter",
+                "no parameter that may move",
+                "at least one",
+                remedy,
+            );
+        }
+        (knobs, units, moves)
+    }
+
+    fn knob(&mut self, own: &file::Parameter, place: usize) -> Option<(Knob, String)> {
+        let (unit, today) = (
+            self.subject.model.about().parameters[place].unit.to_string(),
+            self.values().as_slice()[place],
+        );
+        let [lower, upper] = self.range(&own.range, place, &unit)?;
+        let step = match &own.step {
+            Some(at) => Some(self.step(at, &unit, (today, upper - lower))?),
+            None => None,
+        };
+        let cost = own.cost.as_ref().map_or(1.0, |cost| *cost.get_ref());
+        if let Some(at) = own.cost.as_ref().filter(|_| !(cost >= 0.0 && cost.is_finite())) {
+            self.wrong(
+                at,
+                "parameter.cost",
+                &cost.to_string(),
+                "a cost of zero or more",
+                "correct the cost",
+            );
+            return None;
+        }
+        let name = own.name.get_ref().clone();
+        Some((
+            Knob {
+                name,
+                lower,
+                upper,
+                today,
+                step,
+                cost,
+            },
+            unit,
+        ))
+    }
+
+    fn step(&mut self, at: &Spanned<Amount>, unit: &str, (today, span): (f64, f64)) -> Option<f64> {
+        let step = self.amount(at.get_ref(), at, "parameter.step", unit, today)?;
+        if step > 0.0 && step <= span {
+            return Some(step);
+        }
+        let found = format!("{step} {unit}");
+        self.wrong(
+            at,
+            "parameter.step",
+            &found,
+            "a step above zero that fits into the range",
+            "correct the step",
+        );
+        None
+    }
+
+    /// The ends of a range in which the model is valid and has masses.
+    fn range(&mut self, at: &Spanned<[Amount; 2]>, place: usize, unit: &str) -> Option<[f64; 2]> {
+        const KEY: &str = "parameter.range";
+        let (model, values) = (&self.subject.model, self.values());
+        let [low, high] = at.get_ref();
+        let today = values.as_slice()[place];
+        let lower = self.amount(low, at, KEY, unit, today)?;
+        let upper = self.amount(high, at, KEY, unit, today)?;
+        let found = format!("{lower} to {upper} {unit}");
+        if lower >= upper {
+            self.wrong(at, KEY, &found, "a lower value and a higher one", "correct the range");
+            return None;
+        }
+        let valid = model.about().parameters[place].range;
+        if let Some((least, most)) = valid.filter(|(least, most)| lower < *least || upper > *most) {
+            let name = &model.about().name;
+            let expected = format!("a range within {least} to {most} {unit}, for which model `{name}` is valid");
+            self.wrong(
+                at,
+                KEY,
+                &found,
+                &expected,
+                "narrow the range, or widen that of the model",
+            );
+            return None;
+        }
+        for end in [lower, upper] {
+            let mut moved = values.clone();
+            moved.set(place, end);
+            if let Err(error) = model.check_inertias(moved.as_slice()) {
+                let found = format!("{end} {unit}, where {error}");
+                self.wrong(
+                    at,
+                    KEY,
+                    &found,
+                    "a range in which all masses are above zero",
+                    "narrow the range",
+                );
+                return None;
+            }
+        }
+        Some([lower, upper])
+    }
+}

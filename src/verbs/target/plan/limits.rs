@@ -1,0 +1,166 @@
+//! What must hold of metrics: targets with the readings that they are of, as limits.
+
+use qcar_runtime::metric::Reading;
+use qcar_runtime::target::{Limit, Sense};
+
+use super::{Planner, Wanted};
+use crate::verbs::sensitivity::chosen::fits;
+use crate::verbs::target::file;
+
+/// A target with the readings that it is of.
+pub(super) struct Sought<'a> {
+    pub target: &'a file::Target,
+    pub readings: Vec<Reading>,
+}
+
+impl<'a> Planner<'a, '_> {
+    /// The targets with their readings.
+    pub(super) fn sought(&mut self) -> Vec<Sought<'a>> {
+        let mut all = Vec::new();
+        let read = self.read;
+        for target in &read.file.targets {
+            let Some(metric) = self.metric(&target.metric, "target.metric") else {
+                continue;
+            };
+            if let Some(wish) = target
+                .wish
+                .as_ref()
+                .filter(|wish| !(*wish.get_ref() > 0.0 && wish.get_ref().is_finite()))
+            {
+                let found = wish.get_ref().to_string();
+                self.wrong(
+                    wish,
+                    "target.wish",
+                    &found,
+                    "a cost above zero",
+                    "correct it, or remove it from what must hold",
+                );
+            }
+            if target.at_most.is_none() && target.at_least.is_none() {
+                let found = "neither `at_most` nor `at_least`";
+                self.wrong(&target.metric, "target", found, "a limit", "add one of both");
+            }
+            let mut readings = self.ground.readings_of(metric);
+            if let Some(runs) = &target.runs {
+                let named = |reading: &Reading, pattern: &str| {
+                    reading
+                        .course
+                        .is_some_and(|run| fits(pattern, &self.ground.courses()[run].name))
+                };
+                let missing = runs
+                    .get_ref()
+                    .iter()
+                    .find(|own| !readings.iter().any(|reading| named(reading, own)));
+                if let Some(missing) = missing.cloned() {
+                    let known: Vec<&str> = self
+                        .ground
+                        .courses()
+                        .iter()
+                        .map(|course| course.name.as_str())
+                        .collect();
+                    let expected = match self.ground.metrics()[metric].what.is_ridden() {
+                        true => format!("one of {}", known.join(", ")),
+                        false => format!("no run, since `{}` needs none", target.metric.get_ref()),
+                    };
+                    self.wrong(
+                        runs,
+                        "target.runs",
+                        &format!("`{missing}`"),
+                        &expected,
+                        "correct the name or remove it",
+                    );
+                    continue;
+                }
+                readings.retain(|reading| runs.get_ref().iter().any(|own| named(reading, own)));
+            }
+            if readings.is_empty() {
+                self.no_run(target);
+                continue;
+            }
+            all.push(Sought { target, readings });
+        }
+        if read.file.targets.is_empty() {
+            let remedy = "add a table [[target]] with metric and at_most or at_least for each";
+            self.wrong(&read.file.subject, "target", "no target", "at least one", remedy);
+        }
+        all
+    }
+
+    fn no_run(&mut self, target: &file::Target) {
+        let (found, expected) = ("no run", "names of runs");
+        let remedy = "leave the line out for all runs";
+        match &target.runs {
+            Some(runs) => self.wrong(runs, "target.runs", found, expected, remedy),
+            None => {
+                let (expected, remedy) = ("a run that has a value of it", "name another metric");
+                self.wrong(&target.metric, "target.metric", found, expected, remedy);
+            }
+        }
+    }
+
+    /// The limits of all readings, and what they are.
+    pub(super) fn limits(&mut self, sought: &[Sought<'a>], today: &[f64]) -> (Vec<Limit>, Vec<Wanted>) {
+        let (mut limits, mut wanted): (Vec<Limit>, Vec<Wanted>) = Default::default();
+        for Sought { target, readings } in sought {
+            for reading in readings {
+                let result = self
+                    .ground
+                    .readings()
+                    .iter()
+                    .position(|own| own == reading)
+                    .expect("all are measured");
+                let metric = &self.ground.metrics()[reading.metric];
+                let (name, unit) = (metric.name.clone(), metric.unit);
+                let run = reading.course.map(|run| self.ground.courses()[run].name.clone());
+                let sides = [
+                    (&target.at_most, Sense::AtMost, "target.at_most"),
+                    (&target.at_least, Sense::AtLeast, "target.at_least"),
+                ];
+                for (amount, sense, key) in sides {
+                    let Some(at) = amount else { continue };
+                    let Some(value) = self.amount(at.get_ref(), at, key, unit, today[result]) else {
+                        continue;
+                    };
+                    let limit = Limit {
+                        result,
+                        sense,
+                        value,
+                        wish: target.wish.as_ref().map(|wish| *wish.get_ref()),
+                    };
+                    if let Some(other) = limits.iter().find(|other| contradict(other, &limit)) {
+                        let of = run.as_ref().map_or(String::new(), |run| format!(" on {run}"));
+                        let found = format!(
+                            "{value} {unit} for `{name}`{of}, where another target has {} {unit}",
+                            other.value
+                        );
+                        self.wrong(
+                            at,
+                            key,
+                            &found,
+                            "targets that can hold together",
+                            "remove one of both, or make it a wish",
+                        );
+                        continue;
+                    }
+                    limits.push(limit);
+                    wanted.push(Wanted {
+                        metric: name.clone(),
+                        run: run.clone(),
+                        unit: unit.into(),
+                    });
+                }
+            }
+        }
+        (limits, wanted)
+    }
+}
+
+/// True of two limits of one result that no value can meet.
+fn contradict(a: &Limit, b: &Limit) -> bool {
+    let [low, high] = match (a.sense, b.sense) {
+        (Sense::AtLeast, Sense::AtMost) => [a, b],
+        (Sense::AtMost, Sense::AtLeast) => [b, a],
+        _ => return false,
+    };
+    a.result == b.result && a.wish.is_none() && b.wish.is_none() && low.value > high.value
+}
