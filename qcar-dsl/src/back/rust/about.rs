@@ -112,7 +112,7 @@ fn states(about: &About) -> String {
         format!(
             "{{ name: {}, unit: {}, location: {}, axis: {}, kind: seam::StateKind::{kind} }}",
             text(&s.name),
-            text(&s.unit.to_string()),
+            text(&s.unit),
             text(&s.location),
             text(&s.axis)
         )
@@ -130,7 +130,7 @@ fn inputs(about: &About) -> String {
         format!(
             "{{ name: {}, unit: {}, axis: {}, kind: seam::InputKind::{kind} }}",
             text(&i.name),
-            text(&i.unit.to_string()),
+            text(&i.unit),
             text(&i.axis)
         )
     };
@@ -139,7 +139,7 @@ fn inputs(about: &About) -> String {
 
 fn outputs(about: &About) -> String {
     let item = |o: &Output| {
-        let (name, unit) = (text(&o.name), text(&o.unit.to_string()));
+        let (name, unit) = (text(&o.name), text(&o.unit));
         format!("{{ name: {name}, unit: {unit}, signal: {} }}", signal(&o.signal))
     };
     array("ABOUT_OUTPUTS", "Output", about.outputs.iter().map(item).collect())
