@@ -168,10 +168,12 @@ proptest! {
 proptest! {
     #![proptest_config(common::cases(4))]
 
+    /// The rounding errors of the dense reference grow with the number of members, which is ten times that of small models:
+    /// so does what is nothing but such errors.
     #[test]
     fn large_models_respond_as_their_matrices_say(plan in large_plan(), omega in 0.1..3.0f64) {
         let (model, p) = plan.build_with_groups();
-        judge_some(model, &p, &[omega], 1e-4, 1.0);
+        judge_some(model, &p, &[omega], 1e-3, 1.0);
     }
 }
 
