@@ -5,8 +5,9 @@
 //! cargo run --release --example silverbox -- SNLS80mV.csv results
 //! ```
 //!
-//! All that was found counts: the model, its parameters, and the delay of the sensor. A sensor has a zero of its own,
-//! which discovery does not ask of the model. Here it is what the model's error is in the mean of the fitted periods.
+//! The model and its parameters count as they were found, without the delay of the sensor of some microseconds. A sensor has
+//! a zero of its own, which discovery does not ask of the model. Here it is what the model's error is in the mean of the
+//! fitted periods.
 //!
 //! The record is that of T. Wigren and J. Schoukens, "Three free data sets for development and benchmarking in nonlinear
 //! system identification", European Control Conference 2013: columns V1 (taken for N) and V2 (taken for m) at 610.35 Hz.
@@ -44,7 +45,6 @@ fn main() -> Result<(), Box<dyn Error>> {
     let model = found["model_file"].as_str().ok_or("the discovery has found no model")?;
     let [force, measured] = columns(record)?;
     let modelled = respond(model, &results.join("parameters.toml"), &force)?;
-    let modelled = late(&modelled, delay(&found));
     let errors: Vec<f64> = modelled.iter().zip(&measured).map(|(own, other)| own - other).collect();
     let period = |at: usize| &errors[MULTISINE + at * SPACING..][..PERIOD];
     let zero = mean(&(0..FITTED).flat_map(period).copied().collect::<Vec<_>>());
@@ -98,25 +98,6 @@ fn respond(model: &str, values: &Path, force: &[f64]) -> Result<Vec<f64>, Box<dy
     let recorded = Recorded::new(model.about(), &[record], RATE, Between::BandLimited)?;
     let mut replayed = replay(&*model, values.as_slice(), &recorded, &Settings::default())?;
     Ok(replayed.outputs.swap_remove(0))
-}
-
-/// By how much the sensor was found to be late, s.
-fn delay(found: &Value) -> f64 {
-    let effects = found["effects"].as_array().into_iter().flatten();
-    let mut delays = effects.filter(|effect| effect["name"] == "sensor_delay");
-    delays
-        .find_map(|effect| effect["parameters"]["delay"].as_f64())
-        .unwrap_or(0.0)
-}
-
-/// A signal that comes late by a small part of a sample: less the delay times its slope, by differences of fourth order.
-fn late(signal: &[f64], delay: f64) -> Vec<f64> {
-    let mut late = signal.to_vec();
-    for (k, around) in signal.windows(5).enumerate() {
-        let slope = (8.0 * (around[3] - around[1]) - (around[4] - around[0])) / 12.0 * RATE;
-        late[k + 2] -= delay * slope;
-    }
-    late
 }
 
 fn mean(values: &[f64]) -> f64 {
