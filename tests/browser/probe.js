@@ -8,8 +8,9 @@
 
   // What would go to a file or to the clipboard.
   found.saved = [];
+  let reading = Promise.resolve();
   URL.createObjectURL = (blob) => {
-    blob.text().then((text) => found.saved.push(text));
+    reading = Promise.all([reading, blob.text()]).then(([, text]) => found.saved.push(text));
     return 'data:,';
   };
   HTMLAnchorElement.prototype.click = () => {};
@@ -160,7 +161,7 @@
     ]) {
       const buttons = [...document.querySelectorAll(`${place} .exports button`)];
       buttons.find((own) => own.textContent === text).click();
-      await frame();
+      await reading;
     }
   }
 
@@ -173,7 +174,7 @@
     await frame();
     const text = async () => {
       part.querySelector('[data-figure=tried-magnitude] .exports button:last-child').click();
-      await frame();
+      await reading;
       return found.saved.pop();
     };
     const inputs = [...part.querySelectorAll('.sliders input')];
