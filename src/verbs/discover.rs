@@ -8,6 +8,7 @@ use std::time::Instant;
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_dsl::check::Checked;
+use qcar_dsl::patch::Patched;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::answer::{Discovery, Finding, News, Verdict};
 use qcar_runtime::discover::candidate::Workshop;
@@ -33,6 +34,8 @@ pub(crate) mod places;
 pub(crate) mod law;
 // One of the findings in words.
 mod finding;
+// The nuisances that were fitted, as text and JSON.
+mod nuisances;
 // What was learned, as text and JSON.
 mod learned;
 // The answer as text and JSON.
@@ -246,13 +249,17 @@ fn setting(campaign: &Campaign, about: &About) -> Result<Setting, InputError> {
     Ok(given(&parameters, campaign))
 }
 
-/// The bench with effects in its model.
-fn with(bench: Bench, effects: &[Finding]) -> Bench {
-    let taken = effects.iter().try_fold(bench.clone(), |bench, own| {
-        let patched = bench.patched(&own.effect, &own.at, own.form.as_deref())?;
-        Some(bench.holding(patched.model))
-    });
-    taken.unwrap_or(bench)
+/// The bench with nuisances in its model. Their fit has shown that they apply.
+fn with(bench: Bench, nuisances: &[Finding]) -> Bench {
+    nuisances.iter().fold(bench, |bench, own| {
+        let patched = extended(&bench, own).expect("what was fitted applies");
+        bench.holding(patched.model)
+    })
+}
+
+/// The model of the bench with a finding in it; `None` where that does not apply.
+fn extended(bench: &Bench, finding: &Finding) -> Option<Patched> {
+    bench.patched(&finding.effect, &finding.at, finding.form.as_deref())
 }
 
 /// The units of the parameters of each finding. Those of a class stand in each other's place, others build on each other.
@@ -260,7 +267,7 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
     let mut units = Vec::new();
     let found = discovery.told_apart().0.len();
     for (place, finding) in discovery.findings.iter().enumerate() {
-        let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref());
+        let patched = extended(&bench, finding);
         let own = patched.iter().flat_map(|patched| &patched.parameters);
         units.push(own.map(|own| (own.effect_name.clone(), own.unit.clone())).collect());
         if let Some(patched) = patched.filter(|own| place < found && own.signals.is_empty()) {
@@ -287,7 +294,7 @@ fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
 fn patched(mut bench: Bench, findings: &[Finding], why: &str) -> Option<Written> {
     let mut written = None;
     for finding in findings {
-        let patched = bench.patched(&finding.effect, &finding.at, finding.form.as_deref())?;
+        let patched = extended(&bench, finding)?;
         if !patched.signals.is_empty() {
             continue;
         }

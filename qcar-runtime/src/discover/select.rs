@@ -125,6 +125,7 @@ impl Discovery {
             self.findings.clear();
             self.alike = 0;
             self.after = self.before.clone();
+            self.nuisances[1] = self.nuisances[0].clone();
             self.learned = law;
         }
     }
@@ -269,6 +270,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
         let explanation = explained(&hypothesis, finalist.refit, evidence)?;
+        // No odds are laid against a nuisance: every real car has some of it, and the evidence alone says whether it is seen.
         let prior = if candidate.nuisance {
             set.log_prior
         } else {

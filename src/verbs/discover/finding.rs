@@ -8,7 +8,8 @@ use qcar_runtime::discover::answer::Finding;
 use crate::table::{Table, number, or_dash};
 use crate::units;
 
-pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> String {
+/// The parameters of a finding with their units.
+pub(super) fn table(finding: &Finding, of: &BTreeMap<String, String>) -> String {
     let mut table = Table::new(["parameter", "unit", "value", "stderr"]);
     for (name, value, error) in &finding.parameters {
         let unit = of.get(name).map_or("", String::as_str);
@@ -21,6 +22,10 @@ pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> Str
             error,
         ]);
     }
+    table.text()
+}
+
+pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> String {
     let share = 100.0 * finding.closed;
     let form = finding
         .form
@@ -30,7 +35,7 @@ pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> Str
         "{} at {}{form} closes {share:.1} % of the gap\n{}",
         finding.effect,
         finding.at,
-        table.text()
+        table(finding, of)
     );
     let undetermined = finding.parameters.iter().filter(|(_, _, error)| !error.is_finite());
     let undetermined: Vec<&str> = undetermined.map(|(name, ..)| name.as_str()).collect();

@@ -13,6 +13,7 @@ use serde::Serialize;
 use super::Answer;
 use super::finding::described;
 use super::learned;
+use super::nuisances::{self, Nuisance};
 use super::places::{self, Missing};
 use crate::effects;
 use crate::json::{self, Ordered};
@@ -31,8 +32,8 @@ pub(crate) struct Result<'a> {
     /// What is left of each sensor on the runs that judge.
     left: Vec<Left>,
     effects: Vec<Effect<'a>>,
-    /// What every real car has some of, fitted beside them.
-    nuisances: Vec<Fitted<'a>>,
+    /// What every real car has some of, fitted with them.
+    nuisances: Vec<Nuisance<'a>>,
     r#where: Vec<Where>,
     places: Vec<Missing>,
     visible: Vec<Seen<'a>>,
@@ -58,14 +59,6 @@ struct Effect<'a> {
     units: &'a BTreeMap<String, String>,
     evidence: Evidence,
     rivals: &'a [Rival],
-}
-
-/// A nuisance effect, SI.
-#[derive(Serialize)]
-struct Fitted<'a> {
-    name: &'a str,
-    at: &'a str,
-    parameters: Ordered<f64>,
 }
 
 /// What a sensor of a record reads at zero.
@@ -138,7 +131,7 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .enumerate()
             .map(|(place, own)| effect(of, place, own))
             .collect(),
-        nuisances: of.discovery.nuisances[1].iter().map(fitted).collect(),
+        nuisances: nuisances::json(of),
         r#where: before.tiles.iter().take(LISTED).map(place).collect(),
         places: missing(of),
         visible: of.discovery.visible.iter().map(seen).collect(),
@@ -157,15 +150,6 @@ pub(crate) fn result(of: &Answer) -> Result<'_> {
             .map(|file| file.display().to_string()),
         notices: &of.evidence.notices,
         seconds: of.seconds,
-    }
-}
-
-fn fitted(of: &Finding) -> Fitted<'_> {
-    let parameters = of.parameters.iter();
-    Fitted {
-        name: &of.effect,
-        at: &of.at,
-        parameters: parameters.map(|(name, value, _)| (name.clone(), *value)).collect(),
     }
 }
 
@@ -331,20 +315,7 @@ pub(super) fn text(of: &Answer) -> String {
     for (place, (finding, units)) in of.discovery.findings.iter().zip(&of.units).enumerate() {
         out += &format!("\n{}{}", choice(of, place), described(finding, units));
     }
-    for own in &of.discovery.nuisances[1] {
-        let values: Vec<String> = own
-            .parameters
-            .iter()
-            .map(|(name, value, _)| format!("{name} {}", number(*value, 3)))
-            .collect();
-        let _ = writeln!(
-            out,
-            "\nfitted beside it, since every car has some: {} at {} ({})",
-            own.effect,
-            own.at,
-            values.join(", ")
-        );
-    }
+    out += &nuisances::text(of);
     for (name, end) in at_bound(&of.discovery.after) {
         let _ = writeln!(out, "\n{name} stands at the {end} end of its range");
     }
