@@ -8,6 +8,8 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
+// which would have, beside those that were added later,
+mod exchange;
 // where a model alone explains best,
 mod alone;
 // how probable each set is,
@@ -23,9 +25,10 @@ use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
+use exchange::exchanges;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, is_missing, judged, nameless, predictive};
+use verdict::{Set, closed, is_missing, judged, nameless, predictive, standing};
 use visible::visible;
 
 pub use alone::{Alone, Minimum, alone};
@@ -67,6 +70,12 @@ pub fn discover(
         sets[place].reduced = true;
         let less = reductions(&sets[place], &sets[0], evidence, progress);
         sets.extend(less);
+    }
+    while let Some(place) = unexchanged(&sets, evidence) {
+        sets[place].exchanged = true;
+        progress(News::Doing("exchanging effects for their rivals"));
+        let others = exchanges(&sets[place], &sets, evidence);
+        sets.extend(others);
     }
     let alone = &sets[nameless(&sets)];
     let mut discovery = judged(&sets, evidence);
@@ -151,6 +160,12 @@ fn second(sets: &[Set]) -> Option<usize> {
     open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
 }
 
+/// The most probable set, or the most probable one that stands, as long as it has several effects of which none was exchanged.
+fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+    let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
+    [best(sets), standing(sets, evidence).0].into_iter().find(open)
+}
+
 /// The most probable set, as long as it has several effects that were not tried without one of them.
 fn unreduced(sets: &[Set]) -> Option<usize> {
     let best = best(sets);
@@ -177,8 +192,7 @@ fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> 
 
 /// The most probable set.
 fn best(sets: &[Set]) -> usize {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    (0..sets.len()).max_by(order).unwrap_or(0)
+    verdict::best(sets, usize::MAX)
 }
 
 fn tell(set: &Set, progress: Progress<'_>) {

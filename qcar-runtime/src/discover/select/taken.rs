@@ -50,9 +50,15 @@ impl Taken {
 
     /// True where a magnitude stands at an end of its range: the effect does duty for another. A shape may go to its limit.
     pub fn stands_at_an_end(&self, explanation: &Explanation) -> bool {
-        let at_end =
-            |name: &String| free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0);
-        self.magnitudes.iter().any(at_end)
+        self.magnitudes.iter().any(|name| is_at_end(explanation, name))
+    }
+
+    /// True where any of its parameters does, a shape too.
+    pub fn reaches_an_end(&self, explanation: &Explanation) -> bool {
+        self.unknowns.iter().any(|unknown| match unknown {
+            Unknown::Parameter(_, name) => is_at_end(explanation, name),
+            Unknown::Coefficient(..) => false,
+        })
     }
 
     /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
@@ -78,6 +84,10 @@ impl Taken {
         };
         self.unknowns.iter().filter_map(of).collect()
     }
+}
+
+fn is_at_end(explanation: &Explanation, name: &str) -> bool {
+    free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0)
 }
 
 /// Place of a parameter among the free ones.

@@ -19,6 +19,8 @@ pub struct Set {
     pub log_prior: f64,
     /// Whether its extensions were looked for.
     pub extended: bool,
+    /// Whether its effects were exchanged for those that they were preferred to.
+    pub exchanged: bool,
     /// Whether it was tried without each of its effects.
     pub reduced: bool,
     /// Others that were dropped on the way to it.
@@ -33,6 +35,7 @@ impl Set {
             explanation,
             log_prior,
             extended: false,
+            exchanged: false,
             reduced: false,
             rivals: Vec::new(),
         }
@@ -68,6 +71,17 @@ impl Set {
         self.named().any(|own| own.taken.stands_at_an_end(&self.explanation))
     }
 
+    /// True where an effect that a part of it lacks stands for another: one beside others has no shape at its limit either,
+    /// for what is left of the gap is bent to more easily than the whole of it.
+    fn adds_a_substitute(&self, part: &Set) -> bool {
+        let is_further = !part.names().is_empty();
+        let is_substitute = |own: &Placed| {
+            own.taken.stands_at_an_end(&self.explanation) || is_further && own.taken.reaches_an_end(&self.explanation)
+        };
+        let is_new = |own: &&Placed| !part.names().contains(&own.name());
+        self.named().filter(is_new).any(is_substitute)
+    }
+
     /// Its effects that may be an answer.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
@@ -98,13 +112,15 @@ struct Answer {
     probability: f64,
 }
 
-/// The answers, the most probable first: sets of the same names are one.
-fn answers(sets: &[Set]) -> Vec<Answer> {
-    let most = sets.iter().map(Set::log_posterior).fold(f64::NEG_INFINITY, f64::max);
+/// The answers of at most so many names, the most probable first: sets of the same names are one.
+fn answers(sets: &[Set], names: usize) -> Vec<Answer> {
+    let sets_in = || sets.iter().enumerate().filter(|(_, set)| set.names().len() <= names);
+    let posteriors = sets_in().map(|(_, set)| set.log_posterior());
+    let most = posteriors.fold(f64::NEG_INFINITY, f64::max);
     let weight = |set: &Set| (set.log_posterior() - most).exp();
-    let all: f64 = sets.iter().map(weight).sum();
+    let all: f64 = sets_in().map(|(_, set)| weight(set)).sum();
     let mut answers: Vec<Answer> = Vec::new();
-    for (place, set) in sets.iter().enumerate() {
+    for (place, set) in sets_in() {
         let probability = weight(set) / all;
         match answers.iter_mut().find(|own| sets[own.set].names() == set.names()) {
             Some(own) => {
@@ -125,14 +141,12 @@ fn answers(sets: &[Set]) -> Vec<Answer> {
 
 /// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
 pub fn nameless(sets: &[Set]) -> usize {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
-    nameless.max_by(order).unwrap_or(0)
+    best(sets, 0)
 }
 
 /// The answer.
 pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
-    let answers = answers(sets);
+    let answers = answers(sets, standing(sets, evidence).1);
     let credible = credible(sets, &answers, &evidence.numbers);
     let alone = nameless(sets);
     let before = sets[alone].explanation.clone();
@@ -288,8 +302,31 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
     probable
 }
 
+/// The most probable set that the runs that judge do not withdraw, and the most names that a set may have beside it. Where a
+/// set is withdrawn to a part of it, all sets of more names than that part has are: of the others, another one may be more
+/// probable than the part.
+pub fn standing(sets: &[Set], evidence: &Evidence) -> (usize, usize) {
+    let mut names = usize::MAX;
+    loop {
+        let best = best(sets, names);
+        let part = predictive(sets, best, evidence);
+        if part == best {
+            return (best, names);
+        }
+        names = sets[part].names().len();
+    }
+}
+
+/// The most probable set of at most so many names.
+pub fn best(sets: &[Set], names: usize) -> usize {
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    let open = (0..sets.len()).filter(|&place| sets[place].names().len() <= names);
+    open.max_by(order).unwrap_or(0)
+}
+
 /// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
-/// what does not predict, and what changes next to nothing, is withdrawn, whichever part shows it.
+/// what does not predict, what changes next to nothing, and what stands for another effect is withdrawn, whichever part shows
+/// it.
 pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     if evidence.of_role(Role::HeldOut).next().is_none() {
         return best;
@@ -302,7 +339,8 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
             let changes_little = !sets[part].names().is_empty() && closes < evidence.numbers.explained();
-            changes_little || !predicts(&sets[best], &sets[part], evidence)
+            let adds_nothing = changes_little || sets[best].adds_a_substitute(&sets[part]);
+            adds_nothing || !predicts(&sets[best], &sets[part], evidence)
         };
         match (0..sets.len()).filter(is_answer).filter(withdrawn).max_by(order) {
             Some(part) => best = part,

@@ -1,0 +1,242 @@
+//! What a search answers on evidence in closed form, with a catalogue of masses on mounts that are told apart by their ranges.
+
+#[path = "support/strut.rs"]
+mod strut;
+
+use nalgebra::Complex;
+use qcar_runtime::campaign::{Axis, Quantity, Role};
+use qcar_runtime::discover::Evidence;
+use qcar_runtime::discover::answer::{Discovery, Verdict};
+use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
+use qcar_runtime::discover::noise::Form;
+use qcar_runtime::discover::observe::{Kind, Run, Series, Stimulus, signal_of};
+use qcar_runtime::discover::posterior::{Given, Setting};
+use qcar_runtime::discover::select::discover;
+use qcar_runtime::model::Model;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::response::ratio::ratio;
+use qcar_runtime::transmissibility::{Point, logarithmic};
+use strut::{Parts, Strut};
+
+const STRENGTH: ParameterRole = ParameterRole::Strength { vanishes_at: 0.0 };
+
+const PLAIN: Parts = Parts {
+    powertrain: false,
+    friction: false,
+};
+const WITH_MASS: Parts = Parts {
+    powertrain: true,
+    ..PLAIN
+};
+/// Of the axle and of what hangs on its body: mass, stiffness and damping of the mount.
+const TRUTH: [f64; 12] = [
+    400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 70.0, 250e3, 600.0,
+];
+const NOISE: f64 = 0.004;
+
+/// A mass on a mount at the body, by the range of the mass.
+#[derive(Clone)]
+struct Hanging {
+    name: &'static str,
+    mass: (f64, f64),
+}
+
+/// A strut axle and the masses that may be missing on it; a delay of the body's sensor may be there as a nuisance.
+struct Bench {
+    model: Strut,
+    masses: Vec<Hanging>,
+    delays: bool,
+}
+
+impl Workshop for Bench {
+    fn model(&self) -> &dyn Model {
+        &self.model
+    }
+
+    fn candidates(&self) -> Vec<Candidate> {
+        let delay = self.delays.then(delayed).into_iter();
+        self.masses.iter().map(hanging).chain(delay).collect()
+    }
+
+    fn laws(&self) -> Vec<Candidate> {
+        Vec::new()
+    }
+
+    fn with(&self, effect: &str, _: &str, _: Option<&str>) -> Option<Box<dyn Workshop>> {
+        let known = self.masses.iter().any(|own| own.name == effect);
+        known.then(|| {
+            Box::new(Bench {
+                model: Strut::new(WITH_MASS),
+                masses: Vec::new(),
+                delays: self.delays,
+            }) as Box<dyn Workshop>
+        })
+    }
+}
+
+fn added(name: &str, start: f64, range: (f64, f64), role: ParameterRole) -> Added {
+    Added {
+        name: name.into(),
+        effect_name: name.into(),
+        start,
+        range,
+        known: false,
+        role,
+    }
+}
+
+fn hanging(of: &Hanging) -> Candidate {
+    Candidate {
+        effect: of.name.into(),
+        at: "body".into(),
+        form: None,
+        nuisance: false,
+        change: Change::Model {
+            model: Box::new(Strut::new(WITH_MASS)),
+            parameters: vec![
+                added("m_pwt", (of.mass.0 * of.mass.1).sqrt(), of.mass, STRENGTH),
+                added("k_pwt_z", 200e3, (20e3, 2e6), ParameterRole::Shape),
+                added("c_pwt_z", 500.0, (50.0, 5e3), ParameterRole::Shape),
+            ],
+        },
+    }
+}
+
+fn delayed() -> Candidate {
+    Candidate {
+        effect: "late".into(),
+        at: "body".into(),
+        form: None,
+        nuisance: true,
+        change: Change::Sensor {
+            location: "body".into(),
+            axis: Some(Axis::Z),
+            form: Form::Delay,
+            parameter: added("delay", 1e-3, (-20e-3, 20e-3), STRENGTH),
+        },
+    }
+}
+
+fn point(location: &str) -> Point {
+    Point::new(location, Axis::Z, Quantity::Acceleration)
+}
+
+/// Standard normal numbers: twelve uniform ones by a linear congruence.
+fn normal(state: &mut u64) -> f64 {
+    let mut uniform = || {
+        *state = state
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        (*state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+/// Three sweeps of the axle with a mass on its body, one of them held out, whose body's sensor is late (s).
+fn evidence(late: f64) -> Evidence {
+    let model = Strut::new(WITH_MASS);
+    let about = model.about();
+    let named = about.parameters.iter().map(|own| own.name.to_string());
+    let values = Values::resolve(about, &named.zip(TRUTH).collect(), &Default::default()).expect("all are given");
+    let frequency = logarithmic(0.6, 28.0, 60);
+    let mut state = 7;
+    let (mut runs, mut series) = (Vec::new(), Vec::new());
+    let levels = [(0.025, Role::Fit), (0.05, Role::Fit), (0.1, Role::HeldOut)];
+    for (run, (level, role)) in levels.into_iter().enumerate() {
+        runs.push(Run {
+            name: format!("sweep_{run}"),
+            role,
+            level,
+            stimulus: Stimulus::Sweep {
+                reference: point("pad"),
+                signal: Vec::new(),
+                swept: None,
+                rate: 1000.0,
+                amplitude: frequency.iter().map(|f| level * std::f64::consts::TAU * f).collect(),
+                frequency: frequency.clone(),
+                time: vec![0.0; frequency.len()],
+                band: (0.5, 30.0),
+            },
+        });
+        for location in ["wheel", "body"] {
+            let [numerator, denominator] = [location, "pad"].map(|own| signal_of(about, &point(own)));
+            let exact = ratio(&model, &values, 0, &numerator, &denominator, &frequency).expect("it has the sensors");
+            let delay = if location == "body" { late } else { 0.0 };
+            let value = exact.value.iter().zip(&frequency).map(|(h, &f)| {
+                let noise = Complex::new(normal(&mut state), normal(&mut state)) * NOISE / std::f64::consts::SQRT_2;
+                h * Complex::from_polar(1.0, -std::f64::consts::TAU * f * delay) * (1.0 + noise)
+            });
+            let value: Vec<Complex<f64>> = value.collect();
+            series.push(Series {
+                noise: vec![NOISE; value.len()],
+                least_discrepancy: 0.0,
+                run,
+                sensor: point(location),
+                kind: Kind::Harmonic(1),
+                at: frequency.clone(),
+                sigma: value.iter().map(|h| NOISE * h.norm()).collect(),
+                value,
+            });
+        }
+    }
+    Evidence {
+        runs,
+        series,
+        two_sided: false,
+        notices: Vec::new(),
+        numbers: Default::default(),
+    }
+}
+
+/// Starts a fifth off, with all but the known masses free.
+fn answer(masses: Vec<Hanging>, delays: bool, late: f64) -> Discovery {
+    let model = Strut::new(PLAIN);
+    let given = model.about().parameters.iter().zip(TRUTH).enumerate();
+    let given = given.map(|(k, (own, truth))| Given {
+        name: own.name.to_string(),
+        value: if k == 0 || k == 2 { truth } else { 1.2 * truth },
+        range: (k != 0 && k != 2).then_some((0.3 * truth, 3.0 * truth)),
+    });
+    let setting = Setting {
+        given: given.collect(),
+        vehicle: Default::default(),
+    };
+    let bench = Bench { model, masses, delays };
+    discover(Box::new(bench), &setting, &evidence(late), &|_| ()).expect("the model has the sensors")
+}
+
+#[test]
+fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
+    let light = Hanging {
+        name: "light",
+        mass: (5.0, 40.0),
+    };
+    let heavy = Hanging {
+        name: "heavy",
+        mass: (20.0, 200.0),
+    };
+    let unknown = answer(vec![light.clone()], false, 0.0);
+    assert_eq!(unknown.verdict, Verdict::Unknown);
+    let candidate = &unknown.candidates[0];
+    assert!(
+        candidate.effect == "light" && candidate.explained > 0.5,
+        "{candidate:?}"
+    );
+    let found = answer(vec![light, heavy], false, 0.0);
+    assert_eq!(found.verdict, Verdict::Found);
+    assert_eq!(found.findings[0].effect, "heavy");
+}
+
+/// With a sensor that is 1.5 ms late, the mass of 70 kg looks like one of 68.5 kg until the delay is in the model.
+#[test]
+fn what_a_nuisance_had_hidden_is_found_once_it_is_fitted() {
+    let [light, right] = [("light", (60.0, 68.2)), ("right", (70.4, 80.0))].map(|(name, mass)| Hanging { name, mass });
+    let both = [light, right];
+    let misled = answer(both.to_vec(), false, 1.5e-3);
+    assert_eq!(misled.findings[0].effect, "light");
+    let found = answer(both.to_vec(), true, 1.5e-3);
+    assert_eq!(found.verdict, Verdict::Found);
+    assert_eq!(found.findings[0].effect, "right");
+    let (_, delay, error) = found.nuisances[1][0].parameters[0];
+    assert!((delay - 1.5e-3).abs() < 3.0 * error, "{delay} ± {error} s");
+}
