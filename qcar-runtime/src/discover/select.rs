@@ -278,6 +278,8 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
+    // Beside a model that leaves much, what an effect gains to first order says little: one of each place is fitted.
+    let least = if is_missing(set, evidence) { 0.0 } else { least };
     let entering = entrants(&candidates, &prospects, least);
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
     let of_finalist = |finalist: Finalist| {
