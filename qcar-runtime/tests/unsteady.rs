@@ -1,9 +1,6 @@
 //! Sweeps of an axle with dry friction, integrated in fine steps, from levels at which it sticks to those at which it
 //! slips, against what discovery predicts of them.
 
-#[path = "support/strut.rs"]
-mod strut;
-
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -17,7 +14,8 @@ use qcar_runtime::discover::posterior::{refit, settle};
 use qcar_runtime::discover::{Evidence, Free, Gap};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
-use strut::{Parts, Strut};
+
+use super::support::strut::{Parts, Strut};
 
 const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 95.0, 9e5];
 const DRY: Parts = Parts {
