@@ -1,5 +1,7 @@
 //! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
 
+#[path = "support/studied.rs"]
+mod studied;
 #[path = "support/swept.rs"]
 mod swept;
 
@@ -12,6 +14,7 @@ use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
 use qcar_runtime::discover::numbers::Numbers;
 use serde_json::Value;
+use studied::Studied;
 use swept::{swept, two_sensors};
 
 /// Runs `qcar discover` on a campaign.
@@ -43,8 +46,7 @@ fn assert_near(answer: &Value, truth: &[(&str, f64)]) {
 
 #[test]
 fn what_is_left_of_a_clean_campaign_is_noise() {
-    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
-    let answer = discover(&campaign, None);
+    let answer = studied("axle_a_rig");
     assert_eq!(answer["verdict"], "none");
     assert_eq!(answer["effects"], Value::Array(Vec::new()));
     assert_eq!(answer["places"], Value::Array(Vec::new()));
@@ -78,6 +80,13 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
     assert_eq!(seen["effects"][0]["name"], "drag_to_ground", "{seen}");
 }
 
+/// What a study of a shipped campaign has found.
+fn studied(campaign: &str) -> Value {
+    let text = fs::read_to_string(Studied::new(campaign).folder.join("study.json")).expect("a result");
+    let study: Value = serde_json::from_str(&text).expect("JSON");
+    study["discover"].clone()
+}
+
 fn measured(name: &str) -> Value {
     let campaigns = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns");
     discover(&campaigns.join(name), None)
@@ -101,7 +110,7 @@ fn dry_friction_is_named_in_a_real_drive() {
 /// A magnetorheological damper slips, and what is in series with it yields.
 #[test]
 fn friction_and_what_yields_beside_it_are_named_in_a_real_damper() {
-    let answer = measured("mr_damper");
+    let answer = studied("mr_damper");
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     // Friction with memory or without, and a damper that yields at its end.
