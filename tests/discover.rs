@@ -59,6 +59,7 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
         let folder = tempfile::tempdir().expect("a folder");
         let campaign = folder.path().join("campaign");
         let order = Order {
+            programme: Programme::fast(),
             cleats: false,
             effects: vec![Hidden::new("drag_to_ground", "body", &[("c_drag", c_drag)])],
             ..Order::clean("c", 31)
@@ -140,6 +141,7 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     let campaign = folder.path().join("campaign");
     let truth = [("m_tm", 5.0), ("k_tm", 450e3), ("c_tm", 700.0)];
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new("top_mount", "damper", &truth)],
         ..Order::clean("c", 23)
@@ -166,6 +168,7 @@ fn a_light_top_mount_is_told_from_a_spring_in_series() {
     let campaign = folder.path().join("campaign");
     let truth = [("m_tm", 3.0), ("k_tm", 800e3), ("c_tm", 900.0)];
     let order = Order {
+        programme: Programme::fast(),
         effects: vec![Hidden::new("top_mount", "damper", &truth)],
         ..Order::clean("c", 2000)
     };
@@ -187,6 +190,7 @@ fn a_damper_that_is_harder_in_rebound_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new(
             "asymmetric_damper",
@@ -243,6 +247,7 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     ];
     let hidden = Hidden::new("suspended_mass", "body", &truth);
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![hidden],
         ..Order::clean("c", 22)
@@ -275,6 +280,7 @@ fn what_is_known_of_an_effect_is_not_estimated() {
         ("c_wheel_z_other", 1500.0),
     ];
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new("apparent_mass", "body", &truth)],
         ..Order::clean("c", 25)
@@ -323,6 +329,7 @@ fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
         ("c_pwt_x", 300.0),
     ];
     let order = Order {
+        programme: Programme::fast(),
         effects: vec![Hidden::new("suspended_mass", "body", &truth)],
         ..Order::clean("a", 1004)
     };
