@@ -168,7 +168,6 @@ fn a_light_top_mount_is_told_from_a_spring_in_series() {
     let campaign = folder.path().join("campaign");
     let truth = [("m_tm", 3.0), ("k_tm", 800e3), ("c_tm", 900.0)];
     let order = Order {
-        programme: Programme::fast(),
         effects: vec![Hidden::new("top_mount", "damper", &truth)],
         ..Order::clean("c", 2000)
     };
