@@ -83,9 +83,11 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
 
 /// What a study of a shipped campaign has found.
 fn studied(campaign: &str) -> Value {
-    let text = fs::read_to_string(Studied::new(campaign).folder.join("study.json")).expect("a result");
-    let study: Value = serde_json::from_str(&text).expect("JSON");
-    study["discover"].clone()
+    let study = Studied::new(campaign);
+    let text = fs::read_to_string(study.folder.join("study.json"));
+    let text = text.unwrap_or_else(|error| panic!("no result ({error}) of {}", study.said));
+    let result: Value = serde_json::from_str(&text).expect("JSON");
+    result["discover"].clone()
 }
 
 fn measured(name: &str) -> Value {
