@@ -1,5 +1,7 @@
 //! What is missing is named, and nothing is invented, on campaigns that a second simulator makes.
 
+#[path = "support/studied.rs"]
+mod studied;
 #[path = "support/swept.rs"]
 mod swept;
 
@@ -12,6 +14,7 @@ use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
 use qcar_runtime::discover::numbers::Numbers;
 use serde_json::Value;
+use studied::Studied;
 use swept::{swept, two_sensors};
 
 /// Runs `qcar discover` on a campaign.
@@ -43,8 +46,7 @@ fn assert_near(answer: &Value, truth: &[(&str, f64)]) {
 
 #[test]
 fn what_is_left_of_a_clean_campaign_is_noise() {
-    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join("models/campaigns/axle_a_rig");
-    let answer = discover(&campaign, None);
+    let answer = studied("axle_a_rig");
     assert_eq!(answer["verdict"], "none");
     assert_eq!(answer["effects"], Value::Array(Vec::new()));
     assert_eq!(answer["places"], Value::Array(Vec::new()));
@@ -57,6 +59,7 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
         let folder = tempfile::tempdir().expect("a folder");
         let campaign = folder.path().join("campaign");
         let order = Order {
+            programme: Programme::fast(),
             cleats: false,
             effects: vec![Hidden::new("drag_to_ground", "body", &[("c_drag", c_drag)])],
             ..Order::clean("c", 31)
@@ -76,6 +79,15 @@ fn an_effect_is_seen_from_the_size_on_that_is_told() {
     assert_eq!(with(0.5 * limit)["verdict"], "none");
     let seen = with(2.0 * limit);
     assert_eq!(seen["effects"][0]["name"], "drag_to_ground", "{seen}");
+}
+
+/// What a study of a shipped campaign has found.
+fn studied(campaign: &str) -> Value {
+    let study = Studied::new(campaign);
+    let text = fs::read_to_string(study.folder.join("study.json"));
+    let text = text.unwrap_or_else(|error| panic!("no result ({error}) of {}", study.said));
+    let result: Value = serde_json::from_str(&text).expect("JSON");
+    result["discover"].clone()
 }
 
 fn measured(name: &str) -> Value {
@@ -101,7 +113,7 @@ fn dry_friction_is_named_in_a_real_drive() {
 /// A magnetorheological damper slips, and what is in series with it yields.
 #[test]
 fn friction_and_what_yields_beside_it_are_named_in_a_real_damper() {
-    let answer = measured("mr_damper");
+    let answer = studied("mr_damper");
     assert_eq!(answer["verdict"], "found", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     // Friction with memory or without, and a damper that yields at its end.
@@ -131,6 +143,7 @@ fn a_top_mount_that_the_model_lacks_is_found() {
     let campaign = folder.path().join("campaign");
     let truth = [("m_tm", 5.0), ("k_tm", 450e3), ("c_tm", 700.0)];
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new("top_mount", "damper", &truth)],
         ..Order::clean("c", 23)
@@ -178,6 +191,7 @@ fn a_damper_that_is_harder_in_rebound_is_found() {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new(
             "asymmetric_damper",
@@ -234,6 +248,7 @@ fn a_powertrain_without_a_sensor_is_found_and_the_model_with_it_compiles() {
     ];
     let hidden = Hidden::new("suspended_mass", "body", &truth);
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![hidden],
         ..Order::clean("c", 22)
@@ -266,6 +281,7 @@ fn what_is_known_of_an_effect_is_not_estimated() {
         ("c_wheel_z_other", 1500.0),
     ];
     let order = Order {
+        programme: Programme::fast(),
         cleats: false,
         effects: vec![Hidden::new("apparent_mass", "body", &truth)],
         ..Order::clean("c", 25)
@@ -314,6 +330,7 @@ fn a_light_mass_on_mounts_is_found_in_sweeps_and_rides_together() {
         ("c_pwt_x", 300.0),
     ];
     let order = Order {
+        programme: Programme::fast(),
         effects: vec![Hidden::new("suspended_mass", "body", &truth)],
         ..Order::clean("a", 1004)
     };

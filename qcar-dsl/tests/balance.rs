@@ -1,10 +1,6 @@
 //! The equations hold: whatever a model computes of itself obeys its laws, Newton, and the balance of its nodes, and
 //! each velocity is the slope of its position along the motion. No derivation is repeated here.
 
-mod common;
-
-use common::random::plan;
-use common::{Builder, assert_close};
 use proptest::prelude::*;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
@@ -12,6 +8,9 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Expr, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
 use qcar_model::Model as _;
+
+use super::common::random::plan;
+use super::common::{self, Builder, assert_close};
 
 /// What a random model shows: of each coordinate and each link.
 struct Seen {

@@ -1,8 +1,5 @@
 //! Laws of several stretches against the same law written by hand over complex numbers, whose imaginary part is the derivative.
 
-mod common;
-
-use common::{assert_close, text};
 use nalgebra::Complex;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::check;
@@ -11,6 +8,8 @@ use qcar_dsl::diagnostic::{Code, Report, Severity};
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::show::{Stage, show};
 use qcar_model::{Entry, Matrix, Model as _};
+
+use super::common::{assert_close, text};
 
 type C = Complex<f64>;
 

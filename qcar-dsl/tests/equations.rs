@@ -1,12 +1,7 @@
 //! The equations of motion and their matrices are those that M, C and K assembled by numbers give.
 
-mod common;
-
 use std::collections::HashMap;
 
-use common::random::plan;
-use common::reference::Reference;
-use common::{assert_close, axle_d};
 use nalgebra::{Complex, ComplexField};
 use proptest::prelude::*;
 use qcar_dsl::check::Checked;
@@ -15,6 +10,10 @@ use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::Symbol;
 use qcar_model::{Entry, Matrix, Model as _};
+
+use super::common::random::plan;
+use super::common::reference::Reference;
+use super::common::{self, assert_close, axle_d};
 
 /// f and h by the reference.
 fn equations<T: ComplexField<RealField = f64> + Copy>(

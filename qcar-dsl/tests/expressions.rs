@@ -1,9 +1,9 @@
 //! The laws of expressions: identities leave values alone, and derivatives are slopes.
 
-mod common;
-
 use proptest::prelude::*;
 use qcar_dsl::expr::{CoordinateId, Differential, Expr, Function, Graph, Leaves, Substitution, Symbol};
+
+use super::common;
 
 const FUNCTIONS: [Function; 10] = [
     Function::Abs,

@@ -1,8 +1,5 @@
 //! Force inputs between points and in laws, and links that may give energy, against closed forms.
 
-mod common;
-
-use common::{assert_close, text};
 use nalgebra::Complex;
 use qcar_dsl::check::check_text;
 use qcar_dsl::compile::derive;
@@ -10,6 +7,8 @@ use qcar_dsl::diagnostic::{Code, Severity};
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::show::{Stage, show};
 use qcar_model::{Model as _, ResponseMut};
+
+use super::common::{assert_close, text};
 
 const OMEGA: [f64; 4] = [1.0, 7.0, 30.0, 200.0];
 

@@ -1,10 +1,5 @@
 //! Frequency responses and their parameter Jacobians are those of a dense complex solve, and of closed forms.
 
-mod common;
-
-use common::random::{large_plan, plan};
-use common::reference::{Reference, response};
-use common::{Builder, assert_close, axle_d};
 use nalgebra::Complex;
 use proptest::prelude::*;
 use qcar_dsl::check::Checked;
@@ -13,6 +8,10 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
 use qcar_dsl::response::sources;
 use qcar_model::{Model as _, ResponseMut};
+
+use super::common::random::{large_plan, plan};
+use super::common::reference::{Reference, response};
+use super::common::{self, Builder, assert_close, axle_d};
 
 /// Responses and Jacobians of all excitations: values by output and line, slopes by output, parameter and line.
 struct Responses {

@@ -1,8 +1,5 @@
 //! Programs interpreted in another order than theirs give the same bits as in theirs.
 
-mod common;
-
-use common::{Builder, cases};
 use proptest::prelude::*;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
@@ -11,6 +8,8 @@ use qcar_dsl::model::{CoordinateKind, Term};
 use qcar_dsl::program::{Op, Program, Value};
 use qcar_dsl::schedule::Compiled;
 use qcar_model::{Model as _, Points};
+
+use super::common::{Builder, cases};
 
 /// Constants that are prepared, of which a program reads some.
 const PREPARED: usize = 50;

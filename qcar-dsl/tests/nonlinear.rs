@@ -1,8 +1,5 @@
 //! Nonlinear laws and rolling tyres: equations written out by hand over dual numbers, and finite differences of those.
 
-mod common;
-
-use common::{Builder, assert_close};
 use proptest::prelude::*;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
@@ -10,6 +7,8 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{Function, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
 use qcar_model::{Contact, Matrix, Model as _};
+
+use super::common::{self, Builder, assert_close};
 
 const PARAMETERS: [&str; 9] = ["m_body", "m_wheel", "k", "c", "v0", "f_c", "sigma", "k_tire", "ratio"];
 

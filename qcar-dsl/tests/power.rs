@@ -1,14 +1,13 @@
 //! Power balance: what the inputs deliver, less what the links dissipate, is the growth of the stored energy.
 
-mod common;
-
-use common::Builder;
 use proptest::prelude::*;
 use qcar_dsl::compile::derive;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::expr::{CoordinateId, Function, LinkId, Symbol};
 use qcar_dsl::model::{CoordinateKind, Quantity, Signal, Term};
 use qcar_model::Model as _;
+
+use super::common::{self, Builder};
 
 /// Body and wheel on a lever, a node in series, an inerter, a digressive damper and a hardening spring.
 fn nonlinear_corner() -> Builder {

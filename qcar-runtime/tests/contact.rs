@@ -483,12 +483,15 @@ fn radii_agree_with_a_sum_over_many_rays() {
     }
 }
 
-/// Distance to the ground along a ray, found by walking; the radius where there is none nearer.
+/// Distance to the ground along a ray, found by walking, with short steps where a long one would lead below it; the radius
+/// where there is none nearer.
 fn first_ground(road: &Road, [x, z]: [f64; 2], angle: f64) -> f64 {
-    const STEP: f64 = 1e-5;
     let mut distance = 0.2;
-    while distance < RADIUS && z - distance * angle.cos() > road.height(x + distance * angle.sin()) {
-        distance += STEP;
+    for step in [1e-4, 1e-5] {
+        let above = |distance: f64| z - distance * angle.cos() > road.height(x + distance * angle.sin());
+        while distance < RADIUS && above(distance + step) {
+            distance += step;
+        }
     }
     distance.min(RADIUS)
 }

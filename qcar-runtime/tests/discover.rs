@@ -1,8 +1,5 @@
 //! Evidence made from closed forms, with sensors that are wrong by known amounts, against refit and gap.
 
-#[path = "support/strut.rs"]
-mod strut;
-
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
@@ -14,7 +11,8 @@ use qcar_runtime::model::{Clock, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::{Point, logarithmic};
-use strut::{Parts, Strut};
+
+use super::support::strut::{Parts, Strut};
 
 const PLAIN: Parts = Parts {
     powertrain: false,

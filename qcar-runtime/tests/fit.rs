@@ -1,7 +1,5 @@
 //! The rig fit on synthetic measurements of an assembled model whose parameters are known.
 
-mod support;
-
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Parameter, Role};
 use qcar_runtime::fit::observation::{Difference, Pair};
@@ -11,7 +9,8 @@ use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::fit::{Fit, Level, Observation, Plan, Setup, Weighting, channels::across_links};
 use qcar_runtime::model::{Channel, Default, Model};
 use std::collections::BTreeMap;
-use support::{Assembled, CHAIN, Law, acceleration, between, chain};
+
+use super::support::{self, Assembled, CHAIN, Law, acceleration, between, chain};
 
 /// Starts that are off by up to a third, either way.
 const OFF: [f64; 10] = [1.0, 1.2, 0.8, 0.75, 1.3, 1.3, 0.7, 1.25, 0.75, 0.9];

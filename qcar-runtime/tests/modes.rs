@@ -1,8 +1,5 @@
 //! Natural vibrations against closed forms: a chain of masses whose modes are textbook algebra.
 
-#[expect(dead_code, reason = "other tests use the rest of it")]
-mod support;
-
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
@@ -10,7 +7,8 @@ use nalgebra::Complex;
 use qcar_runtime::model::Model;
 use qcar_runtime::modes::{Mode, Part, modes, pairs};
 use qcar_runtime::response::parameters::Values;
-use support::{CHAIN, chain};
+
+use super::support::{CHAIN, chain};
 
 fn of_chain(change: &[(&str, f64)]) -> (Vec<f64>, Vec<Mode>) {
     let model = chain(true);

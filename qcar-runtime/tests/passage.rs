@@ -1,7 +1,5 @@
 //! Cleat runs as evidence: a small campaign, written by a ride of a hand-written model, read back and fitted.
 
-mod roller;
-
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
@@ -17,7 +15,8 @@ use qcar_runtime::model::{About, Model};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::road::Road;
 use qcar_runtime::simulate::{Drive, Settings, Variant, ride};
-use roller::{K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
+
+use super::roller::{K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
 
 const RATE: f64 = 1000.0;
 const NOISE: f64 = 0.05;

@@ -1,13 +1,11 @@
 //! Harmonic balance against closed forms, time integration and differences.
 
-#[path = "support/strut.rs"]
-mod strut;
-
 use qcar_runtime::model::{Model, Quantity, SignalKind};
 use qcar_runtime::response::periodic::{Drive, Periodic};
 use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
 use std::f64::consts::TAU;
-use strut::{Parts, Strut};
+
+use super::support::strut::{Parts, Strut};
 
 const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 95.0, 9e5];
 const DRY: Parts = Parts {

@@ -1,7 +1,5 @@
 //! Transmissibilities of a hand-written model against its closed form, its matrices and finite differences.
 
-mod support;
-
 use nalgebra::Complex;
 use qcar_runtime::model::{Default, Model, Quantity, Signal, SignalKind};
 use qcar_runtime::response::Response;
@@ -9,7 +7,8 @@ use qcar_runtime::response::parameters::{ParameterError, Values};
 use qcar_runtime::response::ratio::{Ratio, ratio};
 use qcar_runtime::response::signal::{SignalError, locate};
 use std::collections::BTreeMap;
-use support::{Assembled, CHAIN, acceleration, chain};
+
+use super::support::{self, Assembled, CHAIN, acceleration, chain};
 
 const FREQUENCIES: [f64; 4] = [0.7, 3.0, 11.0, 27.0];
 

@@ -1,14 +1,11 @@
 //! Rides of a hand-written model against what must hold of any ride.
 
-mod roller;
-#[path = "support/track.rs"]
-mod track;
-
 use qcar_runtime::progress::UNTOLD;
 use qcar_runtime::road::{Road, RoadError};
 use qcar_runtime::simulate::{Drive, Method, Ride, Settings, SimulateError, Variant, ride, rides};
-use roller::{GAP, K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
-use track::{cleat, drive};
+
+use super::roller::{GAP, K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
+use super::support::track::{cleat, drive};
 
 fn flat() -> Road {
     Road::from_points(&[[0.0, 0.0], [20.0, 0.0]]).expect("it is a road")

@@ -1,23 +1,22 @@
 //! Sweeps of an axle with dry friction, integrated in fine steps, from levels at which it sticks to those at which it
 //! slips, against what discovery predicts of them.
 
-#[path = "support/strut.rs"]
-mod strut;
-
 use std::collections::BTreeMap;
 use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 use std::fs;
 use std::path::Path;
+use std::sync::LazyLock;
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::discover::observe::{Kind, Misread, Stimulus, predict, unsteady};
 use qcar_runtime::discover::posterior::{refit, settle};
-use qcar_runtime::discover::{Evidence, Free, Gap};
+use qcar_runtime::discover::{Evidence, Free, Gap, Refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
-use strut::{Parts, Strut};
+
+use super::support::strut::{Parts, Strut};
 
 const P: [f64; 11] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0, 95.0, 9e5];
 const DRY: Parts = Parts {
@@ -109,6 +108,25 @@ fn campaign(folder: &Path, model: &Strut) -> Campaign {
     Campaign::open(folder).expect("it is a campaign")
 }
 
+/// What sweeps of a model show.
+fn evidence(parts: Parts) -> (Strut, Evidence) {
+    let (folder, model) = (tempfile::tempdir().expect("a place for files"), Strut::new(parts));
+    let campaign = campaign(folder.path(), &model);
+    let evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    (model, evidence)
+}
+
+/// Sweeps of the axle with friction and of that without, which all tests are about.
+static WITH_FRICTION: LazyLock<(Strut, Evidence)> = LazyLock::new(|| evidence(DRY));
+static LINEAR: LazyLock<(Strut, Evidence)> = LazyLock::new(|| evidence(PLAIN));
+
+/// The friction found from sweeps that are taken as steady.
+static FITTED: LazyLock<Refit> = LazyLock::new(|| {
+    let (model, evidence) = &*WITH_FRICTION;
+    let free = [9, 10].map(free);
+    refit(model, &values(model, 1.2), &free, evidence).expect("the model has the sensors")
+});
+
 fn values(model: &Strut, off: f64) -> Values {
     with_friction(model, [off * P[9], off * P[10]])
 }
@@ -150,18 +168,14 @@ fn worst(model: &Strut, evidence: &Evidence, role: Role) -> [f64; 2] {
 
 #[test]
 fn what_never_settles_is_predicted_as_it_is_measured() {
-    let (folder, model) = (tempfile::tempdir().expect("a place for files"), Strut::new(DRY));
-    let campaign = campaign(folder.path(), &model);
-    let evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    let (model, evidence) = &*WITH_FRICTION;
     for role in [Role::Fit, Role::HeldOut] {
-        let [steady, unsteady] = worst(&model, &evidence, role);
+        let [steady, unsteady] = worst(model, evidence, role);
         assert!(steady > 0.01, "{steady}");
         assert!(unsteady < 0.003, "{unsteady}");
     }
-    let free = [9, 10].map(free);
-    let fitted = refit(&model, &values(&model, 1.2), &free, &evidence).expect("the model has the sensors");
-    let settled = settle(&model, fitted, &evidence).expect("the model has the sensors");
-    let gap = Gap::of(&model, &settled, &evidence).expect("the model has the sensors");
+    let settled = settle(model, FITTED.clone(), evidence).expect("the model has the sensors");
+    let gap = Gap::of(model, &settled, evidence).expect("the model has the sensors");
     assert!(gap.fit < 1.0 && gap.held_out < 1.0, "{} {}", gap.fit, gap.held_out);
     for (free, estimate) in settled.free.iter().zip(&settled.estimate) {
         let error = estimate / P[free.parameter] - 1.0;
@@ -171,21 +185,17 @@ fn what_never_settles_is_predicted_as_it_is_measured() {
 
 #[test]
 fn the_slopes_along_the_errors_of_sensors_are_those_of_differences() {
-    let (folder, model) = (tempfile::tempdir().expect("a place for files"), Strut::new(DRY));
-    let campaign = campaign(folder.path(), &model);
-    let evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
-    let free = [9, 10].map(free);
-    let fitted = refit(&model, &values(&model, 1.2), &free, &evidence).expect("the model has the sensors");
-    let (_, jacobian) = fitted.linearised(&model, &evidence);
+    let ((model, evidence), fitted) = (&*WITH_FRICTION, &*FITTED);
+    let (_, jacobian) = fitted.linearised(model, evidence);
     const STEP: f64 = 1e-4;
     for k in 0..fitted.coefficients.len() {
         let residual = |step: f64| {
             let mut moved = fitted.clone();
             moved.coefficients[k] += step;
-            moved.linearised(&model, &evidence).0
+            moved.linearised(model, evidence).0
         };
         let expected = (residual(STEP) - residual(-STEP)) / (2.0 * STEP);
-        let found = jacobian.column(free.len() + k);
+        let found = jacobian.column(fitted.free.len() + k);
         // Where friction nearly sticks, a search ends elsewhere for the least change: of the others most are right.
         let mut errors: Vec<f64> = found
             .iter()
@@ -212,10 +222,8 @@ fn unsteady_of(model: &Strut, evidence: &Evidence) -> Vec<Vec<Complex<f64>>> {
 
 /// What sweeps of a linear axle show, whose pad is seen by a sensor that may be of another quantity and read something at
 /// rest.
-fn of_linear_axle(quantity: Quantity, at_rest: f64) -> (Strut, Evidence) {
-    let (folder, plain) = (tempfile::tempdir().expect("a place for files"), Strut::new(PLAIN));
-    let campaign = campaign(folder.path(), &plain);
-    let mut evidence = Evidence::from_campaign(&campaign, plain.about()).expect("the runs can be read");
+fn of_linear_axle(quantity: Quantity, at_rest: f64) -> (&'static Strut, Evidence) {
+    let (plain, mut evidence) = (&LINEAR.0, LINEAR.1.clone());
     for run in &mut evidence.runs {
         if let Stimulus::Sweep { reference, signal, .. } = &mut run.stimulus {
             reference.quantity = quantity;
@@ -233,8 +241,8 @@ fn largest(values: impl Iterator<Item = Complex<f64>>) -> f64 {
 #[test]
 fn what_the_estimator_takes_for_harmonics_of_a_linear_axle_is_predicted() {
     let (plain, evidence) = of_linear_axle(Quantity::Acceleration, 0.1);
-    let added = unsteady_of(&plain, &evidence);
-    let steady = predict(&plain, &values(&plain, 1.0), &[], &evidence, Role::Fit).expect("it has the sensors");
+    let added = unsteady_of(plain, &evidence);
+    let steady = predict(plain, &values(plain, 1.0), &[], &evidence, Role::Fit).expect("it has the sensors");
     for mut prediction in steady {
         let series = &evidence.series[prediction.series];
         let left = |said: &[Complex<f64>]| largest(series.value.iter().zip(said).map(|(seen, said)| seen - said));
@@ -252,8 +260,8 @@ fn what_the_estimator_takes_for_harmonics_of_a_linear_axle_is_predicted() {
 fn a_linear_axle_answers_a_sweep_as_it_does_when_it_is_replayed() {
     for quantity in [Quantity::Acceleration, Quantity::Velocity, Quantity::Displacement] {
         let (plain, evidence) = of_linear_axle(quantity, 0.0);
-        let answered = unsteady_of(&plain, &evidence).concat();
-        let replayed = unsteady_of(&Strut::new(DRY), &evidence).concat();
+        let answered = unsteady_of(plain, &evidence).concat();
+        let replayed = unsteady_of(&WITH_FRICTION.0, &evidence).concat();
         let off = largest(
             answered
                 .iter()

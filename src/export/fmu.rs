@@ -28,10 +28,11 @@ pub use library::Library;
 const TOLERANCE: f64 = 1e-9;
 
 /// What is the same in every unit, but for what stands before it all.
-const SOURCES: [(&str, &str); 3] = [
+const SOURCES: [(&str, &str); 4] = [
     ("core.h", include_str!("fmu/core.h")),
     ("core.c", include_str!("fmu/core.c")),
     ("advance.c", include_str!("fmu/advance.c")),
+    ("interface.h", include_str!("fmu/interface.h")),
 ];
 
 /// The version of the interface.

@@ -1,5 +1,8 @@
 //! The command line as a user meets it.
 
+#[path = "../support/studied.rs"]
+mod studied;
+
 mod bad_input;
 mod command_line;
 mod common;

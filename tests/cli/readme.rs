@@ -1,7 +1,8 @@
 //! The README's commands work as printed.
 
-use crate::common::{repository, run_line, succeeds};
+use crate::common::{repository, run_line};
 use crate::document::{alike, blocks, commands, words};
+use crate::studied::Studied;
 
 #[test]
 fn the_commands_of_the_readme_run() {
@@ -23,9 +24,8 @@ fn the_summary_of_the_readme_is_that_of_the_study() {
         .iter()
         .find(|block| block.text.starts_with("axle_c_study:"))
         .unwrap();
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().to_str().unwrap();
-    let printed = succeeds(&["study", "models/campaigns/axle_c_study", "--out", out]).replace(out, "results");
+    let study = Studied::new("axle_c_study");
+    let printed = study.said.replace(study.folder.to_str().unwrap(), "results");
     let (shown, printed) = (words(&shown.text), words(&printed));
     assert!(
         alike(&shown, &printed),

@@ -134,6 +134,28 @@ fn the_engine_names_no_axle_and_no_effect() {
     assert!(offences.is_empty(), "{}", offences.join("\n"));
 }
 
+/// Where all tests of a crate are one program, a file that its list lacks would never run.
+#[test]
+fn every_file_of_tests_is_in_its_list() {
+    for folder in [
+        "models/tests",
+        "qcar-dsl/tests",
+        "qcar-runtime/tests",
+        "tests/blind/tests",
+    ] {
+        let list = read(&Path::new(folder).join("all.rs"));
+        let files = rust_files(Path::new(folder)).into_iter();
+        let files = files.filter(|file| file.parent() == Some(Path::new(folder)));
+        let names: Vec<String> = files
+            .map(|file| file.file_stem().unwrap().to_string_lossy().into())
+            .collect();
+        assert!(names.len() > 3, "the test looks in the wrong place");
+        for name in names.iter().filter(|name| *name != "all") {
+            assert!(list.contains(&format!("mod {name};")), "{folder}/all.rs lacks {name}");
+        }
+    }
+}
+
 fn stems(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries

@@ -1,9 +1,11 @@
 //! Chromium: a report in a window of any width, seen by a probe, and a report on paper.
 
+use std::collections::BTreeMap;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+use std::sync::{Arc, Mutex, OnceLock};
 
 use serde_json::Value;
 
@@ -44,8 +46,17 @@ fn program(name: &str) -> Option<PathBuf> {
     files.into_iter().find(|file| file.is_file())
 }
 
-/// Opens a report with the probe before its scripts, and gives what that has found.
+/// What the probe has found in a report: several tests ask for the same page, which is opened once for them all.
 pub fn look(browser: &Path, report: &str, width: u64, theme: &str) -> Value {
+    type Page = (String, u64, String);
+    static SEEN: Mutex<BTreeMap<Page, Arc<OnceLock<Value>>>> = Mutex::new(BTreeMap::new());
+    let page = (report.to_owned(), width, theme.to_owned());
+    let found = Arc::clone(SEEN.lock().unwrap().entry(page).or_default());
+    found.get_or_init(|| open(browser, report, width, theme)).clone()
+}
+
+/// Opens a report with the probe before its scripts.
+fn open(browser: &Path, report: &str, width: u64, theme: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let themed = format!("<html lang=\"en\" data-theme=\"{theme}\">");
     let opened = report.replacen("<html lang=\"en\">", &themed, 1).replacen(

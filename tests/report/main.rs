@@ -1,5 +1,7 @@
 //! The report as a reader meets it: in a browser, wide and narrow, light and dark, without a network.
 
+#[path = "../support/studied.rs"]
+mod studied;
 #[path = "../support/swept.rs"]
 mod swept;
 
@@ -13,27 +15,14 @@ mod sliders;
 mod verdict;
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 use std::sync::LazyLock;
 
 use browser::{browser_or_word, look};
 use serde_json::Value;
+use studied::Studied;
 use swept::two_sensors;
-
-/// A shipped campaign, studied once for all tests.
-struct Studied {
-    folder: PathBuf,
-    said: String,
-}
-
-impl Studied {
-    fn new(campaign: &str) -> Self {
-        let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("report").join(campaign);
-        let said = qcar(&["study", &format!("models/campaigns/{campaign}")], &folder);
-        Self { folder, said }
-    }
-}
 
 static NOTHING_MISSING: LazyLock<Studied> = LazyLock::new(|| Studied::new("axle_a_rig"));
 static ONE_MISSING: LazyLock<Studied> = LazyLock::new(|| Studied::new("axle_c_study"));
@@ -218,8 +207,8 @@ fn figures_and_tables_can_be_taken_away() {
 #[test]
 fn units_change_everywhere() {
     let Some(browser) = browser_or_word() else { return };
-    for report in [page(&ONE_MISSING), compared(COMPARED[1].0)] {
-        let found = look(&browser, &report, 1280, "light");
+    for report in [&page(&ONE_MISSING), &*COMPARISONS[1]] {
+        let found = look(&browser, report, 1280, "light");
         let [mm, si] = ["mm", "si"].map(|system| found["units"][system].as_str().unwrap());
         for unit in ["N/mm", "N·s/mm", "\u{202f}mm"] {
             assert!(mm.contains(unit), "{unit} in {mm}");
@@ -316,13 +305,12 @@ const COMPARED: [(&str, usize); 3] = [
 #[test]
 fn a_comparison_is_whole_in_a_browser() {
     let Some(browser) = browser_or_word() else { return };
-    for (subject, sections) in COMPARED {
-        let page = compared(subject);
+    for ((subject, sections), page) in COMPARED.iter().zip(&COMPARISONS) {
         for (width, theme) in PAGES {
-            let found = look(&browser, &page, width, theme);
+            let found = look(&browser, page, width, theme);
             let place = format!("{subject}, {width} px, {theme}: {found}");
             check(&found, (width, &place), &COMPARISON);
-            assert_eq!(found["sections"].as_array().unwrap().len(), sections, "{place}");
+            assert_eq!(found["sections"].as_array().unwrap().len(), *sections, "{place}");
         }
     }
 }
@@ -345,8 +333,14 @@ fn targets_are_whole_in_a_browser() {
     }
 }
 
-/// The report of a comparison.
-fn compared(subject: &str) -> String {
+/// The reports of the comparisons, in the order of `COMPARED`.
+static COMPARISONS: [LazyLock<String>; 3] = [
+    LazyLock::new(|| compare(COMPARED[0].0)),
+    LazyLock::new(|| compare(COMPARED[1].0)),
+    LazyLock::new(|| compare(COMPARED[2].0)),
+];
+
+fn compare(subject: &str) -> String {
     let folder = tempfile::tempdir().unwrap();
     let arguments: Vec<&str> = std::iter::once("compare").chain(subject.split_whitespace()).collect();
     qcar(&arguments, folder.path());

@@ -3,6 +3,8 @@
 
 use std::collections::BTreeSet;
 
+use strsim::levenshtein;
+
 use crate::source::{Source, Span};
 
 mod code;
@@ -154,26 +156,10 @@ fn listed<Word: AsRef<str>>(words: &[Word], last: &str) -> String {
 
 /// The candidate that a misspelt name most likely means; none for names so short that they resemble every other.
 fn nearest<'a, Word: AsRef<str>>(name: &str, candidates: &'a [Word]) -> Option<&'a str> {
-    let distance = |word: &&str| edits(name, word);
+    let distance = |word: &&str| levenshtein(name, word);
     let best = candidates.iter().map(AsRef::as_ref).min_by_key(distance)?;
     let length = name.chars().count();
-    (length > 2 && edits(name, best) <= 1 + length / 4).then_some(best)
-}
-
-/// Levenshtein's distance.
-fn edits(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().enumerate() {
-        let mut diagonal = i;
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let replaced = diagonal + usize::from(x != y);
-            diagonal = row[j + 1];
-            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
-        }
-    }
-    row[b.len()]
+    (length > 2 && levenshtein(name, best) <= 1 + length / 4).then_some(best)
 }
 
 #[cfg(test)]
@@ -182,7 +168,6 @@ mod tests {
 
     #[test]
     fn a_misspelt_name_finds_its_neighbour() {
-        assert_eq!(edits("kitten", "sitting"), 3);
         assert_eq!(nearest("k_tyre", &["c_tire", "k_tire"]), Some("k_tire"));
         assert_eq!(nearest("mass", &["k_tire"]), None);
         assert_eq!(nearest("c", &["s", "c_tire"]), None);

@@ -1,7 +1,5 @@
 //! Models built by hand, so that the stages after `check` are judged without a text.
 
-#![allow(dead_code, reason = "each test uses a part")]
-
 pub mod random;
 pub mod reference;
 

@@ -1,5 +1,8 @@
 //! Models for the tests, assembled from masses and links by incidence: `M q̈ + C q̇ + K q = k z_pad + c ż_pad`.
 
+pub mod strut;
+pub mod track;
+
 use nalgebra::{Complex, DMatrix, DVector};
 use qcar_runtime::model::{
     About, Channel, Contact, Default, Entry, Excitation, Input, InputKind, Link, Matrix, Model, Output, Parameter,

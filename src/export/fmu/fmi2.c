@@ -3,23 +3,6 @@
 
 #include <string.h>
 
-#if defined _WIN32 || defined __CYGWIN__
-#define EXPORT __declspec(dllexport)
-#elif defined __GNUC__
-#define EXPORT __attribute__((visibility("default")))
-#else
-#define EXPORT
-#endif
-
-/* Functions that are linked together with those of other FMUs begin with the name of the model. */
-#ifdef FMI2_FUNCTION_PREFIX
-#define JOINED(prefix, name) prefix##name
-#define JOIN(prefix, name) JOINED(prefix, name)
-#define FMI(name) JOIN(FMI2_FUNCTION_PREFIX, name)
-#else
-#define FMI(name) name
-#endif
-
 /* The types of the interface, under names of our own: the header of an importer may stand before this file. */
 typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR, STATUS_FATAL, STATUS_PENDING } Status;
 typedef enum { MODEL_EXCHANGE, CO_SIMULATION } Kind;
@@ -56,11 +39,11 @@ static Status said(Instance *of, int result)
     return result == NOT_FINITE || result == TOO_STIFF ? STATUS_DISCARD : STATUS_ERROR;
 }
 
-/* There are no variables but real ones. */
-static Status none(Instance *of, size_t count)
-{
-    return said(of, count == 0 ? OK : UNKNOWN_VARIABLE);
-}
+#define OF_VERSION(name) fmi2##name
+#ifdef FMI2_FUNCTION_PREFIX
+#define FUNCTION_PREFIX FMI2_FUNCTION_PREFIX
+#endif
+#include "interface.h"
 
 EXPORT const char *FMI(fmi2GetTypesPlatform)(void) { return "default"; }
 EXPORT const char *FMI(fmi2GetVersion)(void) { return "2.0"; }
@@ -114,14 +97,6 @@ EXPORT Status FMI(fmi2SetupExperiment)(void *c, int tolerance_defined, double to
 }
 
 EXPORT Status FMI(fmi2EnterInitializationMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi2ExitInitializationMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi2Terminate)(void *c) { (void)c; return STATUS_OK; }
-
-EXPORT Status FMI(fmi2Reset)(void *c)
-{
-    core_reset(&((Instance *)c)->core);
-    return STATUS_OK;
-}
 
 EXPORT Status FMI(fmi2GetReal)(void *c, const unsigned int references[], size_t count, double values[])
 {
@@ -141,6 +116,7 @@ EXPORT Status FMI(fmi2SetReal)(void *c, const unsigned int references[], size_t 
     return said(c, result);
 }
 
+/* There are no variables but real ones. */
 #define NONE_OF(name, type)                                                                                             \
     EXPORT Status FMI(name)(void *c, const unsigned int references[], size_t count, type values[])                            \
     {                                                                                                                   \
@@ -219,8 +195,6 @@ EXPORT Status FMI(fmi2GetDirectionalDerivative)(void *c, const unsigned int unkn
 
 /* Model Exchange. */
 
-EXPORT Status FMI(fmi2EnterEventMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi2EnterContinuousTimeMode)(void *c) { (void)c; return STATUS_OK; }
 
 /* A law that bends has no memory of its bend: nothing has to be done at an event. */
 EXPORT Status FMI(fmi2NewDiscreteStates)(void *c, EventInfo *info)
@@ -239,35 +213,9 @@ EXPORT Status FMI(fmi2CompletedIntegratorStep)(void *c, int no_set_state, int *e
     return STATUS_OK;
 }
 
-EXPORT Status FMI(fmi2SetTime)(void *c, double time)
-{
-    ((Instance *)c)->core.now.time = time;
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi2SetContinuousStates)(void *c, const double x[], size_t count)
-{
-    return said(c, core_set_states(&((Instance *)c)->core, x, count));
-}
-
 EXPORT Status FMI(fmi2GetDerivatives)(void *c, double dx[], size_t count)
 {
     return said(c, core_get_derivatives(&((Instance *)c)->core, dx, count));
-}
-
-EXPORT Status FMI(fmi2GetEventIndicators)(void *c, double indicators[], size_t count)
-{
-    return said(c, core_get_kinks(&((Instance *)c)->core, indicators, count));
-}
-
-EXPORT Status FMI(fmi2GetContinuousStates)(void *c, double x[], size_t count)
-{
-    return said(c, core_get_states(&((Instance *)c)->core, x, count));
-}
-
-EXPORT Status FMI(fmi2GetNominalsOfContinuousStates)(void *c, double nominals[], size_t count)
-{
-    return said(c, core_get_nominals(nominals, count));
 }
 
 /* Co-Simulation. */

@@ -6,23 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined _WIN32 || defined __CYGWIN__
-#define EXPORT __declspec(dllexport)
-#elif defined __GNUC__
-#define EXPORT __attribute__((visibility("default")))
-#else
-#define EXPORT
-#endif
-
-/* Functions that are linked together with those of other FMUs begin with the name of the model. */
-#ifdef FMI3_FUNCTION_PREFIX
-#define JOINED(prefix, name) prefix##name
-#define JOIN(prefix, name) JOINED(prefix, name)
-#define FMI(name) JOIN(FMI3_FUNCTION_PREFIX, name)
-#else
-#define FMI(name) name
-#endif
-
 typedef enum { STATUS_OK, STATUS_WARNING, STATUS_DISCARD, STATUS_ERROR, STATUS_FATAL } Status;
 typedef void (*Logger)(void *environment, Status status, const char *category, const char *message);
 /* What an importer is called back with; nothing here calls it. */
@@ -44,11 +27,11 @@ static Status said(Instance *of, int result)
     return result == NOT_FINITE || result == TOO_STIFF ? STATUS_DISCARD : STATUS_ERROR;
 }
 
-/* There is nothing of a kind. */
-static Status none(Instance *of, size_t count)
-{
-    return said(of, count == 0 ? OK : UNKNOWN_VARIABLE);
-}
+#define OF_VERSION(name) fmi3##name
+#ifdef FMI3_FUNCTION_PREFIX
+#define FUNCTION_PREFIX FMI3_FUNCTION_PREFIX
+#endif
+#include "interface.h"
 
 EXPORT const char *FMI(fmi3GetVersion)(void) { return "3.0"; }
 
@@ -131,19 +114,9 @@ EXPORT Status FMI(fmi3EnterInitializationMode)(void *c, bool tolerance_defined, 
     return STATUS_OK;
 }
 
-EXPORT Status FMI(fmi3ExitInitializationMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi3EnterEventMode)(void *c) { (void)c; return STATUS_OK; }
 EXPORT Status FMI(fmi3EnterStepMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi3EnterContinuousTimeMode)(void *c) { (void)c; return STATUS_OK; }
 EXPORT Status FMI(fmi3EnterConfigurationMode)(void *c) { (void)c; return STATUS_OK; }
 EXPORT Status FMI(fmi3ExitConfigurationMode)(void *c) { (void)c; return STATUS_OK; }
-EXPORT Status FMI(fmi3Terminate)(void *c) { (void)c; return STATUS_OK; }
-
-EXPORT Status FMI(fmi3Reset)(void *c)
-{
-    core_reset(&((Instance *)c)->core);
-    return STATUS_OK;
-}
 
 EXPORT Status FMI(fmi3GetFloat64)(void *c, const uint32_t references[], size_t count, double values[], size_t values_of)
 {
@@ -380,35 +353,9 @@ EXPORT Status FMI(fmi3CompletedIntegratorStep)(void *c, bool no_set_state, bool 
     return STATUS_OK;
 }
 
-EXPORT Status FMI(fmi3SetTime)(void *c, double time)
-{
-    ((Instance *)c)->core.now.time = time;
-    return STATUS_OK;
-}
-
-EXPORT Status FMI(fmi3SetContinuousStates)(void *c, const double x[], size_t count)
-{
-    return said(c, core_set_states(&((Instance *)c)->core, x, count));
-}
-
-EXPORT Status FMI(fmi3GetContinuousStates)(void *c, double x[], size_t count)
-{
-    return said(c, core_get_states(&((Instance *)c)->core, x, count));
-}
-
 EXPORT Status FMI(fmi3GetContinuousStateDerivatives)(void *c, double dx[], size_t count)
 {
     return said(c, core_get_derivatives(&((Instance *)c)->core, dx, count));
-}
-
-EXPORT Status FMI(fmi3GetEventIndicators)(void *c, double indicators[], size_t count)
-{
-    return said(c, core_get_kinks(&((Instance *)c)->core, indicators, count));
-}
-
-EXPORT Status FMI(fmi3GetNominalsOfContinuousStates)(void *c, double nominals[], size_t count)
-{
-    return said(c, core_get_nominals(nominals, count));
 }
 
 EXPORT Status FMI(fmi3GetNumberOfEventIndicators)(void *c, size_t *count)

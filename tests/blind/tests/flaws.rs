@@ -1,13 +1,12 @@
 //! Each flaw of the hardware shows in the records by the amount that was asked for.
 
-mod support;
-
 use std::f64::consts::TAU;
 
 use qcar_blind::Order;
 use qcar_blind::hardware::{Flaw, Hardware};
 use qcar_blind::programme::Programme;
-use support::{Record, records, rms};
+
+use super::support::{Record, records, rms};
 
 const SEED: u64 = 77;
 const RATE: f64 = 1000.0;

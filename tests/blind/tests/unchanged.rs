@@ -1,9 +1,8 @@
 //! The campaigns of seeds 1 and 2 are those that the first tables are of.
 
-mod support;
-
 use qcar_blind::matrix::cases;
-use support::{records, rms};
+
+use super::support::{records, rms};
 
 /// RMS of every channel in a sweep and a drive of `clean d2`, as the simulator made them before it knew any flaw.
 const SWEEP: [(&str, f64); 9] = [

@@ -1,0 +1,7 @@
+//! The blind simulator as the tests of the workbench trust it.
+
+mod answers;
+mod finite;
+mod flaws;
+mod support;
+mod unchanged;
