@@ -67,6 +67,17 @@ pub struct ModelArguments {
     set: Vec<Setting>,
 }
 
+/// What is named, each once, in the order of the first.
+pub(crate) fn each_once<T: PartialEq>(named: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut once: Vec<T> = Vec::new();
+    for own in named {
+        if !once.contains(&own) {
+            once.push(own);
+        }
+    }
+    once
+}
+
 /// How a result is printed.
 #[derive(Clone, Copy, ValueEnum)]
 pub(crate) enum Format {

@@ -26,7 +26,7 @@ use crate::files::folder_for_results;
 use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
 use crate::terminal::prose;
-use crate::verbs::Format;
+use crate::verbs::{Format, each_once};
 
 // What K&C curves say beside it.
 mod clamped;
@@ -204,7 +204,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, model.about(), choices)?;
     refuse_unseen(&model, &plan)?;
-    let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
+    let channels = each_once(choices.channels.iter().cloned());
+    let wanted = (!channels.is_empty()).then_some(channels.as_slice());
     let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
