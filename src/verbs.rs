@@ -36,6 +36,8 @@ pub mod import;
 pub mod kc;
 // a model fitted to it,
 pub mod fit;
+// what else would tell its parameters,
+pub mod plan;
 // to one whose answer is known,
 pub mod score;
 // driven over its roads,

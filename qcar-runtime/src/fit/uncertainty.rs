@@ -75,6 +75,22 @@ impl Uncertainty {
         })
     }
 
+    /// The variance of a free parameter over that of independent residuals of unit variance, where it has one.
+    pub fn inflation(&self, variable: usize) -> Option<f64> {
+        let place = self.information.seen().iter().position(|&k| k == variable)?;
+        Some(self.covariance[(place, place)] / self.information.inverse()[(place, place)])
+    }
+
+    /// Places of the free parameters that have a standard error.
+    pub fn seen(&self) -> &[usize] {
+        self.information.seen()
+    }
+
+    /// Of their errors.
+    pub fn covariance(&self) -> &DMatrix<f64> {
+        &self.covariance
+    }
+
     /// Why a free parameter has none, where it is off its bounds.
     pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
         self.information.unseen(variable)
