@@ -47,7 +47,10 @@ pub(super) struct Candidate {
     pub kind: Kind,
     /// In words.
     pub what: String,
+    /// All that would be fitted.
     pub levels: Vec<Level>,
+    /// What is new of it: of a sensor, its ratio to the excitation.
+    pub added: Vec<Level>,
 }
 
 /// What a run says of a place, or would say: its motion over that of the excitation.
@@ -77,25 +80,20 @@ struct Run<'a, M: ?Sized> {
 pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: &[Level]) -> Vec<Candidate> {
     let fitted: Vec<&Level> = levels.iter().filter(|level| level.role == Role::Fit).collect();
     let runs: Vec<Run<'_, M>> = fitted.iter().filter_map(|level| Run::new(model, values, level)).collect();
-    let all = |added: Vec<Level>| fitted.iter().map(|level| (*level).clone()).chain(added).collect();
-    let mut found = sensors(model.about(), &runs, &fitted);
-    found.extend(excitations(model, &runs).into_iter().map(|(what, level)| Candidate {
-        kind: Kind::Run,
+    let with = |kind: Kind, what: String, level: Level| Candidate {
+        kind,
         what,
-        levels: all(vec![level]),
-    }));
+        levels: fitted.iter().copied().chain([&level]).cloned().collect(),
+        added: vec![level],
+    };
+    let mut found = sensors(model.about(), &runs, &fitted);
+    let driven = excitations(model, &runs).into_iter();
+    found.extend(driven.map(|(what, level)| with(Kind::Run, what, level)));
     for run in &runs {
         let again = [(Kind::Repeat, "once more", 1.0), (Kind::Level, "once more at twice its level", 0.25)];
-        found.extend(again.map(|(kind, words, noise)| Candidate {
-            kind,
-            what: format!("{} {words}", run.level.name),
-            levels: all(vec![run.again(noise)]),
-        }));
-        found.extend(run.wider().into_iter().map(|(what, level)| Candidate {
-            kind: Kind::Band,
-            what,
-            levels: all(vec![level]),
-        }));
+        let name = &run.level.name;
+        found.extend(again.map(|(kind, words, noise)| with(kind, format!("{name} {words}"), run.again(noise))));
+        found.extend(run.wider().into_iter().map(|(what, level)| with(Kind::Band, what, level)));
     }
     found
 }
@@ -111,18 +109,21 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
             },
             _ => output.signal.clone(),
         };
-        let added = |run: &Run<'_, M>| run.with_sensor(&signal);
-        let with: Vec<(usize, Level)> = runs.iter().filter_map(|run| Some((run.place(fitted), added(run)?))).collect();
+        let with: Vec<(&Run<'_, M>, Record)> = runs.iter().filter_map(|run| Some((run, run.sensor(&signal)?))).collect();
         let what = format!("{} of {} along {}", quantity(signal.kind), signal.location, signal.axis);
         if with.is_empty() || found.iter().any(|other| other.what == what) {
             continue;
         }
         let mut levels: Vec<Level> = fitted.iter().map(|level| (*level).clone()).collect();
-        with.into_iter().for_each(|(place, level)| levels[place] = level);
+        for (run, record) in &with {
+            let records: Vec<Record> = run.records.iter().chain([record]).cloned().collect();
+            levels[run.place(fitted)] = run.assembled(&records, &run.frequency);
+        }
         found.push(Candidate {
             kind: Kind::Sensor,
             what,
             levels,
+            added: with.iter().map(|(run, record)| run.alone(record)).collect(),
         });
     }
     found
@@ -247,8 +248,8 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         (0..self.frequency.len()).map(mean).collect()
     }
 
-    /// The level with another sensor; none where the model has no such signal, or the run has it.
-    fn with_sensor(&self, signal: &Signal) -> Option<Level> {
+    /// What another sensor would record; none where the model has no such signal, or the run has it.
+    fn sensor(&self, signal: &Signal) -> Option<Record> {
         let same = |own: &Signal| own.location == signal.location && quantity(own.kind) == quantity(signal.kind);
         let is_known = same(&self.source) || self.records.iter().any(|own| same(&own.signal));
         if is_known || signal.axis != self.source.axis {
@@ -256,9 +257,20 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         }
         let value = self.response(signal, &self.frequency)?;
         let variance = self.variance_of(signal, &value);
-        let mut records = self.records.clone();
-        records.push(self.expected(signal.clone(), value, variance));
-        Some(self.assembled(&records, &self.frequency))
+        Some(self.expected(signal.clone(), value, variance))
+    }
+
+    /// A level of the ratio of one record to the excitation.
+    fn alone(&self, record: &Record) -> Level {
+        let channel = Channel {
+            name: format!("{}_to_{}", self.source.location, record.signal.location).into(),
+            numerator: record.signal.clone(),
+            denominator: self.source.clone(),
+        };
+        Level {
+            observations: vec![between(&channel, [Some(record), None], &self.frequency)],
+            ..self.level.clone()
+        }
     }
 
     /// The relative variance of a sensor whose noise is that of the sensors of its kind.

@@ -9,41 +9,22 @@ use crate::least_squares::{Outcome, Stop};
 use crate::model::Model;
 use nalgebra::DMatrix;
 
-/// What a fit is expected to know of the parameters that it is asked for.
-pub(super) struct Forecast {
-    /// Standard errors; `None` of what the levels do not determine.
-    pub errors: Vec<Option<f64>>,
-    /// The covariance under what the ranges say, each parameter over the deviation that its range has.
-    posterior: DMatrix<f64>,
-}
-
-/// Of parameters by their places in the model, with the plan's start values for the minimum.
+/// The standard errors of parameters by their places in the model, with the plan's start values for the minimum; `None` of what
+/// the levels do not determine.
 ///
 /// # Errors
 /// What [`Setup::new`] finds wrong.
-pub(super) fn forecast<M: Model + ?Sized>(
+pub(super) fn errors<M: Model + ?Sized>(
     model: &M,
     plan: &Plan,
     levels: &[Level],
     asked: &[usize],
-) -> Result<Forecast, InputError> {
+) -> Result<Vec<Option<f64>>, InputError> {
     let setup = Setup::new(model, plan, levels)?;
     let uncertainty = uncertainty::estimate(&setup, &at_start(&setup));
     let place = |of: usize| setup.free.iter().position(|free| *free == of);
-    let errors = asked.iter().map(|&of| Some(uncertainty.standard_error(place(of)?)?.total));
-    let known: Vec<usize> = uncertainty.seen().iter().map(|&k| setup.free[k]).collect();
-    Ok(Forecast {
-        errors: errors.collect(),
-        posterior: posterior(&prior(model, plan, asked), asked, &known, uncertainty.covariance()),
-    })
-}
-
-impl Forecast {
-    /// The log determinant of the covariance of some of the parameters, by their places among those asked for.
-    pub fn log_volume(&self, of: &[usize]) -> f64 {
-        let block = self.posterior.select_rows(of).select_columns(of);
-        block.symmetric_eigenvalues().iter().map(|value| value.max(f64::MIN_POSITIVE).ln()).sum()
-    }
+    let error = |&of: &usize| Some(uncertainty.standard_error(place(of)?)?.total);
+    Ok(asked.iter().map(error).collect())
 }
 
 /// The minimum as a search would have ended there.
@@ -64,6 +45,58 @@ fn at_start<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Outcome {
     }
 }
 
+/// What levels say of parameters, each in parts of what is not known of it beforehand: their Fisher information, for weighted
+/// residuals of unit variance, and the mean square that these have.
+pub(super) struct Said {
+    squares: DMatrix<f64>,
+    variance: f64,
+}
+
+impl Said {
+    /// Of parameters by their places in the model.
+    ///
+    /// # Errors
+    /// What [`Setup::new`] finds wrong.
+    pub fn by<M: Model + ?Sized>(
+        model: &M,
+        plan: &Plan,
+        levels: &[Level],
+        asked: &[usize],
+    ) -> Result<Self, InputError> {
+        let setup = Setup::new(model, plan, levels)?;
+        let Outcome { residual, jacobian, .. } = at_start(&setup);
+        let prior = prior(model, plan, asked);
+        let mut slopes = DMatrix::zeros(residual.len(), asked.len());
+        for (column, place) in setup.free.iter().enumerate() {
+            if let Some(to) = asked.iter().position(|asked| asked == place) {
+                slopes.set_column(to, &(jacobian.column(column) * prior[to]));
+            }
+        }
+        let degrees = residual.len().saturating_sub(setup.free.len()).max(1);
+        Ok(Self {
+            squares: slopes.transpose() * slopes,
+            variance: residual.norm_squared() / degrees as f64,
+        })
+    }
+
+    /// The log determinant of the information about some of the parameters, by their places among those asked for, with `more`
+    /// added and under what is known beforehand; all others are estimated beside them.
+    pub fn log_information(&self, more: Option<&Said>, of: &[usize]) -> f64 {
+        let count = self.squares.nrows();
+        let mut sum = self.squares.clone();
+        more.iter().for_each(|more| sum += &more.squares);
+        let whole = DMatrix::identity(count, count) + sum / self.variance.max(f64::MIN_POSITIVE);
+        let others: Vec<usize> = (0..count).filter(|place| !of.contains(place)).collect();
+        log_determinant(&whole) - log_determinant(&whole.select_rows(&others).select_columns(&others))
+    }
+}
+
+/// Of a symmetric matrix with no eigenvalue below one.
+fn log_determinant(of: &DMatrix<f64>) -> f64 {
+    let factor = of.clone().cholesky().expect("the identity is part of it");
+    2.0 * factor.l_dirty().diagonal().iter().map(|own| own.ln()).sum::<f64>()
+}
+
 /// What is known of each parameter before anything is measured: that it lies evenly in its range or, without one, as a standard
 /// deviation its own size.
 fn prior<M: Model + ?Sized>(model: &M, plan: &Plan, asked: &[usize]) -> Vec<f64> {
@@ -75,23 +108,4 @@ fn prior<M: Model + ?Sized>(model: &M, plan: &Plan, asked: &[usize]) -> Vec<f64>
         range.map_or(size, |(low, high)| (high - low) / 12.0_f64.sqrt())
     };
     asked.iter().map(deviation).collect()
-}
-
-/// Prior and measurement together.
-fn posterior(prior: &[f64], asked: &[usize], known: &[usize], covariance: &DMatrix<f64>) -> DMatrix<f64> {
-    let place = |of: &usize| asked.iter().position(|asked| asked == of);
-    let places: Vec<usize> = known.iter().filter_map(place).collect();
-    let scaled = DMatrix::from_fn(known.len(), known.len(), |i, j| {
-        covariance[(i, j)] / (prior[places[i]] * prior[places[j]])
-    });
-    let mut information = DMatrix::identity(asked.len(), asked.len());
-    if let Some(inverse) = scaled.try_inverse() {
-        for (i, &row) in places.iter().enumerate() {
-            for (j, &column) in places.iter().enumerate() {
-                information[(row, column)] += inverse[(i, j)];
-            }
-        }
-    }
-    let symmetric: DMatrix<f64> = (&information + information.transpose()) * 0.5;
-    symmetric.try_inverse().unwrap_or_else(|| DMatrix::identity(asked.len(), asked.len()))
 }

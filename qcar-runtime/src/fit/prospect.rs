@@ -3,11 +3,12 @@
 //! The criterion is the rise of the log determinant of the information about some parameters, all others being estimated, too
 //! (Atkinson, Donev & Tobias, "Optimum Experimental Designs, with SAS", 2007, chapters 10 and 11); what the ranges say is part of
 //! the information, so that parameters that nothing determines have one (Chaloner & Verdinelli, "Bayesian experimental design: a
-//! review", Statistical Science 10, 1995). Errors are counted as the fit counts them: scatter, sides of the axle, and gains.
+//! review", Statistical Science 10, 1995). The expected errors are counted as the fit counts them: scatter, sides of the axle, and
+//! gains. Since the fit does not weight channels by what these leave, an error may grow where information does.
 
 use super::candidate::candidates;
 pub use super::candidate::Kind;
-use super::forecast::forecast;
+use super::forecast::{Said, errors};
 use super::observation::Level;
 use super::plan::Plan;
 use super::setup::Setup;
@@ -60,23 +61,23 @@ pub fn prospects<M: Model + ?Sized>(
     let asked: Vec<usize> = (0..about.parameters.len()).filter(is_asked).collect();
     let counts = |&place: &usize| matter.is_empty() || matter.iter().any(|name| *name == about.parameters[asked[place]].name);
     let counted: Vec<usize> = (0..asked.len()).filter(counts).collect();
-    let now = forecast(model, plan, levels, &asked)?;
-    let before = now.log_volume(&counted);
+    let now = Said::by(model, plan, levels, &asked)?;
+    let before = now.log_information(None, &counted);
     let all = candidates(model, &values, levels);
     let further = progress::map(&all, told, |own| {
-        let then = forecast(model, plan, &own.levels, &asked)?;
+        let more = Said::by(model, plan, &own.added, &asked)?;
         Ok(Prospect {
             kind: own.kind,
             what: own.what.clone(),
-            rise: before - then.log_volume(&counted),
-            errors: then.errors,
+            rise: now.log_information(Some(&more), &counted) - before,
+            errors: errors(model, plan, &own.levels, &asked)?,
         })
     });
     let mut further = further.into_iter().collect::<Result<Vec<_>, InputError>>()?;
     further.sort_by(|a, b| b.rise.total_cmp(&a.rise));
     Ok(Prospects {
+        errors: errors(model, plan, levels, &asked)?,
         parameters: asked,
-        errors: now.errors,
         further,
     })
 }

@@ -81,16 +81,6 @@ impl Uncertainty {
         Some(self.covariance[(place, place)] / self.information.inverse()[(place, place)])
     }
 
-    /// Places of the free parameters that have a standard error.
-    pub fn seen(&self) -> &[usize] {
-        self.information.seen()
-    }
-
-    /// Of their errors.
-    pub fn covariance(&self) -> &DMatrix<f64> {
-        &self.covariance
-    }
-
     /// Why a free parameter has none, where it is off its bounds.
     pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
         self.information.unseen(variable)
