@@ -239,7 +239,13 @@ fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
     if count > most as f64 {
         let (found, most) = (format!("{} sets", number(count, 4)), number(most as f64, 4));
         let expected = format!("at most {most} sets");
-        return Err(flag("--count", found, &expected, "take a smaller number, or vary fewer parameters").into());
+        return Err(flag(
+            "--count",
+            found,
+            &expected,
+            "take a smaller number, or vary fewer parameters",
+        )
+        .into());
     }
     if sobol && axes > DIMENSIONS {
         let expected = format!("at most {DIMENSIONS} parameters for Sobol's sequence");

@@ -262,7 +262,10 @@ fn profiled(plan: &Plan, about: &About, free: &[usize], names: &[String]) -> Res
         let unseen = plan.parameters.iter().any(|own| own.fit && own.name == *name);
         let expected = "a parameter that is fitted, or `all`";
         let (found, remedy) = match unseen {
-            true => (format!("`{name}`, which no fitted channel depends on"), "leave it out".into()),
+            true => (
+                format!("`{name}`, which no fitted channel depends on"),
+                "leave it out".into(),
+            ),
             false => (format!("`{name}`"), spelling::remedy(name, fitted())),
         };
         flag("--profile", found, expected, &remedy)

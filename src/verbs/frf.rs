@@ -21,7 +21,7 @@ use crate::parameters;
 use crate::table::{Table, number};
 use crate::terminal::prose;
 use crate::units;
-use crate::verbs::{ModelArguments, each_once, TableFormat};
+use crate::verbs::{ModelArguments, TableFormat, each_once};
 
 /// Print the frequency response of the channels of a model
 #[derive(Args)]

@@ -127,7 +127,12 @@ fn check_names(plan: &Plan, names: &[String]) -> Result<(), InputError> {
     let unknown = names.iter().filter(|name| fitted().all(|own| own != *name));
     let problem = |name: &String| {
         let remedy = spelling::remedy(name, fitted());
-        flag("--parameters", format!("`{name}`"), "a parameter that is fitted", &remedy)
+        flag(
+            "--parameters",
+            format!("`{name}`"),
+            "a parameter that is fitted",
+            &remedy,
+        )
     };
     InputError::unless_empty(unknown.map(problem).collect(), Some(()))
 }
@@ -170,7 +175,10 @@ const ACROSS: usize = 4;
 impl Planned {
     fn text(&self) -> String {
         let count = counted(self.parameters.0.len(), "parameter");
-        let mut out = format!("{}: what would say most about {count} of {}\n", self.campaign, self.model);
+        let mut out = format!(
+            "{}: what would say most about {count} of {}\n",
+            self.campaign, self.model
+        );
         out.extend(self.notices.iter().map(|notice| format!("note: {notice}\n")));
         if self.further.is_empty() {
             return out + "Nothing could be added: every output and excitation of the model is in use.\n";
@@ -198,7 +206,13 @@ impl Planned {
     /// The two parameters whose errors fall most, in words.
     fn relief(&self, of: &Further) -> String {
         let mut falls: Vec<(f64, String)> = Vec::new();
-        for ((name, own), (_, then)) in self.parameters.0.iter().zip(&of.stderr.0).filter(|((_, own), _)| own.asked) {
+        for ((name, own), (_, then)) in self
+            .parameters
+            .0
+            .iter()
+            .zip(&of.stderr.0)
+            .filter(|((_, own), _)| own.asked)
+        {
             match (own.stderr, *then) {
                 (None, Some(_)) => falls.push((0.0, format!("{name}, now unknown"))),
                 (Some(now), Some(then)) if then < NOTABLE * now => {

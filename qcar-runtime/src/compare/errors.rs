@@ -97,7 +97,11 @@ fn high_peaks(record: &[f64], least: f64) -> impl Iterator<Item = usize> + '_ {
 
 /// The sum of squares by which a simulation differs that is so many samples late; where it has none, it is zero.
 fn difference(measured: &[f64], simulated: &[f64], delay: isize) -> f64 {
-    let simulated = |at: usize| usize::try_from(at as isize + delay).ok().and_then(|at| simulated.get(at));
+    let simulated = |at: usize| {
+        usize::try_from(at as isize + delay)
+            .ok()
+            .and_then(|at| simulated.get(at))
+    };
     let apart = |(at, own): (usize, &f64)| (own - simulated(at).copied().unwrap_or(0.0)).powi(2);
     measured.iter().enumerate().map(apart).sum()
 }

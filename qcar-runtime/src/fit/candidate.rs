@@ -79,7 +79,10 @@ struct Run<'a, M: ?Sized> {
 /// All that could be added to the fitted levels.
 pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: &[Level]) -> Vec<Candidate> {
     let fitted: Vec<&Level> = levels.iter().filter(|level| level.role == Role::Fit).collect();
-    let runs: Vec<Run<'_, M>> = fitted.iter().filter_map(|level| Run::new(model, values, level)).collect();
+    let runs: Vec<Run<'_, M>> = fitted
+        .iter()
+        .filter_map(|level| Run::new(model, values, level))
+        .collect();
     let with = |kind: Kind, what: String, level: Level| Candidate {
         kind,
         what,
@@ -90,10 +93,17 @@ pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: 
     let driven = excitations(model, &runs).into_iter();
     found.extend(driven.map(|(what, level)| with(Kind::Run, what, level)));
     for run in &runs {
-        let again = [(Kind::Repeat, "once more", 1.0), (Kind::Level, "once more at twice its level", 0.25)];
+        let again = [
+            (Kind::Repeat, "once more", 1.0),
+            (Kind::Level, "once more at twice its level", 0.25),
+        ];
         let name = &run.level.name;
         found.extend(again.map(|(kind, words, noise)| with(kind, format!("{name} {words}"), run.again(noise))));
-        found.extend(run.wider().into_iter().map(|(what, level)| with(Kind::Band, what, level)));
+        found.extend(
+            run.wider()
+                .into_iter()
+                .map(|(what, level)| with(Kind::Band, what, level)),
+        );
     }
     found
 }
@@ -109,7 +119,10 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
             },
             _ => output.signal.clone(),
         };
-        let with: Vec<(&Run<'_, M>, Record)> = runs.iter().filter_map(|run| Some((run, run.sensor(&signal)?))).collect();
+        let with: Vec<(&Run<'_, M>, Record)> = runs
+            .iter()
+            .filter_map(|run| Some((run, run.sensor(&signal)?)))
+            .collect();
         let what = format!("{} of {} along {}", quantity(signal.kind), signal.location, signal.axis);
         if with.is_empty() || found.iter().any(|other| other.what == what) {
             continue;
@@ -146,7 +159,11 @@ fn excitations<M: Model + ?Sized>(model: &M, runs: &[Run<'_, M>]) -> Vec<(String
     };
     let level = |excitation: usize| {
         let own = &about.excitations[excitation];
-        let kind = if own.force { SignalKind::Force } else { SignalKind::Motion(Quantity::Acceleration) };
+        let kind = if own.force {
+            SignalKind::Force
+        } else {
+            SignalKind::Motion(Quantity::Acceleration)
+        };
         let level = Level {
             name: own.name.to_string(),
             excitation,
@@ -169,7 +186,12 @@ fn excitations<M: Model + ?Sized>(model: &M, runs: &[Run<'_, M>]) -> Vec<(String
             Some(run.expected(signal, value, variance.clone()))
         });
         let records: Vec<Record> = records.collect();
-        (!records.is_empty()).then(|| (format!("a run driven by {}", own.name), run.assembled(&records, &run.frequency)))
+        (!records.is_empty()).then(|| {
+            (
+                format!("a run driven by {}", own.name),
+                run.assembled(&records, &run.frequency),
+            )
+        })
     };
     unused.filter_map(level).collect()
 }
@@ -184,9 +206,8 @@ fn places<M: ?Sized>(about: &About, runs: &[Run<'_, M>], axis: &str) -> Vec<Sign
             found.push(signal.clone());
         }
     }
-    let accelerates = |signal: &&Signal| {
-        signal.axis == axis && signal.kind == SignalKind::Motion(Quantity::Acceleration)
-    };
+    let accelerates =
+        |signal: &&Signal| signal.axis == axis && signal.kind == SignalKind::Motion(Quantity::Acceleration);
     match found.is_empty() {
         true => outputs.filter(accelerates).cloned().collect(),
         false => found,
@@ -230,7 +251,10 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             let model = self.response(&record.signal, &self.frequency).unwrap_or_default();
             let pairs = record.value.iter().zip(model);
             let apart = pairs.map(|(measured, model)| (measured / model).ln().norm_sqr());
-            apart.zip(&record.variance).map(|(apart, variance)| apart - variance).collect::<Vec<_>>()
+            apart
+                .zip(&record.variance)
+                .map(|(apart, variance)| apart - variance)
+                .collect::<Vec<_>>()
         });
         let (sum, count) = lines.fold((0.0, 0_usize), |(sum, count), own| (sum + own, count + 1));
         (sum / count.max(1) as f64).max(0.0)
@@ -244,7 +268,8 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
 
     /// Line by line the mean relative variance of the records.
     fn usual_variance(&self) -> Vec<f64> {
-        let mean = |line: usize| self.records.iter().map(|own| own.variance[line]).sum::<f64>() / self.records.len() as f64;
+        let mean =
+            |line: usize| self.records.iter().map(|own| own.variance[line]).sum::<f64>() / self.records.len() as f64;
         (0..self.frequency.len()).map(mean).collect()
     }
 
@@ -275,7 +300,11 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
 
     /// The relative variance of a sensor whose noise is that of the sensors of its kind.
     fn variance_of(&self, signal: &Signal, value: &[Complex<f64>]) -> Vec<f64> {
-        let alike: Vec<&Record> = self.records.iter().filter(|own| own.signal.kind == signal.kind).collect();
+        let alike: Vec<&Record> = self
+            .records
+            .iter()
+            .filter(|own| own.signal.kind == signal.kind)
+            .collect();
         if alike.is_empty() {
             return self.usual_variance();
         }
@@ -283,7 +312,11 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             let squares = alike.iter().map(|own| own.variance[line] * own.value[line].norm_sqr());
             squares.sum::<f64>() / alike.len() as f64
         };
-        value.iter().enumerate().map(|(line, value)| noise(line) / value.norm_sqr()).collect()
+        value
+            .iter()
+            .enumerate()
+            .map(|(line, value)| noise(line) / value.norm_sqr())
+            .collect()
     }
 
     /// A record that is off by as much as noise and misfit make likely, to one side or the other.
@@ -306,9 +339,17 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
     /// The run once more, with so much of its noise: what the model misses it misses again.
     fn again(&self, noise: f64) -> Level {
         let again = |own: &Record| {
-            let model = self.response(&own.signal, &self.frequency).unwrap_or_else(|| own.value.clone());
+            let model = self
+                .response(&own.signal, &self.frequency)
+                .unwrap_or_else(|| own.value.clone());
             let variance: Vec<f64> = own.variance.iter().map(|variance| noise * variance).collect();
-            let fresh = Run { misfit: 0.0, records: Vec::new(), frequency: Vec::new(), source: self.source.clone(), ..*self };
+            let fresh = Run {
+                misfit: 0.0,
+                records: Vec::new(),
+                frequency: Vec::new(),
+                source: self.source.clone(),
+                ..*self
+            };
             let mut record = fresh.expected(own.signal.clone(), model.clone(), variance);
             for (line, value) in record.value.iter_mut().enumerate() {
                 let share = (self.misfit / (self.misfit + own.variance[line]).max(f64::MIN_POSITIVE)).sqrt();
@@ -336,7 +377,11 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             let lines = (share * self.frequency.len() as f64).ceil() as usize;
             let part = |line: usize| (line as f64 + 0.5) / lines as f64;
             let frequency: Vec<f64> = (0..lines).map(|line| from * (to / from).powf(part(line))).collect();
-            let records: Option<Vec<Record>> = self.records.iter().map(|own| self.beyond(own, &frequency, from)).collect();
+            let records: Option<Vec<Record>> = self
+                .records
+                .iter()
+                .map(|own| self.beyond(own, &frequency, from))
+                .collect();
             Some((what, self.assembled(&records?, &frequency)))
         };
         [up, down].into_iter().filter_map(level).collect()
@@ -347,7 +392,11 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         /// Lines at an end whose noise is that beyond it.
         const NEAR: usize = 10;
         let count = own.value.len();
-        let lines = if from < self.frequency[0] { 0..NEAR.min(count) } else { count.saturating_sub(NEAR)..count };
+        let lines = if from < self.frequency[0] {
+            0..NEAR.min(count)
+        } else {
+            count.saturating_sub(NEAR)..count
+        };
         let noise = |line: usize| own.variance[line] * own.value[line].norm_sqr();
         let noise = lines.clone().map(noise).sum::<f64>() / lines.len() as f64;
         let value = self.response(&own.signal, frequency)?;
@@ -360,12 +409,20 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
 
     /// The channels that a fit would take of these records.
     fn assembled(&self, records: &[Record], frequency: &[f64]) -> Level {
-        let signals: Vec<Signal> = [&self.source].into_iter().chain(records.iter().map(|own| &own.signal)).cloned().collect();
+        let signals: Vec<Signal> = [&self.source]
+            .into_iter()
+            .chain(records.iter().map(|own| &own.signal))
+            .cloned()
+            .collect();
         let about = self.model.about();
         let channels = across_links(about, &about.excitations[self.level.excitation], &signals);
         let find = |signal: &Signal| records.iter().find(|own| own.signal == *signal);
         let observation = |channel: &Channel, fitted: bool| {
-            let own = between(channel, [find(&channel.numerator), find(&channel.denominator)], frequency);
+            let own = between(
+                channel,
+                [find(&channel.numerator), find(&channel.denominator)],
+                frequency,
+            );
             Observation { fitted, ..own }
         };
         let fitted = channels.fitted.iter().map(|channel| observation(channel, true));
@@ -389,11 +446,17 @@ fn between(channel: &Channel, [far, near]: [Option<&Record>; 2], frequency: &[f6
         fitted: true,
         frequency: frequency.to_vec(),
         value: lines().map(|line| value(far, line) / value(near, line)).collect(),
-        coherence: relative_variance.iter().map(|variance| 1.0 / (1.0 + variance)).collect(),
+        coherence: relative_variance
+            .iter()
+            .map(|variance| 1.0 / (1.0 + variance))
+            .collect(),
         relative_variance,
         band: (frequency[0], frequency[frequency.len() - 1]),
         sensors: (sensors(far), sensors(near)),
-        differences: [Pair::LeftRight, Pair::FrontRear].into_iter().filter_map(|pair| apart(pair, far, near)).collect(),
+        differences: [Pair::LeftRight, Pair::FrontRear]
+            .into_iter()
+            .filter_map(|pair| apart(pair, far, near))
+            .collect(),
     }
 }
 

@@ -79,7 +79,11 @@ impl<M: Model + ?Sized> Setup<'_, M> {
 
     fn first_step(&self, uncertainty: &Uncertainty, minimum: &Outcome, variable: usize) -> f64 {
         let width = self.bounds.upper[variable] - self.bounds.lower[variable];
-        let size = if width.is_finite() { width } else { minimum.x[variable].abs().max(f64::MIN_POSITIVE) };
+        let size = if width.is_finite() {
+            width
+        } else {
+            minimum.x[variable].abs().max(f64::MIN_POSITIVE)
+        };
         let error = uncertainty.standard_error(variable);
         error.map_or(FIRST * size, |error| error.total.min(size))
     }

@@ -6,8 +6,8 @@
 //! review", Statistical Science 10, 1995). The expected errors are counted as the fit counts them: scatter, sides of the axle, and
 //! gains. Since the fit does not weight channels by what these leave, an error may grow where information does.
 
-use super::candidate::candidates;
 pub use super::candidate::Kind;
+use super::candidate::candidates;
 use super::forecast::{Said, errors};
 use super::observation::Level;
 use super::plan::Plan;
@@ -59,7 +59,8 @@ pub fn prospects<M: Model + ?Sized>(
         values.leader(*place) == *place && plan.parameters.iter().find(is_own).is_some_and(|own| own.fit)
     };
     let asked: Vec<usize> = (0..about.parameters.len()).filter(is_asked).collect();
-    let counts = |&place: &usize| matter.is_empty() || matter.iter().any(|name| *name == about.parameters[asked[place]].name);
+    let counts =
+        |&place: &usize| matter.is_empty() || matter.iter().any(|name| *name == about.parameters[asked[place]].name);
     let counted: Vec<usize> = (0..asked.len()).filter(counts).collect();
     let now = Said::by(model, plan, levels, &asked)?;
     let before = now.log_information(None, &counted);

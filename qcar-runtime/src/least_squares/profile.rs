@@ -116,7 +116,11 @@ impl<P: Problem + ?Sized> Walk<'_, P> {
                 break;
             }
             let [low, wanted, high] = [below.rise, self.of.rise, above.rise].map(|rise| rise.max(0.0).sqrt());
-            let part = if high.is_finite() && look % 3 < 2 { (wanted - low) / (high - low) } else { 0.5 };
+            let part = if high.is_finite() && look % 3 < 2 {
+                (wanted - low) / (high - low)
+            } else {
+                0.5
+            };
             let value = below.value + part * (above.value - below.value);
             let middle = self.at(value, &below.others);
             if (middle.rise / self.of.rise - 1.0).abs() < CLOSE {

@@ -94,7 +94,10 @@ pub(crate) fn highest<M: Model + ?Sized>(
 fn about_largest(frequency: &[f64], value: &[Complex<f64>]) -> Option<[f64; 2]> {
     let largest = value.iter().map(|value| value.norm()).enumerate();
     let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;
-    Some([frequency[at.saturating_sub(1)], frequency[(at + 1).min(frequency.len() - 1)]])
+    Some([
+        frequency[at.saturating_sub(1)],
+        frequency[(at + 1).min(frequency.len() - 1)],
+    ])
 }
 
 fn spaced([from, to]: [f64; 2], lines: usize) -> Vec<f64> {

@@ -212,7 +212,12 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
     });
     let radius = |free: bool| if free { radius } else { 0.0 };
     let margins = task.margins(MARGIN);
-    let excess: Vec<f64> = state.excess.iter().zip(&margins).map(|(excess, margin)| excess + margin).collect();
+    let excess: Vec<f64> = state
+        .excess
+        .iter()
+        .zip(&margins)
+        .map(|(excess, margin)| excess + margin)
+        .collect();
     let prices: Vec<f64> = (0..excess.len())
         .map(|at| task.wish(at).unwrap_or(state.price))
         .collect();

@@ -227,7 +227,10 @@ impl Task<'_> {
     /// How far inside each limit and coupling a design is aimed at: `most`, or half of the room that an opposite limit leaves.
     pub fn margins(&self, most: f64) -> Vec<f64> {
         let room = |limit: &Limit| {
-            let opposite = self.limits.iter().filter(|other| other.bounds_from_the_other_side(limit));
+            let opposite = self
+                .limits
+                .iter()
+                .filter(|other| other.bounds_from_the_other_side(limit));
             let gaps = opposite.map(|other| -limit.excess(other.value));
             gaps.fold(f64::INFINITY, f64::min)
         };

@@ -65,7 +65,10 @@ fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
     let profiles = (!choices.profile.is_empty()).then(|| {
-        let (expected, remedy) = ("a linear model", "leave it out: standard errors stand beside the values");
+        let (expected, remedy) = (
+            "a linear model",
+            "leave it out: standard errors stand beside the values",
+        );
         flag("--profile", choices.profile.join(","), expected, remedy)
     });
     InputError::unless_empty(channels.into_iter().chain(profiles).collect(), Some(()))

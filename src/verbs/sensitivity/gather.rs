@@ -147,7 +147,12 @@ fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
     let others = all.filter(|(place, own)| {
         doubted(&own.name) && subject.values.leader(*place) == *place && !asked.parameters.contains(place)
     });
-    asked.parameters.iter().copied().chain(others.map(|(place, _)| place)).collect()
+    asked
+        .parameters
+        .iter()
+        .copied()
+        .chain(others.map(|(place, _)| place))
+        .collect()
 }
 
 /// A metric over the readings in a range of places; elasticities are of the parameters that are shown, what is in doubt by all.

@@ -14,7 +14,9 @@ pub(super) fn text(of: &Sensitivity) -> String {
         return out + "It has no metric that could be measured on these runs.\n";
     }
     if of.parameters.is_empty() {
-        return out + "No parameter is open: all are known or zero; name some with --parameters.\n\n" + &values(of).text();
+        return out
+            + "No parameter is open: all are known or zero; name some with --parameters.\n\n"
+            + &values(of).text();
     }
     out += "Percent of a metric for one percent of a parameter, the most important first.\n\n";
     out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));

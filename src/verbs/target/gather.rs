@@ -3,7 +3,8 @@
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::target::{
-    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, is_met, search, space,
+    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, is_met,
+    search, space,
 };
 use serde::Serialize;
 
