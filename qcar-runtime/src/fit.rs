@@ -27,7 +27,11 @@ pub mod report;
 pub mod profile;
 // The errors that a fit is expected to have.
 mod forecast;
-// What else could be measured,
+// What a run says of a place,
+mod record;
+// as it is and as it would be,
+mod supposed;
+// what else could be measured,
 mod candidate;
 // and what it would say.
 pub mod prospect;
