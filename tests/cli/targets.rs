@@ -471,6 +471,8 @@ fn what_is_odd_or_said_twice_is_told() {
         "k_tire=1",
     ]);
     assert!(out.contains("note: k_tire = 1 N/m is outside"), "{out}");
+    let list = succeeds(&["sensitivity", "linear_damper", "--list"]);
+    assert!(list.starts_with("linear_damper has no metric"), "{list}");
     refused(
         "smallest = [\"body_x.peak\", \"tyre.dynamic_load\"]",
         "smallest = [\"body_x.peak\", \"body_x.peak\"]",
