@@ -6,7 +6,7 @@ use std::path::Path;
 
 use serde_json::Value;
 
-use crate::common::{copy, qcar, qcar_in, succeeds};
+use crate::common::{copy, qcar_in, repository, run_line, succeeds};
 use crate::document::{blocks, commands};
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
@@ -96,18 +96,18 @@ fn a_plan_is_the_same_every_time() {
 
 #[test]
 fn what_cannot_be_planned_or_profiled_is_refused() {
-    for (arguments, said) in [
-        (&["plan", AXLE, "--parameters", "k_tyre"][..], "did you mean `k_tire`?"),
-        (&["plan", "models/campaigns/silverbox"], "nonlinear"),
-        (&["fit", AXLE, "--profile", "k_tyre"], "did you mean `k_tire`?"),
-        (
-            &["fit", AXLE, "--profile", "c_wheel_x"],
-            "which no fitted channel depends on",
-        ),
-        (&["fit", "models/campaigns/silverbox", "--profile", "all"], "--profile"),
+    let folder = repository();
+    let bent = "patch axle_a digressive_damper --at damper --out bent.axle";
+    assert_eq!(run_line(folder.path(), bent).status, 0);
+    for (line, said) in [
+        ("plan AXLE --parameters k_tyre", "did you mean `k_tire`?"),
+        ("plan AXLE --model bent.axle", "which is nonlinear"),
+        ("fit AXLE --profile k_tyre", "did you mean `k_tire`?"),
+        ("fit AXLE --profile c_wheel_x", "which no fitted channel depends on"),
+        ("fit AXLE --model bent.axle --profile all", "`--profile`: found all"),
     ] {
-        let ran = qcar(arguments);
-        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{arguments:?}");
+        let ran = run_line(folder.path(), &line.replace("AXLE", AXLE));
+        assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{line}");
         assert!(ran.stderr.contains(said), "{}", ran.stderr);
     }
 }
