@@ -408,7 +408,7 @@ fn intervals_do_not_depend_on_the_parameters_that_are_shown() {
     ];
     let of = |more: &[&str]| result(&[&axle[..], more].concat())["metrics"].clone();
     let (all, one) = (of(&[]), of(&["--parameters", "k_tire"]));
-    for metric in 0..2 {
+    for metric in 0..2_usize {
         assert_eq!(one[metric]["elasticities"].as_object().unwrap().len(), 1);
         let [all, one] = [&all, &one].map(|own| own[metric]["doubt"]["deviation"].as_f64().unwrap());
         assert!((one / all - 1.0).abs() < 1e-9, "{one} and {all}");
