@@ -7,7 +7,7 @@ use crate::terminal::{self, Color};
 use crate::units::{self, Units};
 use crate::verbs::{
     check, compare, completions, diff, discover, effects, explore, export, fit, frf, import, inspect, kc, matrices,
-    new, patch, score, sensitivity, show, simulate, study, target,
+    new, patch, plan, score, sensitivity, show, simulate, study, target,
 };
 
 /// Quarter-car axle models: compile them, fit them to rig data
@@ -47,6 +47,7 @@ enum Verb {
     Matrices(matrices::Arguments),
     Frf(frf::Arguments),
     Fit(fit::Arguments),
+    Plan(plan::Arguments),
     Kc(kc::Arguments),
     Simulate(simulate::Arguments),
     Explore(explore::Arguments),
@@ -79,6 +80,7 @@ impl Cli {
             Verb::Matrices(arguments) => matrices::run(&arguments),
             Verb::Frf(arguments) => frf::run(&arguments),
             Verb::Fit(arguments) => fit::run(&arguments),
+            Verb::Plan(arguments) => plan::run(&arguments),
             Verb::Kc(arguments) => kc::run(&arguments),
             Verb::Simulate(arguments) => simulate::run(&arguments),
             Verb::Explore(arguments) => explore::run(&arguments),

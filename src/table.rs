@@ -102,6 +102,12 @@ pub fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".into(), |value| number(value, digits))
 }
 
+/// So many of something, in the plural where there is not just one.
+pub fn counted(count: usize, what: &str) -> String {
+    let ending = if count == 1 { "" } else { "s" };
+    format!("{count} {what}{ending}")
+}
+
 fn trimmed(text: &str) -> String {
     match text.contains('.') {
         true => text.trim_end_matches('0').trim_end_matches('.').into(),

@@ -36,6 +36,8 @@ pub mod import;
 pub mod kc;
 // a model fitted to it,
 pub mod fit;
+// what else would tell its parameters,
+pub mod plan;
 // to one whose answer is known,
 pub mod score;
 // driven over its roads,
@@ -65,6 +67,17 @@ pub struct ModelArguments {
     /// One value, in place of that of the file; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
+}
+
+/// What is named, each once, in the order of the first.
+pub(crate) fn each_once<T: PartialEq>(named: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut once: Vec<T> = Vec::new();
+    for own in named {
+        if !once.contains(&own) {
+            once.push(own);
+        }
+    }
+    once
 }
 
 /// How a result is printed.

@@ -55,6 +55,7 @@ pub fn fit_campaign<'py>(
         channels,
         free,
         fix,
+        profile: Vec::new(),
     };
     let fit = || refuse_nonlinear(&campaign, choices.model.as_deref()).and_then(|()| fit::fit(&campaign, &choices));
     let fitted = long(py, fit)?.map_err(errors::of_campaign)?;

@@ -17,7 +17,6 @@ mod metrics;
 mod rows;
 
 pub use design::{Axis, Design, Scheme};
-pub(crate) use metrics::{BAND, LINES};
 pub use metrics::{Column, Metric, Metrics, MetricsError, Ratio};
 pub use posterior::{Estimate, Posterior, PosteriorError};
 pub use rows::{Ensemble, Rows, Track};

@@ -23,6 +23,18 @@ mod uncertainty;
 pub mod quality;
 // The result as values to print or to serialise.
 pub mod report;
+// Intervals of parameters by their profiles.
+pub mod profile;
+// The errors that a fit is expected to have.
+mod forecast;
+// What a run says of a place,
+mod record;
+// as it is and as it would be,
+mod supposed;
+// what else could be measured,
+mod candidate;
+// and what it would say.
+pub mod prospect;
 
 pub use observation::{Level, Observation};
 pub use plan::{Plan, Weighting};

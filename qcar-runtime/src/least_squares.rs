@@ -15,6 +15,8 @@ mod reflect;
 
 // What the Jacobian at the optimum says about the parameters.
 pub mod information;
+// What the cost says about one of them, all others refitted.
+pub mod profile;
 
 use nalgebra::{DMatrix, DVector};
 use normal::NormalEquations;

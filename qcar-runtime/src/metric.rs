@@ -11,8 +11,6 @@ mod name;
 mod record;
 // Vibrations and their derivatives.
 mod vibration;
-// Peaks of transmissibilities and theirs.
-mod resonance;
 // What is driven over.
 mod course;
 // All metrics of a model.

@@ -12,6 +12,8 @@ pub mod periodic;
 pub mod ratio;
 // Ratios as logarithms, for the fit.
 pub mod logarithm;
+// The peak of a ratio over frequency.
+pub(crate) mod resonance;
 
 use crate::model::{Model, ResponseLayout, ResponseMut};
 pub use linearized::OperatingPoint;

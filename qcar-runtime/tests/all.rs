@@ -18,6 +18,7 @@ mod ride;
 mod road;
 mod roller;
 mod sampling;
+mod select;
 mod sensitivity;
 mod shipped_campaigns;
 mod solver;

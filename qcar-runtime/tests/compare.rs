@@ -33,6 +33,20 @@ fn a_delayed_copy_has_no_error() {
     );
 }
 
+/// An obstacle throws the wheel up at either end: a simulation whose second peak is the higher one is not taken to be late.
+#[test]
+fn of_two_peaks_those_that_are_the_same_are_aligned() {
+    let two = |heights: [f64; 2], onset: f64| -> Vec<f64> {
+        let early = shake(onset, heights[0], 20.0, 0.02);
+        let late = shake(onset + 0.06, heights[1], 20.0, 0.02);
+        early.iter().zip(late).map(|(early, late)| early + late).collect()
+    };
+    for heights in [[50.0, 40.0], [40.0, 50.0]] {
+        let alignment = Alignment::at_peak(&two([50.0, 40.0], 0.2), &two(heights, 0.21)).unwrap();
+        assert_eq!(alignment.delay, 10, "{heights:?}");
+    }
+}
+
 #[test]
 fn errors_have_their_size_sign_and_window() {
     let wheel = shake(0.2, 50.0, 15.0, 0.05);

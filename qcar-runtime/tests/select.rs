@@ -1,8 +1,5 @@
 //! What a search answers on evidence in closed form, with a catalogue of masses on mounts that are told apart by their ranges.
 
-#[path = "support/strut.rs"]
-mod strut;
-
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Axis, Quantity, Role};
 use qcar_runtime::discover::Evidence;
@@ -16,7 +13,8 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::{Point, logarithmic};
-use strut::{Parts, Strut};
+
+use crate::support::strut::{Parts, Strut};
 
 const STRENGTH: ParameterRole = ParameterRole::Strength { vanishes_at: 0.0 };
 

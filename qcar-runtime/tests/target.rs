@@ -75,6 +75,27 @@ fn the_cheapest_design_stands_on_the_limit_and_its_multiplier_is_the_slope_of_th
     assert!((found.multipliers[0] / exact - 1.0).abs() < 0.01, "{found:?}, {exact}");
 }
 
+/// Of all designs on a circle the nearest, and with a second result that must have a value, too, the only one there is.
+#[test]
+fn what_must_equal_a_value_does() {
+    let curved = Formula(|x| vec![x[0] * x[0] + x[1] * x[1], x[0] * x[1].exp()]);
+    let knobs = || vec![knob("x", 0.0, 4.0, 2.0, None), knob("y", 0.0, 4.0, 2.0, None)];
+    let equal = |result: usize, value: f64| {
+        [Sense::AtMost, Sense::AtLeast].map(|sense| Limit {
+            sense,
+            ..at_most(result, value)
+        })
+    };
+    let found = search(&task(&curved, knobs(), equal(0, 3.0).to_vec()), 1, UNTOLD).unwrap();
+    assert!(found.met && found.values[0] - 3.0 < 3.0 * 5e-5, "{found:?}");
+    let both = [equal(0, 3.0), equal(1, 2.0)].concat();
+    let found = search(&task(&curved, knobs(), both), 1, UNTOLD).unwrap();
+    assert!(found.met, "{found:?}");
+    for (value, wanted) in found.values.iter().zip([3.0, 2.0]) {
+        assert!((value / wanted - 1.0).abs() < 5e-5, "{found:?}");
+    }
+}
+
 #[test]
 fn couplings_and_steps_hold() {
     let plane = Formula(|x| vec![x[0] + 2.0 * x[1]]);

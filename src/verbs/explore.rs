@@ -13,7 +13,8 @@ use qcar_runtime::simulate::{Variant, tyre_of};
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, Beside};
-use crate::verbs::{ModelArguments, frf};
+use crate::table::number;
+use crate::verbs::{ModelArguments, each_once, frf};
 
 // What varies.
 mod vary;
@@ -111,7 +112,7 @@ enum Metric {
     AfterShake,
     /// Vibration dose of each acceleration, weighted by ISO 2631-1
     Vdv,
-    /// Highest magnitude of each channel from 0.5 to 30 Hz, and its frequency
+    /// Highest magnitude of each channel from 0.5 to 50 Hz, and its frequency
     Transmissibility,
     /// Natural frequencies and damping ratios, lowest frequency first
     Modes,
@@ -230,14 +231,21 @@ fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
     // Whole numbers up to here are exact in a column of numbers.
     const MOST: u64 = 1 << 53;
     let count = match scheme {
-        Scheme::Grid(values) => values.checked_pow(axes as u32).unwrap_or(u64::MAX),
-        Scheme::LatinHypercube(count) | Scheme::Sobol(count) | Scheme::Posterior(count, _) => *count,
+        Scheme::Grid(values) => (*values as f64).powi(axes as i32),
+        Scheme::LatinHypercube(count) | Scheme::Sobol(count) | Scheme::Posterior(count, _) => *count as f64,
     };
     let sobol = matches!(scheme, Scheme::Sobol(_));
     let most = if sobol { POINTS } else { MOST };
-    if count > most {
+    if count > most as f64 {
+        let (found, most) = (format!("{} sets", number(count, 4)), number(most as f64, 4));
         let expected = format!("at most {most} sets");
-        return Err(flag("--count", format!("{count} sets"), &expected, "take a smaller number").into());
+        return Err(flag(
+            "--count",
+            found,
+            &expected,
+            "take a smaller number, or vary fewer parameters",
+        )
+        .into());
     }
     if sobol && axes > DIMENSIONS {
         let expected = format!("at most {DIMENSIONS} parameters for Sobol's sequence");
@@ -302,7 +310,7 @@ fn metrics<'a>(arguments: &Arguments, model: &'a Loaded) -> Result<Metrics<'a, d
             ensemble::Metric::AfterShake,
             ensemble::Metric::Dose,
         ],
-        (named, _) => named.iter().map(|own| (*own).into()).collect(),
+        (named, _) => each_once(named.iter().map(|own| (*own).into())),
     };
     if arguments.rides.is_empty() && chosen.iter().any(|own| own.of_rides()) {
         let remedy = "add --rides such as standard or 20mm@30km/h";

@@ -12,11 +12,13 @@ use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
+use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
-use qcar_runtime::model::About;
+use qcar_runtime::model::{About, Model};
 use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::spelling;
 use qcar_runtime::transmissibility::Options;
 
 use crate::catalogue::{self, Loaded};
@@ -26,7 +28,7 @@ use crate::files::folder_for_results;
 use crate::parameters::{bound, out_of_range, own};
 use crate::progress::while_counting;
 use crate::terminal::prose;
-use crate::verbs::Format;
+use crate::verbs::{Format, each_once};
 
 // What K&C curves say beside it.
 mod clamped;
@@ -53,7 +55,7 @@ mod nonlinear;
 /// The exit status is 1 where the search does not end at a minimum, or where every parameter ends at a bound of its range.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/silverbox --format json"
+    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/silverbox --format json"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
@@ -86,6 +88,9 @@ pub struct Choices {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub fix: Vec<String>,
+    /// Find intervals of these parameters of a linear model by their profile likelihoods too; `all` for every one that is fitted
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    pub profile: Vec<String>,
 }
 
 impl Choices {
@@ -134,6 +139,8 @@ pub struct Fitted {
     pub levels: Vec<Level>,
     /// The result.
     pub fit: Fit,
+    /// Profiles of the parameters that were asked for.
+    pub profiles: Vec<ParameterProfile>,
     /// Time for reading, estimating and fitting.
     pub seconds: f64,
 }
@@ -183,6 +190,19 @@ impl Fitted {
         self.with(|parameter| parameter.value)
     }
 
+    /// The plan of a fit that begins where this one has ended.
+    ///
+    /// # Errors
+    /// What is wrong with the choices.
+    pub(crate) fn as_plan(&self, choices: &Choices) -> Result<Plan, InputError> {
+        let mut plan = plan(&self.campaign, self.model.about(), choices)?;
+        for own in &mut plan.parameters {
+            let found = self.fit.parameters.iter().find(|found| found.name == own.name);
+            own.value = found.map_or(own.value, |found| found.value);
+        }
+        Ok(plan)
+    }
+
     fn with(&self, value: fn(&ParameterFit) -> f64) -> Values {
         let stated = self
             .fit
@@ -204,25 +224,61 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
     let plan = plan(&campaign, model.about(), choices)?;
     refuse_unseen(&model, &plan)?;
-    let wanted = (!choices.channels.is_empty()).then_some(choices.channels.as_slice());
+    let channels = each_once(choices.channels.iter().cloned());
+    let wanted = (!channels.is_empty()).then_some(channels.as_slice());
     let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
     campaign.notices.extend(notices::silent_runs(&campaign, &levels));
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
+    let profiled = profiled(&plan, model.about(), setup.free(), &choices.profile)?;
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
     let fit = while_counting(searches, |told| setup.fit_telling(told));
+    let profiles = profiles(&setup, &fit, &profiled, &campaign.name);
     let mut fitted = Fitted {
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
         model,
         levels,
         fit,
+        profiles,
     };
     clamped::take_over(&mut fitted)?;
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));
     Ok(fitted)
+}
+
+/// The names that are profiled.
+///
+/// # Errors
+/// Every name of a parameter that is not fitted.
+fn profiled(plan: &Plan, about: &About, free: &[usize], names: &[String]) -> Result<Vec<String>, InputError> {
+    let fitted = || free.iter().map(|&place| &*about.parameters[place].name);
+    if names.iter().any(|name| name == "all") {
+        return Ok(fitted().map(String::from).collect());
+    }
+    let problem = |name: &String| {
+        let unseen = plan.parameters.iter().any(|own| own.fit && own.name == *name);
+        let expected = "a parameter that is fitted, or `all`";
+        let (found, remedy) = match unseen {
+            true => (
+                format!("`{name}`, which no fitted channel depends on"),
+                "leave it out".into(),
+            ),
+            false => (format!("`{name}`"), spelling::remedy(name, fitted())),
+        };
+        flag("--profile", found, expected, &remedy)
+    };
+    let unknown = names.iter().filter(|name| fitted().all(|own| own != *name));
+    InputError::unless_empty(unknown.map(problem).collect(), Some(names.to_vec()))
+}
+
+fn profiles(setup: &Setup<'_, dyn Model + '_>, fit: &Fit, names: &[String], campaign: &str) -> Vec<ParameterProfile> {
+    if names.is_empty() || !fit.converged {
+        return Vec::new();
+    }
+    while_counting(format!("{campaign}: profile"), |told| setup.profiles(fit, names, told))
 }
 
 /// # Errors

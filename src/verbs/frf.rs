@@ -21,7 +21,7 @@ use crate::parameters;
 use crate::table::{Table, number};
 use crate::terminal::prose;
 use crate::units;
-use crate::verbs::{ModelArguments, TableFormat};
+use crate::verbs::{ModelArguments, TableFormat, each_once};
 
 /// Print the frequency response of the channels of a model
 #[derive(Args)]
@@ -172,7 +172,7 @@ pub(crate) fn chosen<'a>(about: &'a About, names: &[String]) -> Result<Vec<&'a C
         .collect();
     let chosen = match names {
         [] => about.channels.iter().collect(),
-        names => names.iter().filter_map(find).collect(),
+        names => each_once(names).into_iter().filter_map(find).collect(),
     };
     Ok(InputError::unless_empty(problems, Some(chosen))?)
 }

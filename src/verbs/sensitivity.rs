@@ -173,6 +173,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 }
 
 fn list(ground: &Ground<'_>) -> String {
+    if ground.metrics().is_empty() {
+        let name = &ground.about().name;
+        return format!(
+            "{name} has no metric: nothing of it vibrates, no road drives it, and it declares no channel\n"
+        );
+    }
     let mut table = Table::new(["metric", "unit", "meaning"]);
     for metric in ground.metrics() {
         table.row(vec![metric.name.clone(), metric.unit.into(), metric.doc.clone()]);

@@ -107,7 +107,7 @@ fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, f
     put(
         folder,
         "parameters.toml",
-        &render::parameter_file(ground.about(), &design),
+        &render::parameter_file(ground.about(), &design, &subject.vehicle),
     )?;
     workbook::write(answer, folder)?;
     let title = format!("{}: targets", answer.model);

@@ -8,7 +8,7 @@ use std::process::{Command, Stdio};
 use crate::common::{qcar, succeeds};
 use serde_json::Value;
 
-const VERBS: [&str; 19] = [
+const VERBS: [&str; 20] = [
     "new",
     "import",
     "check",
@@ -17,6 +17,7 @@ const VERBS: [&str; 19] = [
     "export",
     "frf",
     "fit",
+    "plan",
     "kc",
     "simulate",
     "sensitivity",

@@ -16,6 +16,8 @@ mod help;
 mod interruption;
 mod json_reference;
 mod newcomer;
+mod plans;
+mod published;
 mod readme;
 mod records;
 mod rides;

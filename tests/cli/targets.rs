@@ -396,3 +396,92 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
         assert!(ran.stderr.contains(said), "{}", ran.stderr);
     }
 }
+
+/// What is not known of one parameter leaves a metric in as much doubt, whichever parameters are looked at.
+#[test]
+fn intervals_do_not_depend_on_the_parameters_that_are_shown() {
+    let axle = [
+        "sensitivity",
+        "models/campaigns/axle_a_rig",
+        "--metrics",
+        "mode.1.damping,pad_to_body.peak",
+    ];
+    let of = |more: &[&str]| result(&[&axle[..], more].concat())["metrics"].clone();
+    let (all, one) = (of(&[]), of(&["--parameters", "k_tire"]));
+    for metric in 0..2_usize {
+        assert_eq!(one[metric]["elasticities"].as_object().unwrap().len(), 1);
+        let [all, one] = [&all, &one].map(|own| own[metric]["doubt"]["deviation"].as_f64().unwrap());
+        assert!((one / all - 1.0).abs() < 1e-9, "{one} and {all}");
+    }
+}
+
+/// A file of targets for axle A beside the campaign that it starts from.
+fn targets_of_axle_a(folder: &std::path::Path, targets: &str) {
+    let text = format!(
+        "subject = \"axle_a\"\ncampaign = \"models/campaigns/axle_a_rig\"\n{targets}\n\
+         [[parameter]]\nname = \"k_wheel_z\"\nrange = [\"60 %\", \"160 %\"]\n\
+         [[parameter]]\nname = \"c_wheel_z\"\nrange = [\"60 %\", \"160 %\"]\n"
+    );
+    fs::write(folder.join("targets.toml"), text).unwrap();
+}
+
+/// A design that must have two values has them, and what is written of it drives over the cleats as it stands.
+#[test]
+fn values_that_are_wanted_are_met_and_the_design_is_simulated() {
+    let folder = repository();
+    targets_of_axle_a(
+        folder.path(),
+        "[[target]]\nmetric = \"mode.1.frequency\"\nequals = \"1.3 Hz\"\n\
+         [[target]]\nmetric = \"mode.1.damping\"\nat_most = 0.22\nat_least = 0.22",
+    );
+    let ran = run_line(folder.path(), "target targets.toml --out results --format json");
+    assert_eq!(ran.status, 0, "{}{}", ran.stdout, ran.stderr);
+    let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
+    for own in answer["targets"].as_array().unwrap() {
+        let [design, limit] = ["design", "limit"].map(|key| own[key].as_f64().unwrap());
+        assert!((design / limit - 1.0).abs() < 5e-5 && own["met"] == true, "{own}");
+    }
+    let vehicle = "simulate models/campaigns/axle_a_rig --params results/parameters.toml";
+    assert_eq!(run_line(folder.path(), vehicle).status, 0);
+    let written = fs::read_to_string(folder.path().join("results/parameters.toml")).unwrap();
+    assert!(
+        written.contains("[vehicle]") && written.contains("r_tire = 0.35"),
+        "{written}"
+    );
+    let alone = "sensitivity axle_a --params results/parameters.toml --metrics body_x.peak --runs 30kmh_20mm";
+    assert_eq!(
+        run_line(folder.path(), alone).status,
+        0,
+        "the file has all that a ride needs"
+    );
+}
+
+#[test]
+fn what_is_odd_or_said_twice_is_told() {
+    let out = succeeds(&[
+        "sensitivity",
+        "axle_a",
+        "--campaign",
+        "models/campaigns/axle_a_rig",
+        "--metrics",
+        "mode.1.damping",
+        "--parameters",
+        "k_tire",
+        "--set",
+        "k_tire=1",
+    ]);
+    assert!(out.contains("note: k_tire = 1 N/m is outside"), "{out}");
+    let list = succeeds(&["sensitivity", "linear_damper", "--list"]);
+    assert!(list.starts_with("linear_damper has no metric"), "{list}");
+    refused(
+        "smallest = [\"body_x.peak\", \"tyre.dynamic_load\"]",
+        "smallest = [\"body_x.peak\", \"body_x.peak\"]",
+        &["front.smallest", "for the second time", "each metric once"],
+    );
+    let folder = repository();
+    let limit = "[[target]]\nmetric = \"mode.1.frequency\"\nat_most = \"1.3 Hz\"\n";
+    targets_of_axle_a(folder.path(), &limit.repeat(2));
+    let ran = run_line(folder.path(), "target targets.toml --format json");
+    let answer: Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(answer["targets"].as_array().unwrap().len(), 1, "{answer}");
+}

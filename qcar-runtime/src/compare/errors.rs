@@ -56,26 +56,54 @@ pub enum CompareError {
 
 /// The onset is where the wheel's acceleration first exceeds this share of its peak, upward or downward.
 const ONSET_SHARE: f64 = 0.1;
+/// A simulated peak may be that of the measurement from this share of the highest on: an obstacle throws the wheel up twice, at
+/// either end, and which of both is higher may differ.
+const PEAK_SHARE: f64 = 0.5;
 /// The wheel may feel the obstacle for so long before the onset, s; what is earlier is noise.
 const GUARD: f64 = 0.02;
 
 impl Alignment {
-    /// Aligns two records of the wheel's vertical acceleration, of one sample rate, by their upward peaks.
+    /// Aligns two records of the wheel's vertical acceleration, of one sample rate, by their upward peaks: the highest of the
+    /// measurement, and of the high ones of the simulation that with which the records agree best.
     ///
     /// # Errors
     /// A record that never rises above zero.
     pub fn at_peak(measured: &[f64], simulated: &[f64]) -> Result<Self, CompareError> {
         let (peak, height) = upward_peak(measured).ok_or(CompareError::NoPeak { record: "measurement" })?;
-        let (simulated_peak, _) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
+        let (_, highest) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
         let onset = measured
             .iter()
             .position(|a| a.abs() > ONSET_SHARE * height)
             .unwrap_or(peak);
+        let delays = high_peaks(simulated, PEAK_SHARE * highest).map(|place| place as isize - peak as isize);
+        let apart = |delay: &isize| difference(measured, simulated, *delay);
+        let delay = delays.min_by(|a, b| apart(a).total_cmp(&apart(b)));
         Ok(Self {
             onset,
-            delay: simulated_peak as isize - peak as isize,
+            delay: delay.expect("the highest is among them"),
         })
     }
+}
+
+/// The samples that are at least so high and no lower than those beside them.
+fn high_peaks(record: &[f64], least: f64) -> impl Iterator<Item = usize> + '_ {
+    let beside = |at: usize| record.get(at).copied().unwrap_or(f64::NEG_INFINITY);
+    let is_peak = move |&at: &usize| {
+        let here = record[at];
+        here >= least && here >= beside(at.wrapping_sub(1)) && here >= beside(at + 1)
+    };
+    (0..record.len()).filter(is_peak)
+}
+
+/// The sum of squares by which a simulation differs that is so many samples late; where it has none, it is zero.
+fn difference(measured: &[f64], simulated: &[f64], delay: isize) -> f64 {
+    let simulated = |at: usize| {
+        usize::try_from(at as isize + delay)
+            .ok()
+            .and_then(|at| simulated.get(at))
+    };
+    let apart = |(at, own): (usize, &f64)| (own - simulated(at).copied().unwrap_or(0.0)).powi(2);
+    measured.iter().enumerate().map(apart).sum()
 }
 
 fn upward_peak(record: &[f64]) -> Option<(usize, f64)> {

@@ -8,7 +8,7 @@ use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
 use crate::modes;
 use crate::response::Response;
 use crate::response::parameters::Values;
-use crate::response::ratio::between;
+use crate::response::resonance;
 use crate::roles::{RoleError, Roles};
 use crate::simulate::Ride;
 
@@ -70,17 +70,11 @@ pub enum MetricsError {
     NoAcceleration { model: String },
 }
 
-/// Where peaks of a channel are looked for, Hz: what a body and its wheel do.
-pub(crate) const BAND: [f64; 2] = [0.5, 50.0];
-/// Lines there: closer than the width of a peak of 1 % damping.
-pub(crate) const LINES: usize = 340;
-
 /// Everything that is measured, in the order of its columns.
 pub struct Metrics<'a, M: ?Sized> {
     model: &'a M,
     chosen: Vec<Metric>,
     ratios: Vec<Ratio>,
-    frequency: Vec<f64>,
     accelerations: Vec<Acceleration>,
     /// The one that feels a cleat first.
     first: usize,
@@ -117,7 +111,6 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
             model,
             chosen: chosen.to_vec(),
             ratios,
-            frequency: lines(),
             first: roles.as_ref().and_then(feels).unwrap_or(0),
             accelerations,
         })
@@ -151,7 +144,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
     /// The numbers of [`Metrics::columns_of_sets`]; NaN of a mode that does not vibrate.
     pub fn of_set(&self, values: &Values) -> Vec<f64> {
         let of = |metric: &Metric| match metric {
-            Metric::Transmissibility => self.summits(values),
+            Metric::Transmissibility => self.peaks(values),
             Metric::Modes => self.modes(values),
             Metric::Peak | Metric::AfterShake | Metric::Dose => Vec::new(),
         };
@@ -196,41 +189,21 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         doses
     }
 
-    /// The summit of each ratio, one response serving all that it drives.
-    fn summits(&self, values: &Values) -> Vec<f64> {
-        let mut responses: Vec<(usize, Response<'_, M>)> = Vec::new();
+    /// The peak of each ratio, one response serving all that it drives.
+    fn peaks(&self, values: &Values) -> Vec<f64> {
+        let mut surveys: Vec<(usize, Response<'_, M>)> = Vec::new();
         let mut found = Vec::new();
         for ratio in &self.ratios {
-            if responses.iter().all(|(excitation, _)| *excitation != ratio.excitation) {
-                let mut response = Response::new(self.model, ratio.excitation, &self.frequency);
-                response.evaluate_values(values.as_slice());
-                responses.push((ratio.excitation, response));
+            if surveys.iter().all(|(excitation, _)| *excitation != ratio.excitation) {
+                let survey = resonance::survey(self.model, values, ratio.excitation);
+                surveys.push((ratio.excitation, survey));
             }
-            let response = responses.iter().find(|(excitation, _)| *excitation == ratio.excitation);
-            let (_, response) = response.expect("it has just been put there");
-            let value = between(response, values, &ratio.numerator, &ratio.denominator);
-            let magnitudes = value.map(|value| value.value.iter().map(|value| value.norm()).collect());
-            found.extend(magnitudes.map_or([f64::NAN; 2], |magnitudes| self.summit(magnitudes)));
+            let survey = surveys.iter().find(|(excitation, _)| *excitation == ratio.excitation);
+            let (_, survey) = survey.expect("it has just been put there");
+            let peak = resonance::highest(survey, values, [&ratio.numerator, &ratio.denominator], false);
+            found.extend(peak.map_or([f64::NAN; 2], |peak| peak.value));
         }
         found
-    }
-
-    /// The highest of some magnitudes and its frequency: between lines the top of the parabola through its logarithm and those
-    /// beside it.
-    fn summit(&self, magnitudes: Vec<f64>) -> [f64; 2] {
-        let highest = magnitudes.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
-        let Some((line, &highest)) = highest else {
-            return [f64::NAN; 2];
-        };
-        if line == 0 || line + 1 == magnitudes.len() {
-            return [highest, self.frequency[line]];
-        }
-        let [left, top, right] = [line - 1, line, line + 1].map(|line| magnitudes[line].ln());
-        let (slope, bend) = (0.5 * (right - left), left - 2.0 * top + right);
-        let aside = if bend < 0.0 { -slope / bend } else { 0.0 };
-        let step = (self.frequency[line + 1] / self.frequency[line]).ln();
-        let height = (top + 0.5 * slope * aside).exp();
-        [height, self.frequency[line] * (aside * step).exp()]
     }
 
     fn modes(&self, values: &Values) -> Vec<f64> {
@@ -267,13 +240,6 @@ fn most_modes(about: &About) -> usize {
     let velocities = about.states.iter().filter(|state| state.kind == StateKind::Velocity);
     let inner = about.states.iter().filter(|state| state.kind == StateKind::Inner);
     velocities.count() + inner.count() / 2
-}
-
-/// The frequencies of the band, Hz, at equal ratios.
-fn lines() -> Vec<f64> {
-    let ([from, to], lines) = (BAND, LINES);
-    let at = |line: usize| from * f64::powf(to / from, line as f64 / (lines - 1) as f64);
-    (0..lines).map(at).collect()
 }
 
 /// The accelerations of masses, weighted as a seat passes them on along the axis of the tyre or across it.

@@ -11,7 +11,7 @@ use crate::model::Model;
 use crate::progress::{self, Told};
 
 /// What ends a local search: tight enough that searches to one minimum agree on it.
-const OPTIONS: Options = Options {
+pub(super) const OPTIONS: Options = Options {
     gradient: 1e-8,
     cost: 1e-9,
     step: 1e-7,

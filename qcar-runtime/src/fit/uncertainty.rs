@@ -75,6 +75,12 @@ impl Uncertainty {
         })
     }
 
+    /// The variance of a free parameter over that of independent residuals of unit variance, where it has one.
+    pub fn inflation(&self, variable: usize) -> Option<f64> {
+        let place = self.information.seen().iter().position(|&k| k == variable)?;
+        Some(self.covariance[(place, place)] / self.information.inverse()[(place, place)])
+    }
+
     /// Why a free parameter has none, where it is off its bounds.
     pub fn unseen(&self, variable: usize) -> Option<&Unseen> {
         self.information.unseen(variable)

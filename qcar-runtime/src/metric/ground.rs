@@ -7,11 +7,13 @@ use rayon::prelude::*;
 use super::course::Course;
 use super::name::{Measure, Metric, What, metrics};
 use super::record::{Impact, Seen};
+use super::vibration;
 use super::watched::Watched;
-use super::{resonance, vibration};
 use crate::campaign::RoleNames;
 use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
+use crate::response::resonance;
+use crate::response::signal::driver;
 use crate::roles::Roles;
 use crate::simulate::{Car, Settings, SimulateError, Tangent, Variant, ride, tangent};
 use crate::tyre::Tyre;
@@ -343,7 +345,9 @@ impl AtRest {
         };
         let resonance = |channel: usize, which: usize| {
             let channel = &ground.about().channels[channel];
-            let own = resonance::of(&ground.model, values, channel, !directions.is_empty());
+            let survey = driver(ground.about(), channel).map(|own| resonance::survey(&ground.model, values, own));
+            let (ends, wanted) = ([&channel.numerator, &channel.denominator], !directions.is_empty());
+            let own = survey.and_then(|survey| resonance::highest(&survey, values, ends, wanted));
             let own = own.ok_or_else(|| MetricError::NotDriven {
                 metric: metric.name.clone(),
             })?;

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::space::Space;
-use super::task::Task;
+use super::task::{Task, is_met};
 use crate::random::SplitMix;
 
 /// Designs over the whole ranges of two knobs, with all others anywhere in the box.
@@ -39,7 +39,7 @@ pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed
             .enumerate()
             .filter(|(at, _)| task.wish(*at).is_none())
             .max_by(|a, b| a.1.total_cmp(b.1));
-        let broken = most.filter(|(_, excess)| **excess > 0.0).map(|(at, _)| at);
+        let broken = most.filter(|(_, excess)| !is_met(**excess)).map(|(at, _)| at);
         Some(Dot {
             at: knobs.map(|k| design[k]),
             broken,

@@ -4,7 +4,7 @@
 
 use rayon::prelude::*;
 
-use super::task::{Sense, Task};
+use super::task::{Sense, TOLERANCE, Task};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
@@ -113,7 +113,7 @@ fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: Vec<Vec<f64>>) ->
         };
         Some(Member {
             aims: aims.iter().map(aim).collect(),
-            broken: task.broken(&excess, 0.0),
+            broken: task.broken(&excess, &vec![-TOLERANCE; excess.len()]),
             places: task.places(&design),
             values,
             rank: 0,

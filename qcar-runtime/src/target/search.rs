@@ -6,7 +6,7 @@
 use rayon::prelude::*;
 
 use super::quadratic::Quadratic;
-use super::task::Task;
+use super::task::{Task, is_met};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
@@ -34,9 +34,10 @@ pub struct Found {
 const LOOKS: usize = 120;
 const STARTS: usize = 3;
 const ITERATIONS: usize = 25;
-/// First and smallest size of a step, in parts of the ranges.
+/// First and smallest size of a step, in parts of the ranges; and the smallest as long as a limit is broken.
 const FIRST: f64 = 0.3;
 const SMALLEST: f64 = 1e-4;
+const FINEST: f64 = 1e-8;
 /// A step is kept that gains so much of what was expected.
 const GAIN: f64 = 0.05;
 /// So much inside its limit a result is aimed at: a search that ends at a limit would be beyond it as often as not.
@@ -85,7 +86,7 @@ impl State {
         let excess = task.excesses(&design, &values);
         Some(Self {
             cost: task.cost(&design) + task.missed(&excess),
-            broken: task.broken(&excess, MARGIN),
+            broken: task.broken(&excess, &task.margins(MARGIN)),
             met: task.holds(&excess),
             multipliers: vec![0.0; excess.len()],
             places,
@@ -152,7 +153,8 @@ fn descend(task: &Task<'_>, mut state: State, free: &[bool]) -> State {
         let (step, multipliers) = solve(task, &state, rows, radius, free);
         state.multipliers = multipliers;
         let length = step.iter().fold(0.0, |most: f64, d| most.max(d.abs()));
-        if length < SMALLEST {
+        let smallest = if state.met { SMALLEST } else { FINEST };
+        if length < smallest {
             break;
         }
         let expected = state.merit() - expected(task, &state, rows, &step);
@@ -178,7 +180,7 @@ fn descend(task: &Task<'_>, mut state: State, free: &[bool]) -> State {
             }
             _ => radius = 0.3 * radius.min(length),
         }
-        if radius < SMALLEST {
+        if radius < smallest {
             break;
         }
     }
@@ -209,7 +211,13 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
         _ => (knob.today - knob.lower) / knob.span() - place,
     });
     let radius = |free: bool| if free { radius } else { 0.0 };
-    let excess: Vec<f64> = state.excess.iter().map(|excess| excess + MARGIN).collect();
+    let margins = task.margins(MARGIN);
+    let excess: Vec<f64> = state
+        .excess
+        .iter()
+        .zip(&margins)
+        .map(|(excess, margin)| excess + margin)
+        .collect();
     let prices: Vec<f64> = (0..excess.len())
         .map(|at| task.wish(at).unwrap_or(state.price))
         .collect();
@@ -237,7 +245,7 @@ fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -
         excess + moved
     });
     let after: Vec<f64> = after.collect();
-    task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, MARGIN)
+    task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, &task.margins(MARGIN))
 }
 
 /// Goes to designs that can be had: rounds, tries the neighbours of each knob, and lets the others follow.
@@ -291,12 +299,12 @@ fn found(task: &Task<'_>, state: State) -> Found {
         .excess
         .iter()
         .zip(&state.multipliers)
-        .filter(|(e, _)| **e > 0.0)
+        .filter(|(e, _)| !is_met(**e))
         .map(|(_, m)| m)
         .sum();
     let multiplier = |(excess, own): (&f64, &f64)| match met {
         true => *own,
-        false if *excess > 0.0 => own / total.max(f64::MIN_POSITIVE),
+        false if !is_met(*excess) => own / total.max(f64::MIN_POSITIVE),
         false => 0.0,
     };
     Found {

@@ -7,7 +7,7 @@
 
 use rayon::prelude::*;
 
-use super::task::Task;
+use super::task::{Task, is_met};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
@@ -259,7 +259,7 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> 
     let met = |at: usize| {
         drawn
             .iter()
-            .filter(|own| own.excess.as_ref().is_some_and(|excess| excess[at] <= 0.0))
+            .filter(|own| own.excess.as_ref().is_some_and(|excess| is_met(excess[at])))
             .count()
     };
     let each = 0..task.limits.len() + task.couplings.len();

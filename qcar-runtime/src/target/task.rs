@@ -57,6 +57,14 @@ pub struct Coupling {
     pub most: f64,
 }
 
+/// What exceeds a limit by no more of its size is met: it reads like the limit where four digits are printed.
+pub const TOLERANCE: f64 = 5e-5;
+
+/// Whether an excess is none.
+pub fn is_met(excess: f64) -> bool {
+    excess <= TOLERANCE
+}
+
 /// All of it.
 pub struct Task<'a> {
     /// What gives results.
@@ -78,6 +86,11 @@ impl Limit {
     /// The derivative of that.
     pub fn slope(&self, slope: f64) -> f64 {
         self.sign() * slope / self.size()
+    }
+
+    /// Whether both limits are of one result and must hold, one as the least and one as the most.
+    fn bounds_from_the_other_side(&self, other: &Limit) -> bool {
+        self.result == other.result && self.sense != other.sense && self.wish.is_none() && other.wish.is_none()
     }
 
     fn sign(&self) -> f64 {
@@ -201,13 +214,34 @@ impl Task<'_> {
 
     /// True where all that must hold does.
     pub fn holds(&self, excess: &[f64]) -> bool {
-        self.broken(excess, 0.0) == 0.0
+        self.hard(excess).all(|(_, excess)| is_met(excess))
     }
 
-    /// The sum by which all that must hold is exceeded, or nearer to it than a margin.
-    pub fn broken(&self, excess: &[f64], margin: f64) -> f64 {
-        let hard = excess.iter().enumerate().filter(|(at, _)| self.wish(*at).is_none());
-        hard.map(|(_, excess)| (excess + margin).max(0.0)).sum()
+    /// The sum by which all that must hold is exceeded, or nearer to it than its margin.
+    pub fn broken(&self, excess: &[f64], margins: &[f64]) -> f64 {
+        self.hard(excess)
+            .map(|(at, excess)| (excess + margins[at]).max(0.0))
+            .sum()
+    }
+
+    /// How far inside each limit and coupling a design is aimed at: `most`, or half of the room that an opposite limit leaves.
+    pub fn margins(&self, most: f64) -> Vec<f64> {
+        let room = |limit: &Limit| {
+            let opposite = self
+                .limits
+                .iter()
+                .filter(|other| other.bounds_from_the_other_side(limit));
+            let gaps = opposite.map(|other| -limit.excess(other.value));
+            gaps.fold(f64::INFINITY, f64::min)
+        };
+        let limits = self.limits.iter().map(|limit| most.min(0.5 * room(limit).max(0.0)));
+        limits.chain(self.couplings.iter().map(|_| most)).collect()
+    }
+
+    /// The excesses of what must hold, with their places.
+    fn hard(&self, excess: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+        let all = excess.iter().copied().enumerate();
+        all.filter(|(at, _)| self.wish(*at).is_none())
     }
 
     /// What missed wishes cost.

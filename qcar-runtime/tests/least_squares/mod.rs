@@ -6,6 +6,8 @@
 mod dual;
 // Every data set of NIST, from every start.
 mod nist;
+// How far a variable may be moved.
+mod profile;
 
 use nalgebra::DMatrix;
 use qcar_runtime::least_squares::{Bounds, Options, Outcome, Stop, minimize};

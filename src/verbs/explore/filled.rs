@@ -12,6 +12,7 @@ use super::sink::{Sink, unfinished};
 use crate::failure::Failure;
 use crate::interruption;
 use crate::progress::Showing;
+use crate::table::counted;
 use crate::units;
 
 /// Rows of a block for each thread: enough to keep all of them busy to its end, and little memory.
@@ -40,10 +41,11 @@ pub(super) fn fill<M: Model + ?Sized>(
     let rows = (sets.end - sets.start) * each;
     let ledger = Ledger::new(ensemble, choice, &headings, rows);
     let said = format!(
-        "{}: {} sets of {}, {rows} rows in {}\n",
+        "{}: {} of {}, {} in {}\n",
         ensemble.model.about().name,
-        sets.end - sets.start,
+        counted((sets.end - sets.start) as usize, "set"),
         choice.scheme,
+        counted(rows as usize, "row"),
         path.display()
     );
     if ledger.stand_beside(path)? == Standing::Done {

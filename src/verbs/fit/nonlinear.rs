@@ -41,7 +41,7 @@ struct Nonlinear {
 
 /// Does it.
 pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, Failure> {
-    refuse_channels(&arguments.choices)?;
+    refuse_choices(&arguments.choices)?;
     let fitted = fit(campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         fitted.write(folder)?;
@@ -58,13 +58,20 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 }
 
 /// # Errors
-/// Channels, which the cost of a linear fit is made of.
-fn refuse_channels(choices: &Choices) -> Result<(), InputError> {
+/// Channels, which the cost of a linear fit is made of, and profiles, which are of it.
+fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     let expected = "a linear model, whose cost is made of channels";
     let remedy = "leave it out: a nonlinear model is fitted to what every sensor shows";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
-    InputError::unless_empty(channels.into_iter().collect(), Some(()))
+    let profiles = (!choices.profile.is_empty()).then(|| {
+        let (expected, remedy) = (
+            "a linear model",
+            "leave it out: standard errors stand beside the values",
+        );
+        flag("--profile", choices.profile.join(","), expected, remedy)
+    });
+    InputError::unless_empty(channels.into_iter().chain(profiles).collect(), Some(()))
 }
 
 fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {

@@ -1,5 +1,6 @@
 //! A fit as text for people and as JSON for programs.
 
+use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, ParameterFit};
 use serde::Serialize;
 
@@ -24,6 +25,7 @@ pub(crate) struct Result<'a> {
     evaluations: usize,
     starts: usize,
     minima: &'a [LocalMinimum],
+    profiles: &'a [ParameterProfile],
     notices: &'a [String],
     seconds: f64,
 }
@@ -52,6 +54,7 @@ pub(crate) fn result(of: &Fitted) -> Result<'_> {
         evaluations: fit.evaluations,
         starts: fit.starts,
         minima: &fit.minima,
+        profiles: &of.profiles,
         notices: &of.campaign.notices,
         seconds: of.seconds,
     }
@@ -61,6 +64,7 @@ pub(super) fn text(of: &Fitted) -> String {
     let sections = [
         summary(of),
         parameters(&of.fit.parameters),
+        profiles(&of.profiles),
         correlations(&of.fit.correlations),
         channels(of),
     ];
@@ -119,6 +123,41 @@ pub(super) fn remark(of: &ParameterFit) -> String {
         (None, None, Some(why), None) => why.sentence(),
         (None, None, None, None) => String::new(),
     }
+}
+
+fn profiles(of: &[ParameterProfile]) -> String {
+    if of.is_empty() {
+        return String::new();
+    }
+    let mut table = Table::new(["profiled", "unit", "value", "from", "to", "remark"]);
+    for own in of {
+        let shown = |value: f64| number(units::value(value, &own.unit), 5);
+        let end = |end: Option<f64>| end.map_or("open".into(), shown);
+        table.row(vec![
+            own.name.clone(),
+            units::name(&own.unit).into(),
+            shown(own.value),
+            end(own.interval[0]),
+            end(own.interval[1]),
+            profile_remark(own),
+        ]);
+    }
+    format!("95 % intervals by profile likelihood\n{}", table.text())
+}
+
+fn profile_remark(of: &ParameterProfile) -> String {
+    let open = match of.interval {
+        [None, None] => "not determined within its range",
+        [None, Some(_)] => "no lower end within its range",
+        [Some(_), None] => "no upper end within its range",
+        [Some(_), Some(_)] => "",
+    };
+    let lower = of.lower_at.map(|at| {
+        let at = number(units::value(at, &of.unit), 5);
+        format!("a lower cost was found at {at}: fit with more --starts")
+    });
+    let words = [Some(open.to_string()).filter(|words| !words.is_empty()), lower];
+    words.into_iter().flatten().collect::<Vec<_>>().join("; ")
 }
 
 fn correlations(of: &[Correlation]) -> String {

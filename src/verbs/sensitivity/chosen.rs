@@ -9,6 +9,7 @@ use qcar_runtime::roles::Roles;
 use qcar_runtime::spelling::{self, nearest};
 
 use crate::failure::flag;
+use crate::verbs::each_once;
 
 /// True of a name that a pattern means, in which each `*` stands for any letters.
 pub(crate) fn fits(pattern: &str, name: &str) -> bool {
@@ -65,16 +66,6 @@ pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize
     let chosen = each_once(chosen);
     problems.extend(chosen.iter().filter_map(|&metric| unread(ground, metric)));
     InputError::unless_empty(problems, Some(chosen))
-}
-
-fn each_once(places: Vec<usize>) -> Vec<usize> {
-    let mut once: Vec<usize> = Vec::new();
-    for place in places {
-        if !once.contains(&place) {
-            once.push(place);
-        }
-    }
-    once
 }
 
 /// What to say of a metric that none of the runs has a value of.

@@ -24,6 +24,8 @@ pub(crate) struct Sensitivity {
     pub runs: Vec<String>,
     pub parameters: Vec<Parameter>,
     pub metrics: Vec<MetricResult>,
+    /// What is odd about the parameters, as sentences.
+    pub notices: Vec<String>,
     /// Of the Sobol indices, where they were asked for.
     pub global: Option<Global>,
 }
@@ -69,7 +71,7 @@ pub(crate) struct Doubted {
     pub deviation: f64,
     /// 95 % of a normal distribution.
     pub interval: [f64; 2],
-    /// What each parameter contributes to the variance.
+    /// What each parameter contributes to the variance: those asked for, then all others of which errors are known.
     pub shares: Ordered<f64>,
 }
 
@@ -107,27 +109,26 @@ pub(crate) fn gather(
     let groups: Vec<Vec<Reading>> = asked.metrics.iter().map(|&metric| ground.readings_of(metric)).collect();
     let sizes: Vec<usize> = groups.iter().map(Vec::len).collect();
     ground.choose(groups.concat());
-    let local = elasticities(ground, &subject.values, asked.parameters)?;
+    let moved = moved(subject, asked);
+    let local = elasticities(ground, &subject.values, &moved)?;
     let about = ground.about();
-    let names: Vec<String> = asked
-        .parameters
-        .iter()
-        .map(|&k| about.parameters[k].name.to_string())
-        .collect();
+    let names: Vec<String> = moved.iter().map(|&k| about.parameters[k].name.to_string()).collect();
+    let shown = &names[..asked.parameters.len()];
     let doubt = doubt(subject, asked, &names);
     let mut first = 0;
     let mut metric = |(&metric, &size): (&usize, &usize)| {
         let range = first..first + size;
         first = range.end;
-        result(ground, &local, (metric, range), &names, doubt.as_ref())
+        result(ground, &local, (metric, range), (shown, &names), doubt.as_ref())
     };
     let metrics = asked.metrics.iter().zip(&sizes).map(&mut metric).collect();
     let mut found = Sensitivity {
         subject: subject.name.clone(),
         model: about.name.to_string(),
         runs: ground.courses().iter().map(|course| course.name.clone()).collect(),
-        parameters: parameters(subject, asked, &names, ground),
+        parameters: parameters(subject, asked, shown, ground),
         metrics,
+        notices: subject.notes.clone(),
         global: None,
     };
     if let Some((plan, spread)) = asked.global {
@@ -138,12 +139,28 @@ pub(crate) fn gather(
     Ok(found)
 }
 
-/// A metric over the readings in a range of places.
+/// The parameters that are asked for, and behind them all others of which errors are known: what they leave in doubt is so
+/// whoever is asked for.
+fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
+    let doubted = |name: &str| subject.errors.deviations.get(name).is_some_and(|error| *error > 0.0);
+    let all = subject.model.about().parameters.iter().enumerate();
+    let others = all.filter(|(place, own)| {
+        doubted(&own.name) && subject.values.leader(*place) == *place && !asked.parameters.contains(place)
+    });
+    asked
+        .parameters
+        .iter()
+        .copied()
+        .chain(others.map(|(place, _)| place))
+        .collect()
+}
+
+/// A metric over the readings in a range of places; elasticities are of the parameters that are shown, what is in doubt by all.
 fn result(
     ground: &Ground<'_>,
     local: &Elasticities,
     (metric, range): (usize, Range<usize>),
-    names: &[String],
+    (shown, names): (&[String], &[String]),
     doubt: Option<&Doubt>,
 ) -> MetricResult {
     let own = &ground.metrics()[metric];
@@ -165,10 +182,10 @@ fn result(
         doc: own.doc.clone(),
         value,
         values: range.clone().map(|at| (run(at), local.values[at])).collect(),
-        elasticities: names.iter().cloned().zip(elastic).collect(),
+        elasticities: shown.iter().cloned().zip(elastic).collect(),
         by_run: range
             .clone()
-            .map(|at| (run(at), local.elasticities[at].clone()))
+            .map(|at| (run(at), local.elasticities[at][..shown.len()].to_vec()))
             .collect(),
         doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&relative))),
         sobol: None,

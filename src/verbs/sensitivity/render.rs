@@ -3,12 +3,21 @@
 use std::fmt::Write;
 
 use super::gather::{MetricResult, Sensitivity};
-use crate::table::{Table, number};
+use crate::table::{Table, counted, number};
 use crate::units;
 
 /// For people.
 pub(super) fn text(of: &Sensitivity) -> String {
     let mut out = format!("{}: {}\n", of.subject, runs(of));
+    out.extend(of.notices.iter().map(|notice| format!("note: {notice}\n")));
+    if of.metrics.is_empty() {
+        return out + "It has no metric that could be measured on these runs.\n";
+    }
+    if of.parameters.is_empty() {
+        return out
+            + "No parameter is open: all are known or zero; name some with --parameters.\n\n"
+            + &values(of).text();
+    }
     out += "Percent of a metric for one percent of a parameter, the most important first.\n\n";
     out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));
     out += "\n";
@@ -16,9 +25,9 @@ pub(super) fn text(of: &Sensitivity) -> String {
     if let Some(global) = &of.global {
         let _ = write!(
             out,
-            "\nShare of the variance in percent, alone / with others, over ± {} % of each parameter ({} designs",
+            "\nShare of the variance in percent, alone / with others, over ± {} % of each parameter ({}",
             number(100.0 * global.spread, 3),
-            global.designs
+            counted(global.designs, "design")
         );
         let _ = writeln!(out, "{}).\n", failed(global.failed));
         let share = |metric: &MetricResult, k: usize| match &metric.sobol {

@@ -13,7 +13,7 @@ use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
-use crate::parameters::{self, Beside, Setting};
+use crate::parameters::{self, Beside, Setting, out_of_range};
 use crate::verbs::fit::{self, Choices};
 
 /// A model with values on its tyre.
@@ -28,6 +28,10 @@ pub(crate) struct Subject {
     pub values: Values,
     /// Masses that a campaign names.
     pub roles: RoleNames,
+    /// Facts of the vehicle that are no parameters of the model.
+    pub vehicle: BTreeMap<String, f64>,
+    /// What is odd about its values, as sentences.
+    pub notes: Vec<String>,
     /// The tyre and its load, N, where facts of a vehicle say them.
     pub tyre: Option<(Tyre, f64)>,
     /// The cleat runs of the campaign, else the standard ones.
@@ -267,6 +271,12 @@ fn finish(
     let own: BTreeMap<&str, f64> = named.map(|(own, value)| (&*own.name, *value)).collect();
     let fact = |name: &str| facts.get(name).or_else(|| own.get(name)).copied();
     // Without any of these facts nothing rolls; with some of them, the others were forgotten.
+    let beyond: BTreeMap<String, f64> = facts
+        .iter()
+        .filter(|(name, _)| !own.contains_key(name.as_str()))
+        .map(|(name, value)| (name.clone(), *value))
+        .collect();
+    let notes = out_of_range(model.about(), values.as_slice());
     let tyre = match (fact("r_tire"), fact("static_tire_def")) {
         (None, _) | (_, None) => None,
         _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),
@@ -280,6 +290,8 @@ fn finish(
         source: source.into(),
         model,
         values,
+        vehicle: beyond,
+        notes,
         roles: campaign.map_or_else(RoleNames::default, |campaign| campaign.roles),
         tyre,
         courses,

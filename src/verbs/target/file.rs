@@ -42,6 +42,8 @@ pub(super) struct Target {
     pub metric: Spanned<String>,
     pub at_most: Option<Spanned<Amount>>,
     pub at_least: Option<Spanned<Amount>>,
+    /// In place of both.
+    pub equals: Option<Spanned<Amount>>,
     /// Names of runs, in which a * stands for any letters; all where there are none.
     pub runs: Option<Spanned<Vec<String>>>,
     /// What it costs to miss it by its own size, in place of having to be met.

@@ -3,7 +3,8 @@
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::target::{
-    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, search, space,
+    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, is_met,
+    search, space,
 };
 use serde::Serialize;
 
@@ -22,6 +23,8 @@ pub(super) struct Answer {
     pub met: bool,
     /// What the design costs.
     pub cost: f64,
+    /// What is odd about today's values, as sentences.
+    pub notices: Vec<String>,
     pub parameters: Vec<Parameter>,
     pub targets: Vec<Target>,
     /// By metric of the targets.
@@ -188,6 +191,7 @@ pub(super) fn gather(
         model: subject.model.about().name.to_string(),
         met: found.met,
         cost: found.cost,
+        notices: subject.notes.clone(),
         parameters: parameters(plan, &found, space.as_ref()),
         targets: targets(plan, &task, &found, space.as_ref()),
         sensitivity: sensitivity(plan, &axle, &found),
@@ -287,7 +291,7 @@ fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -
             wish: task.wish(at),
             today: values[0],
             design: values[1],
-            met: found.excess[at] <= 0.0,
+            met: is_met(found.excess[at]),
             excess: found.excess[at],
             multiplier: found.multipliers[at],
             in_space: space.map(|space| space.each[at]),

@@ -1,17 +1,21 @@
 //! An answer as text.
 
+use std::collections::BTreeMap;
 use std::fmt::Write;
 
+use qcar_runtime::campaign::unit_of_fact;
 use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, counted, number, or_dash};
 use crate::units;
 
 /// For people.
 pub(super) fn text(of: &Answer) -> String {
-    let mut out = format!("{} ({})\n\n", of.subject, of.model);
+    let mut out = format!("{} ({})\n", of.subject, of.model);
+    out.extend(of.notices.iter().map(|notice| format!("note: {notice}\n")));
+    out += "\n";
     out += &verdict(of);
     out += "\n";
     out += &targets(of).text();
@@ -127,12 +131,12 @@ fn space_words(of: &SpaceAnswer) -> String {
     let percent = |part: f64| number(100.0 * part, 3);
     let judged = format!(
         "\nIn the solution space {} % of the designs meet all targets, with 95 % confidence at least {} %; {} % were wanted. It \
-         has {} % of all designs in range ({} designs evaluated).\n",
+         has {} % of all designs in range ({} evaluated).\n",
         percent(of.probability),
         percent(of.at_least),
         percent(of.wanted),
         percent(of.volume),
-        of.evaluated
+        counted(of.evaluated, "design")
     );
     let short = "It falls short of what was wanted: loosen targets or narrow ranges.\n";
     judged + if of.at_least < of.wanted { short } else { "" }
@@ -166,20 +170,27 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
             .map(|((_, value), own)| number(units::value(*value, &own.unit), 4));
         table.row(values.chain(own).chain([number(point.cost, 3)]).collect());
     }
-    let count = front.points.len();
+    let designs = counted(front.points.len(), "design");
     format!(
-        "\nFront of {count} designs, of which none is better in every metric (means over the runs):\n\n{}",
+        "\nFront of {designs}, of which none is better in every metric (means over the runs):\n\n{}",
         table.text()
     )
 }
 
-/// A parameter file as `--params` takes it.
-pub(super) fn parameter_file(about: &About, design: &Values) -> String {
+/// A parameter file as `--params` takes it, with facts of the vehicle beside the values.
+pub(super) fn parameter_file(about: &About, design: &Values, vehicle: &BTreeMap<String, f64>) -> String {
     let mut out = format!("# {} as its targets want it\n\n[parameters]\n", about.name);
     for (place, (own, value)) in about.parameters.iter().zip(design.as_slice()).enumerate() {
         if design.leader(place) == place {
             let _ = writeln!(out, "{} = {value:?} # {}", own.name, own.unit);
         }
+    }
+    if !vehicle.is_empty() {
+        out += "\n[vehicle]\n";
+    }
+    for (name, value) in vehicle {
+        let unit = unit_of_fact(name).map_or(String::new(), |unit| format!(" # {unit}"));
+        let _ = writeln!(out, "{name} = {value:?}{unit}");
     }
     out
 }

@@ -19,7 +19,8 @@ pub(super) fn write(of: &Answer, folder: &Path) -> Result<(), InputError> {
     let bytes = filled(&folder.join(FILE), |workbook| {
         targets(workbook, of)?;
         parameters(workbook, of)?;
-        of.front.as_ref().map_or(Ok(()), |front| designs(workbook, of, front))
+        let front = of.front.as_ref().filter(|front| !front.points.is_empty());
+        front.map_or(Ok(()), |front| designs(workbook, of, front))
     })?;
     put(folder, FILE, &bytes)
 }

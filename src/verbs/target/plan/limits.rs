@@ -36,9 +36,9 @@ impl<'a> Planner<'a, '_> {
                     "correct it, or remove it from what must hold",
                 );
             }
-            if target.at_most.is_none() && target.at_least.is_none() {
-                let found = "neither `at_most` nor `at_least`";
-                self.wrong(&target.metric, "target", found, "a limit", "add one of both");
+            if target.at_most.is_none() && target.at_least.is_none() && target.equals.is_none() {
+                let found = "neither `at_most` nor `at_least` nor `equals`";
+                self.wrong(&target.metric, "target", found, "a limit", "add one of them");
             }
             let mut readings = self.ground.readings_of(metric);
             if let Some(runs) = &target.runs {
@@ -115,6 +115,8 @@ impl<'a> Planner<'a, '_> {
                 let sides = [
                     (&target.at_most, Sense::AtMost, "target.at_most"),
                     (&target.at_least, Sense::AtLeast, "target.at_least"),
+                    (&target.equals, Sense::AtMost, "target.equals"),
+                    (&target.equals, Sense::AtLeast, "target.equals"),
                 ];
                 for (amount, sense, key) in sides {
                     let Some(at) = amount else { continue };
@@ -140,6 +142,9 @@ impl<'a> Planner<'a, '_> {
                             "targets that can hold together",
                             "remove one of both, or make it a wish",
                         );
+                        continue;
+                    }
+                    if limits.contains(&limit) {
                         continue;
                     }
                     limits.push(limit);

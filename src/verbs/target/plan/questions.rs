@@ -28,9 +28,16 @@ impl Planner<'_, '_> {
                 "name them in `smallest` or `largest`",
             );
         }
-        all.into_iter()
-            .filter_map(|(name, sense, key)| Some((self.metric(name, key)?, sense)))
-            .collect()
+        let mut fronts: Vec<(usize, Sense)> = Vec::new();
+        for (name, sense, key) in all {
+            let Some(metric) = self.metric(name, key) else { continue };
+            if fronts.iter().any(|(other, _)| *other == metric) {
+                let found = format!("`{}` for the second time", name.get_ref());
+                self.wrong(name, key, &found, "each metric once", "remove one, or name another");
+            }
+            fronts.push((metric, sense));
+        }
+        fronts
     }
 
     /// The probability and the planes of the solution space.

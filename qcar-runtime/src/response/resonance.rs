@@ -1,45 +1,56 @@
-//! The largest magnitude of a channel over frequency, where it stands, and how both change.
+//! The largest magnitude of a ratio over frequency, where it stands, and how both change.
 
 use nalgebra::Complex;
 
-use crate::ensemble::{BAND, LINES};
-use crate::model::{Channel, Model};
-use crate::response::Response;
-use crate::response::parameters::Values;
-use crate::response::ratio::{Ratio, between};
-use crate::response::signal::driver;
+use super::Response;
+use super::parameters::Values;
+use super::ratio::{Ratio, between};
+use crate::model::{Model, Signal};
 
 /// `[magnitude, frequency in Hz]`, and their derivatives by the parameters that lead their ties, by their places.
-pub(super) struct Resonance {
+pub(crate) struct Resonance {
     pub value: [f64; 2],
     pub slopes: Vec<(usize, [f64; 2])>,
 }
 
+/// Where peaks are looked for, Hz: what a body and its wheel do.
+const BAND: [f64; 2] = [0.5, 50.0];
+/// Lines there: closer than the width of a peak of 1 % damping.
+const LINES: usize = 340;
 /// Lines of each further look between the neighbours of the largest, and how many looks there are.
 const CLOSER: usize = 9;
 const LOOKS: usize = 6;
 
-/// The peak of a channel; none where nothing drives it. Without slopes unless they are wanted.
-pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: bool) -> Option<Resonance> {
-    let excitation = driver(model.about(), channel)?;
+/// The response over the whole band, from which all ratios under one excitation are looked at closer.
+pub(crate) fn survey<'m, M: Model + ?Sized>(model: &'m M, values: &Values, excitation: usize) -> Response<'m, M> {
+    let mut response = Response::new(model, excitation, &spaced(BAND, LINES));
+    response.evaluate_values(values.as_slice());
+    response
+}
+
+/// The peak of a ratio; none where the model cannot give one of its signals. Without slopes unless they are wanted.
+pub(crate) fn highest<M: Model + ?Sized>(
+    survey: &Response<'_, M>,
+    values: &Values,
+    [numerator, denominator]: [&Signal; 2],
+    wanted: bool,
+) -> Option<Resonance> {
     let ratio = |frequency: &[f64], jacobian: bool| {
-        let mut response = Response::new(model, excitation, frequency);
+        let mut response = Response::new(survey.model, survey.excitation, frequency);
         if jacobian {
             response.evaluate(values.as_slice());
         } else {
             response.evaluate_values(values.as_slice());
         }
-        between(&response, values, &channel.numerator, &channel.denominator).ok()
+        between(&response, values, numerator, denominator).ok()
     };
-    let mut band = BAND;
-    let mut lines = LINES;
-    for _ in 0..=LOOKS {
-        let frequency = spaced(band, lines);
-        let value = ratio(&frequency, false)?.value;
-        let largest = value.iter().map(|value| value.norm()).enumerate();
-        let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        band = [frequency[at.saturating_sub(1)], frequency[(at + 1).min(lines - 1)]];
-        lines = CLOSER;
+    let mut frequency = spaced(BAND, LINES);
+    let mut value = between(survey, values, numerator, denominator).ok()?.value;
+    let mut band = about_largest(&frequency, &value)?;
+    for _ in 0..LOOKS {
+        frequency = spaced(band, CLOSER);
+        value = ratio(&frequency, false)?.value;
+        band = about_largest(&frequency, &value)?;
     }
     let at = (band[0] * band[1]).sqrt();
     // Far enough for the second derivative of the magnitude, near enough for it to be that at the peak.
@@ -77,6 +88,16 @@ pub(super) fn of(model: &dyn Model, values: &Values, channel: &Channel, wanted: 
             .map(|(parameter, slopes)| (*parameter, slope(slopes)))
             .collect(),
     })
+}
+
+/// The frequencies beside that of the largest magnitude.
+fn about_largest(frequency: &[f64], value: &[Complex<f64>]) -> Option<[f64; 2]> {
+    let largest = value.iter().map(|value| value.norm()).enumerate();
+    let (at, _) = largest.max_by(|a, b| a.1.total_cmp(&b.1))?;
+    Some([
+        frequency[at.saturating_sub(1)],
+        frequency[(at + 1).min(frequency.len() - 1)],
+    ])
 }
 
 fn spaced([from, to]: [f64; 2], lines: usize) -> Vec<f64> {

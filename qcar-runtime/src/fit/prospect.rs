@@ -1,0 +1,84 @@
+//! What further measurements would say of the parameters of a fit: a D-optimal choice among sensors, runs and levels.
+//!
+//! The criterion is the rise of the log determinant of the information about some parameters, all others being estimated, too
+//! (Atkinson, Donev & Tobias, "Optimum Experimental Designs, with SAS", 2007, chapters 10 and 11); what the ranges say is part of
+//! the information, so that parameters that nothing determines have one (Chaloner & Verdinelli, "Bayesian experimental design: a
+//! review", Statistical Science 10, 1995). The expected errors are counted as the fit counts them: scatter, sides of the axle, and
+//! gains. Since the fit does not weight channels by what these leave, an error may grow where information does.
+
+pub use super::candidate::Kind;
+use super::candidate::candidates;
+use super::forecast::{Said, errors};
+use super::observation::Level;
+use super::plan::Plan;
+use super::setup::Setup;
+use crate::error::InputError;
+use crate::model::Model;
+use crate::progress::{self, Told};
+
+/// What is known, and what could be.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prospects {
+    /// Places in the model of the parameters that the plan wants fitted.
+    pub parameters: Vec<usize>,
+    /// Their standard errors; `None` of what the fitted runs do not determine.
+    pub errors: Vec<Option<f64>>,
+    /// The most informative first.
+    pub further: Vec<Prospect>,
+}
+
+/// A further measurement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prospect {
+    /// Of which kind.
+    pub kind: Kind,
+    /// In words.
+    pub what: String,
+    /// Rise of the log determinant of the information.
+    pub rise: f64,
+    /// The standard errors that a fit with it is expected to have.
+    pub errors: Vec<Option<f64>>,
+}
+
+/// What each further measurement would say, where `plan` has the fitted values for its start values; `matter` are names of the
+/// parameters that count, all where there are none. Measurement by measurement `told` hears how far it is.
+///
+/// # Errors
+/// What [`super::Setup::new`] finds wrong.
+pub fn prospects<M: Model + ?Sized>(
+    model: &M,
+    plan: &Plan,
+    levels: &[Level],
+    matter: &[String],
+    told: Told<'_>,
+) -> Result<Prospects, InputError> {
+    let about = model.about();
+    let values = Setup::new(model, plan, levels)?.values;
+    let is_asked = |place: &usize| {
+        let is_own = |own: &&crate::campaign::Parameter| own.name == about.parameters[*place].name;
+        values.leader(*place) == *place && plan.parameters.iter().find(is_own).is_some_and(|own| own.fit)
+    };
+    let asked: Vec<usize> = (0..about.parameters.len()).filter(is_asked).collect();
+    let counts =
+        |&place: &usize| matter.is_empty() || matter.iter().any(|name| *name == about.parameters[asked[place]].name);
+    let counted: Vec<usize> = (0..asked.len()).filter(counts).collect();
+    let now = Said::by(model, plan, levels, &asked)?;
+    let before = now.log_information(None, &counted);
+    let all = candidates(model, &values, levels);
+    let further = progress::map(&all, told, |own| {
+        let more = Said::by(model, plan, &own.added, &asked)?;
+        Ok(Prospect {
+            kind: own.kind,
+            what: own.what.clone(),
+            rise: now.log_information(Some(&more), &counted) - before,
+            errors: errors(model, plan, &own.levels, &asked)?,
+        })
+    });
+    let mut further = further.into_iter().collect::<Result<Vec<_>, InputError>>()?;
+    further.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    Ok(Prospects {
+        errors: errors(model, plan, levels, &asked)?,
+        parameters: asked,
+        further,
+    })
+}

@@ -1,0 +1,215 @@
+//! Profiles: the least cost that the other variables leave where one is held, and how far it may be moved until that has risen
+//! by a threshold.
+//!
+//! Raue et al., "Structural and practical identifiability analysis of partially observed dynamical models by exploiting the
+//! profile likelihood", Bioinformatics 25 (2009). An end at which the threshold is not reached within the bounds is open: the
+//! residuals do not determine the variable to that side.
+
+use super::{Bounds, Options, Outcome, Problem, minimize};
+
+/// What is profiled.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Profiled {
+    /// Place of the variable.
+    pub variable: usize,
+    /// Rise of `½ ‖r‖²` at an end.
+    pub rise: f64,
+    /// First step away from the minimum, in the unit of the variable.
+    pub step: f64,
+}
+
+/// The least cost along a variable.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Profile {
+    /// Values of the variable, ascending, with the rise of `½ ‖r‖²` there.
+    pub points: Vec<[f64; 2]>,
+    /// Where the rise is the threshold, below and above the minimum; `None` where it is not reached.
+    pub ends: [Option<f64>; 2],
+}
+
+/// Steps to either side, and looks at an end.
+const STEPS: usize = 40;
+const LOOKS: usize = 20;
+/// An end is known to this part of its distance from the minimum.
+const CLOSE: f64 = 1e-3;
+/// A step that raises the cost by less than the first share of the threshold is doubled; by more than the second, halved.
+const SHARES: [f64; 2] = [0.1, 0.4];
+
+/// Walks from the minimum to both ends, every other variable following from where it was.
+pub fn profile<P: Problem + ?Sized>(
+    problem: &mut P,
+    minimum: &Outcome,
+    bounds: &Bounds,
+    of: Profiled,
+    options: &Options,
+) -> Profile {
+    let mut walk = Walk {
+        problem,
+        minimum,
+        bounds,
+        of,
+        options,
+        points: vec![[minimum.x[of.variable], 0.0]],
+    };
+    let ends = [walk.end(-1.0), walk.end(1.0)];
+    let mut points = walk.points;
+    points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    Profile { points, ends }
+}
+
+struct Walk<'a, P: ?Sized> {
+    problem: &'a mut P,
+    minimum: &'a Outcome,
+    bounds: &'a Bounds,
+    of: Profiled,
+    options: &'a Options,
+    points: Vec<[f64; 2]>,
+}
+
+/// A place on the way: the held variable, the others, and the rise.
+#[derive(Clone)]
+struct Place {
+    value: f64,
+    others: Vec<f64>,
+    rise: f64,
+}
+
+impl<P: Problem + ?Sized> Walk<'_, P> {
+    fn end(&mut self, side: f64) -> Option<f64> {
+        let bound = match side < 0.0 {
+            true => self.bounds.lower[self.of.variable],
+            false => self.bounds.upper[self.of.variable],
+        };
+        let mut step = self.of.step;
+        let mut here = Place {
+            value: self.minimum.x[self.of.variable],
+            others: without(&self.minimum.x, self.of.variable),
+            rise: 0.0,
+        };
+        for _ in 0..STEPS {
+            let value = here.value + side * step;
+            let is_last = side * (value - bound) >= 0.0;
+            let next = self.at(if is_last { bound } else { value }, &here.others);
+            if next.rise >= self.of.rise {
+                return Some(self.between(here, next));
+            }
+            if is_last {
+                return None;
+            }
+            let gained = (next.rise - here.rise) / self.of.rise;
+            if gained < SHARES[0] {
+                step *= 2.0;
+            } else if gained > SHARES[1] {
+                step *= 0.5;
+            }
+            here = next;
+        }
+        None
+    }
+
+    /// The root of the rise less the threshold: false position on square roots, in which a quadratic rise is a line, and
+    /// halving where that stands still.
+    fn between(&mut self, mut below: Place, mut above: Place) -> f64 {
+        let start = self.minimum.x[self.of.variable];
+        for look in 0..LOOKS {
+            if (above.value - below.value).abs() <= CLOSE * (above.value - start).abs() {
+                break;
+            }
+            let [low, wanted, high] = [below.rise, self.of.rise, above.rise].map(|rise| rise.max(0.0).sqrt());
+            let part = if high.is_finite() && look % 3 < 2 {
+                (wanted - low) / (high - low)
+            } else {
+                0.5
+            };
+            let value = below.value + part * (above.value - below.value);
+            let middle = self.at(value, &below.others);
+            if (middle.rise / self.of.rise - 1.0).abs() < CLOSE {
+                return middle.value;
+            }
+            if middle.rise >= self.of.rise {
+                above = middle;
+            } else {
+                below = middle;
+            }
+        }
+        0.5 * (below.value + above.value)
+    }
+
+    /// The least cost with the variable held; infinite where there is none.
+    fn at(&mut self, value: f64, others: &[f64]) -> Place {
+        let variable = self.of.variable;
+        let bounds = Bounds {
+            lower: without(&self.bounds.lower, variable),
+            upper: without(&self.bounds.upper, variable),
+        };
+        let mut held = Held::new(self.problem, variable, value);
+        let found = minimize(&mut held, others, &bounds, self.options);
+        let rise = found.cost - self.minimum.cost;
+        let rise = if rise.is_nan() { f64::INFINITY } else { rise };
+        if rise.is_finite() {
+            self.points.push([value, rise]);
+        }
+        Place {
+            value,
+            others: found.x,
+            rise,
+        }
+    }
+}
+
+fn without(all: &[f64], place: usize) -> Vec<f64> {
+    let mut others = all.to_vec();
+    others.remove(place);
+    others
+}
+
+/// A problem with one variable held.
+struct Held<'a, P: ?Sized> {
+    problem: &'a mut P,
+    variable: usize,
+    x: Vec<f64>,
+    jacobian: Vec<f64>,
+}
+
+impl<'a, P: Problem + ?Sized> Held<'a, P> {
+    fn new(problem: &'a mut P, variable: usize, value: f64) -> Self {
+        let mut x = vec![0.0; problem.variables()];
+        x[variable] = value;
+        let jacobian = vec![0.0; problem.variables() * problem.residuals()];
+        Self {
+            problem,
+            variable,
+            x,
+            jacobian,
+        }
+    }
+
+    fn place(&mut self, others: &[f64]) {
+        let (before, after) = others.split_at(self.variable);
+        self.x[..self.variable].copy_from_slice(before);
+        self.x[self.variable + 1..].copy_from_slice(after);
+    }
+}
+
+impl<P: Problem + ?Sized> Problem for Held<'_, P> {
+    fn variables(&self) -> usize {
+        self.x.len() - 1
+    }
+
+    fn residuals(&self) -> usize {
+        self.problem.residuals()
+    }
+
+    fn evaluate(&mut self, others: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
+        self.place(others);
+        self.problem.evaluate(&self.x, residual, &mut self.jacobian);
+        let (before, after) = (self.variable * residual.len(), (self.variable + 1) * residual.len());
+        jacobian[..before].copy_from_slice(&self.jacobian[..before]);
+        jacobian[before..].copy_from_slice(&self.jacobian[after..]);
+    }
+
+    fn evaluate_residual(&mut self, others: &[f64], residual: &mut [f64]) -> bool {
+        self.place(others);
+        self.problem.evaluate_residual(&self.x, residual)
+    }
+}

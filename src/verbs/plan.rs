@@ -1,0 +1,251 @@
+//! `qcar plan`: which further sensor, run or level says most about the parameters of a fit.
+
+use std::path::PathBuf;
+
+use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::error::InputError;
+use qcar_runtime::fit::Plan;
+use qcar_runtime::fit::prospect::{Kind, Prospects, prospects};
+use qcar_runtime::model::About;
+use qcar_runtime::spelling;
+use serde::Serialize;
+
+use crate::catalogue;
+use crate::completion;
+use crate::failure::{Failure, flag};
+use crate::json::{self, Ordered};
+use crate::progress::while_counting;
+use crate::table::{Table, counted, number, or_dash};
+use crate::terminal::prose;
+use crate::units;
+use crate::verbs::Format;
+use crate::verbs::fit::{self, Choices, Fitted};
+
+/// Print which further sensor, run or level would say most about the parameters of a campaign
+///
+/// The linear model is fitted, and each measurement that could be added is judged by the rise of the log determinant of the
+/// information about the parameters (D-optimality), with the standard errors that a fit with it is expected to have. Added are,
+/// one at a time: a sensor at each output of the model that no fitted run records, a run driven by an excitation that none uses, a
+/// fitted run once more, at its level and at twice of it, and beyond either end of its band. A new sensor is taken to be as noisy as
+/// those that there are.
+#[derive(Args)]
+#[command(
+    after_help = "Examples:\n  qcar plan models/campaigns/axle_a_rig\n  qcar plan models/campaigns/axle_a_rig --parameters c_wheel_z,c_tire --format json"
+)]
+pub struct Arguments {
+    /// Folder with a campaign.toml
+    campaign: PathBuf,
+    /// Fit this model, by name or path, in place of the campaign's
+    #[arg(long, add = ArgValueCompleter::new(completion::models))]
+    model: Option<String>,
+    /// Ask for these parameters alone; the others are estimated beside them
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    parameters: Vec<String>,
+    /// Fit these parameters too
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    free: Vec<String>,
+    /// Keep these parameters at their start values
+    #[arg(long, value_delimiter = ',', value_name = "NAMES")]
+    fix: Vec<String>,
+    /// How to print
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    format: Format,
+}
+
+/// What is known, and what could be.
+#[derive(Serialize)]
+struct Planned {
+    campaign: String,
+    model: String,
+    parameters: Ordered<Parameter>,
+    further: Vec<Further>,
+    notices: Vec<String>,
+}
+
+/// A parameter of the fit.
+#[derive(Serialize)]
+struct Parameter {
+    unit: String,
+    value: f64,
+    stderr: Option<f64>,
+    /// Whether it was asked for.
+    asked: bool,
+}
+
+/// A measurement that could be added.
+#[derive(Serialize)]
+struct Further {
+    kind: Kind,
+    what: String,
+    rise: f64,
+    /// Expected, by parameter.
+    stderr: Ordered<Option<f64>>,
+}
+
+/// Does it.
+pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    let campaign = Campaign::open(&arguments.campaign)?;
+    let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
+    refuse_nonlinear(model.about())?;
+    let choices = Choices {
+        model: arguments.model.clone(),
+        free: arguments.free.clone(),
+        fix: arguments.fix.clone(),
+        ..Choices::default()
+    };
+    let fitted = fit::fit(&arguments.campaign, &choices)?;
+    let plan = fitted.as_plan(&choices)?;
+    check_names(&plan, &arguments.parameters)?;
+    let work = format!("{}: further measurement", fitted.campaign.name);
+    let found = while_counting(work, |told| {
+        prospects(&*fitted.model, &plan, &fitted.levels, &arguments.parameters, told)
+    })?;
+    let planned = planned(&fitted, found, &arguments.parameters);
+    Ok(match arguments.format {
+        Format::Text => prose(&planned.text()),
+        Format::Json => json::line(&planned),
+    })
+}
+
+/// # Errors
+/// A nonlinear model.
+fn refuse_nonlinear(about: &About) -> Result<(), InputError> {
+    let problem = || {
+        let found = format!("`{}`, which is nonlinear", about.name);
+        let remedy = "name a linear model with --model, such as the one that this was made of";
+        flag("--model", found, "a linear model", remedy)
+    };
+    InputError::unless_empty((!about.linear).then(problem).into_iter().collect(), Some(()))
+}
+
+/// # Errors
+/// Every name of no parameter that is fitted.
+fn check_names(plan: &Plan, names: &[String]) -> Result<(), InputError> {
+    let fitted = || plan.parameters.iter().filter(|own| own.fit).map(|own| &*own.name);
+    let unknown = names.iter().filter(|name| fitted().all(|own| own != *name));
+    let problem = |name: &String| {
+        let remedy = spelling::remedy(name, fitted());
+        flag(
+            "--parameters",
+            format!("`{name}`"),
+            "a parameter that is fitted",
+            &remedy,
+        )
+    };
+    InputError::unless_empty(unknown.map(problem).collect(), Some(()))
+}
+
+fn planned(fitted: &Fitted, found: Prospects, asked: &[String]) -> Planned {
+    let about = fitted.model.about();
+    let values = fitted.values();
+    let name = |place: usize| about.parameters[place].name.to_string();
+    let parameter = |(&place, stderr): (&usize, &Option<f64>)| {
+        let own = Parameter {
+            unit: about.parameters[place].unit.to_string(),
+            value: values.as_slice()[place],
+            stderr: *stderr,
+            asked: asked.is_empty() || asked.contains(&name(place)),
+        };
+        (name(place), own)
+    };
+    let names: Vec<String> = found.parameters.iter().map(|&place| name(place)).collect();
+    Planned {
+        campaign: fitted.campaign.name.clone(),
+        model: about.name.to_string(),
+        parameters: found.parameters.iter().zip(&found.errors).map(parameter).collect(),
+        further: found
+            .further
+            .into_iter()
+            .map(|own| Further {
+                kind: own.kind,
+                what: own.what,
+                rise: own.rise,
+                stderr: names.iter().cloned().zip(own.errors).collect(),
+            })
+            .collect(),
+        notices: fitted.campaign.notices.clone(),
+    }
+}
+
+/// Measurements whose errors are printed beside each other.
+const ACROSS: usize = 4;
+
+impl Planned {
+    fn text(&self) -> String {
+        let count = counted(self.parameters.0.len(), "parameter");
+        let mut out = format!(
+            "{}: what would say most about {count} of {}\n",
+            self.campaign, self.model
+        );
+        out.extend(self.notices.iter().map(|notice| format!("note: {notice}\n")));
+        if self.further.is_empty() {
+            return out + "Nothing could be added: every output and excitation of the model is in use.\n";
+        }
+        out += "\n";
+        out += &self.measurements().text();
+        out += "\nStandard errors in percent, as they are and as expected with the first of these:\n\n";
+        out + &self.errors().text()
+    }
+
+    fn measurements(&self) -> Table {
+        let mut table = Table::new(["no", "added", "kind", "rise of log det", "helps most"]);
+        for (at, own) in self.further.iter().enumerate() {
+            table.row(vec![
+                (at + 1).to_string(),
+                own.what.clone(),
+                own.kind.word().into(),
+                number(own.rise, 3),
+                self.relief(own),
+            ]);
+        }
+        table
+    }
+
+    /// The two parameters whose errors fall most, in words.
+    fn relief(&self, of: &Further) -> String {
+        let mut falls: Vec<(f64, String)> = Vec::new();
+        for ((name, own), (_, then)) in self
+            .parameters
+            .0
+            .iter()
+            .zip(&of.stderr.0)
+            .filter(|((_, own), _)| own.asked)
+        {
+            match (own.stderr, *then) {
+                (None, Some(_)) => falls.push((0.0, format!("{name}, now unknown"))),
+                (Some(now), Some(then)) if then < NOTABLE * now => {
+                    let less = number(100.0 * (1.0 - then / now), 2);
+                    falls.push((then / now, format!("{name} −{less} %")));
+                }
+                _ => {}
+            }
+        }
+        falls.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let words: Vec<String> = falls.into_iter().take(2).map(|(_, words)| words).collect();
+        if words.is_empty() { "-".into() } else { words.join(", ") }
+    }
+
+    fn errors(&self) -> Table {
+        let shown = &self.further[..self.further.len().min(ACROSS)];
+        let with = (1..=shown.len()).map(|at| format!("with {at}"));
+        let headings = ["parameter", "unit", "value", "now"].map(String::from);
+        let mut table = Table::with_headings(headings.into_iter().chain(with).collect());
+        for (at, (name, own)) in self.parameters.0.iter().enumerate() {
+            let percent = |error: Option<f64>| or_dash(error.map(|error| 100.0 * error / own.value.abs()), 2);
+            let named = [
+                name.clone(),
+                units::name(&own.unit).into(),
+                number(units::value(own.value, &own.unit), 4),
+                percent(own.stderr),
+            ];
+            let then = shown.iter().map(|further| percent(further.stderr.0[at].1));
+            table.row(named.into_iter().chain(then).collect());
+        }
+        table
+    }
+}
+
+/// An error that falls to less than this part of itself is worth a word.
+const NOTABLE: f64 = 0.98;
