@@ -4,8 +4,8 @@ use nalgebra::{DMatrix, DVector};
 use qcar_runtime::least_squares::profile::{Profile, Profiled, profile};
 use qcar_runtime::least_squares::{Bounds, minimize};
 
-use crate::TIGHT;
-use crate::dual::{Dual, Functions};
+use super::TIGHT;
+use super::dual::{Dual, Functions};
 
 /// Half of the 95 % quantile of chi-square: of residuals of unit variance the rise at an end.
 const RISE: f64 = 0.5 * 1.96 * 1.96;
