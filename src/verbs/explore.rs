@@ -237,7 +237,7 @@ fn check_size(scheme: &Scheme, axes: usize) -> Result<(), InputError> {
     let sobol = matches!(scheme, Scheme::Sobol(_));
     let most = if sobol { POINTS } else { MOST };
     if count > most as f64 {
-        let (found, most) = (format!("{} sets", number(count, 4)), number(most as f64, 4));
+        let found = format!("{} sets", number(count, 4));
         let expected = format!("at most {most} sets");
         return Err(flag(
             "--count",
