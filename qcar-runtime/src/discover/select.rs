@@ -28,7 +28,7 @@ use assembly::{Assembly, Hypothesis, Place, Placed};
 use exchange::exchanges;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, is_missing, judged, nameless, predictive, standing};
+use verdict::{Set, closed, is_missing, judged, nameless, predictive};
 use visible::visible;
 
 pub use alone::{Alone, Minimum, alone};
@@ -160,10 +160,12 @@ fn second(sets: &[Set]) -> Option<usize> {
     open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, or the most probable one that stands, as long as it has several effects of which none was exchanged.
+/// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects of which none was
+/// exchanged.
 fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
-    [best(sets), standing(sets, evidence).0].into_iter().find(open)
+    let best = best(sets);
+    [best, predictive(sets, best, evidence)].into_iter().find(open)
 }
 
 /// The most probable set, as long as it has several effects that were not tried without one of them.
@@ -192,7 +194,8 @@ fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> 
 
 /// The most probable set.
 fn best(sets: &[Set]) -> usize {
-    verdict::best(sets, usize::MAX)
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    (0..sets.len()).max_by(order).unwrap_or(0)
 }
 
 fn tell(set: &Set, progress: Progress<'_>) {

@@ -112,15 +112,13 @@ struct Answer {
     probability: f64,
 }
 
-/// The answers of at most so many names, the most probable first: sets of the same names are one.
-fn answers(sets: &[Set], names: usize) -> Vec<Answer> {
-    let sets_in = || sets.iter().enumerate().filter(|(_, set)| set.names().len() <= names);
-    let posteriors = sets_in().map(|(_, set)| set.log_posterior());
-    let most = posteriors.fold(f64::NEG_INFINITY, f64::max);
+/// The answers, the most probable first: sets of the same names are one.
+fn answers(sets: &[Set]) -> Vec<Answer> {
+    let most = sets.iter().map(Set::log_posterior).fold(f64::NEG_INFINITY, f64::max);
     let weight = |set: &Set| (set.log_posterior() - most).exp();
-    let all: f64 = sets_in().map(|(_, set)| weight(set)).sum();
+    let all: f64 = sets.iter().map(weight).sum();
     let mut answers: Vec<Answer> = Vec::new();
-    for (place, set) in sets_in() {
+    for (place, set) in sets.iter().enumerate() {
         let probability = weight(set) / all;
         match answers.iter_mut().find(|own| sets[own.set].names() == set.names()) {
             Some(own) => {
@@ -141,12 +139,14 @@ fn answers(sets: &[Set], names: usize) -> Vec<Answer> {
 
 /// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
 pub fn nameless(sets: &[Set]) -> usize {
-    best(sets, 0)
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
+    nameless.max_by(order).unwrap_or(0)
 }
 
 /// The answer.
 pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
-    let answers = answers(sets, standing(sets, evidence).1);
+    let answers = answers(sets);
     let credible = credible(sets, &answers, &evidence.numbers);
     let alone = nameless(sets);
     let before = sets[alone].explanation.clone();
@@ -300,28 +300,6 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
     });
     probable.truncate(CANDIDATES);
     probable
-}
-
-/// The most probable set that the runs that judge do not withdraw, and the most names that a set may have beside it. Where a
-/// set is withdrawn to a part of it, all sets of more names than that part has are: of the others, another one may be more
-/// probable than the part.
-pub fn standing(sets: &[Set], evidence: &Evidence) -> (usize, usize) {
-    let mut names = usize::MAX;
-    loop {
-        let best = best(sets, names);
-        let part = predictive(sets, best, evidence);
-        if part == best {
-            return (best, names);
-        }
-        names = sets[part].names().len();
-    }
-}
-
-/// The most probable set of at most so many names.
-pub fn best(sets: &[Set], names: usize) -> usize {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    let open = (0..sets.len()).filter(|&place| sets[place].names().len() <= names);
-    open.max_by(order).unwrap_or(0)
 }
 
 /// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
