@@ -8,12 +8,12 @@ pub mod assembly;
 mod screen;
 // which of them explain best,
 mod race;
-// which would have, beside those that were added later,
-mod exchange;
 // where a model alone explains best,
 mod alone;
 // how probable each set is,
 mod verdict;
+// which would have explained best beside those that were added later,
+mod exchange;
 // what law is missing where the catalogue has none,
 mod learn;
 // and which effects would have been seen.
