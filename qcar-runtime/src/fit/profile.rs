@@ -2,7 +2,7 @@
 //! chance.
 //!
 //! The cost is no sum of squares over known variances, so its rise is counted in units of what it says of the same parameter
-//! near the minimum: it is scaled by the ratio of the variance of [`super::uncertainty`] to that of the curvature (adjusted
+//! near the minimum: it is scaled by the ratio of the variance of `uncertainty` to that of the curvature (adjusted
 //! profile likelihood, Royall & Tsou, "Interpreting statistical evidence by using imperfect models", J. R. Stat. Soc. B 65,
 //! 2003). Where the model is as linear as its Jacobian, an interval is 1.96 standard errors to either side.
 
