@@ -12,7 +12,7 @@ mod race;
 mod alone;
 // how probable each set is,
 mod verdict;
-// which would have explained best beside those that were added later,
+// which rivals explain better beside effects that were added later,
 mod exchange;
 // what law is missing where the catalogue has none,
 mod learn;
@@ -73,7 +73,7 @@ pub fn discover(
     }
     while let Some(place) = unexchanged(&sets, evidence) {
         sets[place].exchanged = true;
-        progress(News::Doing("exchanging effects for their rivals"));
+        progress(News::Doing("trying the rivals of each effect"));
         let others = exchanges(&sets[place], &sets, evidence);
         sets.extend(others);
     }
@@ -160,8 +160,8 @@ fn second(sets: &[Set]) -> Option<usize> {
     open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects of which none was
-/// exchanged.
+/// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects that were not
+/// replaced by their rivals.
 fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
     let best = best(sets);

@@ -1,7 +1,7 @@
-//! A set with one of its effects exchanged for an effect that it was preferred to.
+//! A set of effects with one of them replaced by a rival.
 //!
-//! Which effect explained better was decided before the later ones were added. What these explain may have told the two
-//! apart wrongly: a body that bends speaks for a mount of three parameters, and with its bending in the model, for one of two.
+//! An effect beats its rivals before the later effects are added. What is missing then biases that choice: an unmodelled bending
+//! of the body, or a late sensor, can favour the wrong effect. So each rival is fitted again beside the later effects.
 
 use rayon::prelude::*;
 
@@ -10,8 +10,8 @@ use super::explained;
 use super::verdict::Set;
 use crate::discover::observe::Evidence;
 
-/// The set with each of its effects exchanged for those that competed with it, where what was added later could have made up
-/// for the difference.
+/// The set with each of its effects replaced by each rival that was behind by less than the later effects have gained: these
+/// may gain as much beside the rival.
 pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let last = set.assembly.effects().len() - 1;
     let rivals = (0..last).flat_map(|place| {

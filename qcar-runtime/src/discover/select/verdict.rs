@@ -19,7 +19,7 @@ pub struct Set {
     pub log_prior: f64,
     /// Whether its extensions were looked for.
     pub extended: bool,
-    /// Whether its effects were exchanged for those that they were preferred to.
+    /// Whether its effects were replaced by their rivals.
     pub exchanged: bool,
     /// Whether it was tried without each of its effects.
     pub reduced: bool,
@@ -71,8 +71,9 @@ impl Set {
         self.named().any(|own| own.taken.stands_at_an_end(&self.explanation))
     }
 
-    /// True where an effect that a part of it lacks stands for another: one beside others has no shape at its limit either,
-    /// for what is left of the gap is bent to more easily than the whole of it.
+    /// True where an effect that a part of it lacks has a magnitude at an end of its range, so that it stands for another
+    /// effect. A further effect must have its shapes inside their ranges too: little is left for it to explain, and at the
+    /// limit of a shape it imitates almost anything.
     fn adds_a_substitute(&self, part: &Set) -> bool {
         let is_further = !part.names().is_empty();
         let is_substitute = |own: &Placed| {
