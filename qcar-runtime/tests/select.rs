@@ -130,8 +130,8 @@ fn normal(state: &mut u64) -> f64 {
     (0..12).map(|_| uniform()).sum::<f64>() - 6.0
 }
 
-/// Three sweeps of the axle with a mass on its body, one of them held out, whose body's sensor is late (s).
-fn evidence(late: f64) -> Evidence {
+/// Sweeps of the axle with a mass on its body, whose body's sensor is late (s), at these levels.
+fn evidence(late: f64, levels: &[(f64, Role)]) -> Evidence {
     let model = Strut::new(WITH_MASS);
     let about = model.about();
     let named = about.parameters.iter().map(|own| own.name.to_string());
@@ -139,8 +139,7 @@ fn evidence(late: f64) -> Evidence {
     let frequency = logarithmic(0.6, 28.0, 60);
     let mut state = 7;
     let (mut runs, mut series) = (Vec::new(), Vec::new());
-    let levels = [(0.025, Role::Fit), (0.05, Role::Fit), (0.1, Role::HeldOut)];
-    for (run, (level, role)) in levels.into_iter().enumerate() {
+    for (run, (level, role)) in levels.iter().copied().enumerate() {
         runs.push(Run {
             name: format!("sweep_{run}"),
             role,
@@ -186,8 +185,10 @@ fn evidence(late: f64) -> Evidence {
     }
 }
 
+const LEVELS: [(f64, Role); 3] = [(0.025, Role::Fit), (0.05, Role::Fit), (0.1, Role::HeldOut)];
+
 /// Starts a fifth off, with all but the known masses free.
-fn answer(masses: Vec<Hanging>, delays: bool, late: f64) -> Discovery {
+fn answer(masses: Vec<Hanging>, delays: bool, evidence: &Evidence) -> Discovery {
     let model = Strut::new(PLAIN);
     let given = model.about().parameters.iter().zip(TRUTH).enumerate();
     let given = given.map(|(k, (own, truth))| Given {
@@ -200,7 +201,7 @@ fn answer(masses: Vec<Hanging>, delays: bool, late: f64) -> Discovery {
         vehicle: Default::default(),
     };
     let bench = Bench { model, masses, delays };
-    discover(Box::new(bench), &setting, &evidence(late), &|_| ()).expect("the model has the sensors")
+    discover(Box::new(bench), &setting, evidence, &|_| ()).expect("the model has the sensors")
 }
 
 #[test]
@@ -213,14 +214,18 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
         name: "heavy",
         mass: (20.0, 200.0),
     };
-    let unknown = answer(vec![light.clone()], false, 0.0);
-    assert_eq!(unknown.verdict, Verdict::Unknown);
-    let candidate = &unknown.candidates[0];
-    assert!(
-        candidate.effect == "light" && candidate.explained > 0.5,
-        "{candidate:?}"
-    );
-    let found = answer(vec![light, heavy], false, 0.0);
+    let judged = evidence(0.0, &LEVELS);
+    let unjudged = evidence(0.0, &LEVELS[..2]);
+    for evidence in [&judged, &unjudged] {
+        let unknown = answer(vec![light.clone()], false, evidence);
+        assert_eq!(unknown.verdict, Verdict::Unknown);
+        let candidate = &unknown.candidates[0];
+        assert!(
+            candidate.effect == "light" && candidate.explained > 0.5,
+            "{candidate:?}"
+        );
+    }
+    let found = answer(vec![light, heavy], false, &judged);
     assert_eq!(found.verdict, Verdict::Found);
     assert_eq!(found.findings[0].effect, "heavy");
 }
@@ -230,9 +235,10 @@ fn an_effect_whose_magnitude_stands_at_its_end_is_no_answer() {
 fn what_a_nuisance_had_hidden_is_found_once_it_is_fitted() {
     let [light, right] = [("light", (60.0, 68.2)), ("right", (70.4, 80.0))].map(|(name, mass)| Hanging { name, mass });
     let both = [light, right];
-    let misled = answer(both.to_vec(), false, 1.5e-3);
+    let late = evidence(1.5e-3, &LEVELS);
+    let misled = answer(both.to_vec(), false, &late);
     assert_eq!(misled.findings[0].effect, "light");
-    let found = answer(both.to_vec(), true, 1.5e-3);
+    let found = answer(both.to_vec(), true, &late);
     assert_eq!(found.verdict, Verdict::Found);
     assert_eq!(found.findings[0].effect, "right");
     let (_, delay, error) = found.nuisances[1][0].parameters[0];

@@ -305,11 +305,9 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
 
 /// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
 /// what does not predict, what changes next to nothing, and what stands for another effect is withdrawn, whichever part shows
-/// it.
+/// it. The last needs no runs that judge.
 pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
-    if evidence.of_role(Role::HeldOut).next().is_none() {
-        return best;
-    }
+    let judges = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
         let count = sets[best].names().len();
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
@@ -318,8 +316,8 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
             let changes_little = !sets[part].names().is_empty() && closes < evidence.numbers.explained();
-            let adds_nothing = changes_little || sets[best].adds_a_substitute(&sets[part]);
-            adds_nothing || !predicts(&sets[best], &sets[part], evidence)
+            let fails = judges && (changes_little || !predicts(&sets[best], &sets[part], evidence));
+            fails || sets[best].adds_a_substitute(&sets[part])
         };
         match (0..sets.len()).filter(is_answer).filter(withdrawn).max_by(order) {
             Some(part) => best = part,
