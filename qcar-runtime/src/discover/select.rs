@@ -11,6 +11,8 @@ mod race;
 // where a model alone explains best,
 mod alone;
 // how probable each set is,
+mod bagged;
+// and what is said of it,
 mod verdict;
 // which rivals explain better beside effects that were added later,
 mod exchange;
@@ -78,16 +80,16 @@ pub fn discover(
         sets.extend(others);
     }
     let alone = &sets[nameless(&sets)];
-    let mut discovery = judged(&sets, evidence);
+    let (mut discovery, found) = judged(&sets, evidence);
     if is_unexplained(&discovery, &evidence.numbers) {
         let learned = learn::learn(alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
-    } else if let Some(found) = doubtful(&sets, &discovery, evidence) {
+    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], alone, evidence) {
         // Names may make up for a law that the catalogue does not have.
         let law = learn::single(alone, evidence, progress);
         let odds = evidence.numbers.odds_of_certain().ln();
-        let law = law.filter(|law| law.log_posterior() - found.log_posterior() > odds);
+        let law = law.filter(|law| law.log_posterior() - sets[found].log_posterior() > odds);
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
@@ -174,22 +176,10 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// The set that was found, where it has several effects, or leaves more of the gap than chance would.
-fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> Option<&'s Set> {
-    let found = discovery.told_apart().0;
-    let is_it = |set: &&Set| {
-        let is_found = |own: &Placed| {
-            found
-                .iter()
-                .any(|finding| (&*finding.effect, &*finding.at) == own.name())
-        };
-        set.names().len() == found.len() && set.named().all(is_found)
-    };
-    let order = |a: &&Set, b: &&Set| a.log_posterior().total_cmp(&b.log_posterior());
-    let found = sets.iter().filter(is_it).max_by(order);
-    let alone = &sets[nameless(sets)].explanation;
-    let closes = |set: &Set| closed(alone, &set.explanation, evidence);
-    found.filter(|set| set.names().len() > 1 || closes(set) < evidence.numbers.certain())
+/// True where the set that was found has several effects, or leaves more of the gap than chance would.
+fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
+    let closes = closed(&alone.explanation, &found.explanation, evidence);
+    found.names().len() > 1 || closes < evidence.numbers.certain()
 }
 
 /// The most probable set.

@@ -1,6 +1,9 @@
 //! How probable each set of effects is, and what is said of it.
 
+use std::sync::OnceLock;
+
 use super::assembly::{Assembly, Placed};
+use super::bagged::probabilities;
 use crate::campaign::Role;
 use crate::discover::answer::{Discovery, Finding, Probable, Rival, Verdict};
 use crate::discover::candidate::Candidate;
@@ -25,6 +28,8 @@ pub struct Set {
     pub reduced: bool,
     /// Others that were dropped on the way to it.
     pub rivals: Vec<Rival>,
+    /// What the runs that judge say of it, once that was asked: see [`log_score`].
+    score: OnceLock<f64>,
 }
 
 impl Set {
@@ -38,6 +43,7 @@ impl Set {
             exchanged: false,
             reduced: false,
             rivals: Vec::new(),
+            score: OnceLock::new(),
         }
     }
 
@@ -49,6 +55,25 @@ impl Set {
     /// Odds of one effect more, before any measurement.
     pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
         if self.names().is_empty() { 1.0 } else { numbers.further }
+    }
+
+    /// Logarithm of the likelihood of the runs of a role, but for a constant, part by part of the data; `None` without a
+    /// discrepancy.
+    pub fn log_likelihoods(&self, role: Role, evidence: &Evidence) -> Option<Vec<f64>> {
+        let discrepancy = self.explanation.refit.discrepancy.as_ref()?;
+        let mut residual = Vec::new();
+        for (place, series) in evidence.of_role(role) {
+            let parts = if series.kind.complex() { 2 } else { 1 };
+            let own = &self.explanation.gap.residuals[place];
+            let units = series
+                .sigma
+                .iter()
+                .zip(&series.noise)
+                .map(|(sigma, noise)| sigma / noise);
+            let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
+            residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
+        }
+        Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
     }
 
     /// What is told of all its effects.
@@ -83,6 +108,13 @@ impl Set {
         self.named().filter(is_new).any(is_substitute)
     }
 
+    /// True where a shape stands at an end of its range and the other set has fewer unknowns: at its limit a law is a simpler
+    /// one, and no alternative to it.
+    fn is_a_limit_beside(&self, other: &Set) -> bool {
+        let unknowns = |set: &Set| set.explanation.refit.free.len();
+        unknowns(self) > unknowns(other) && self.named().any(|own| own.taken.reaches_an_end(&self.explanation))
+    }
+
     /// Its effects that may be an answer.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
@@ -111,31 +143,52 @@ struct Answer {
     /// Place of its most probable set.
     set: usize,
     probability: f64,
+    /// True for names that are no answer: the runs that judge leave nothing of them, or they are the first ones at a limit.
+    dismissed: bool,
 }
 
 /// The answers, the most probable first: sets of the same names are one.
-fn answers(sets: &[Set]) -> Vec<Answer> {
-    let most = sets.iter().map(Set::log_posterior).fold(f64::NEG_INFINITY, f64::max);
-    let weight = |set: &Set| (set.log_posterior() - most).exp();
-    let all: f64 = sets.iter().map(weight).sum();
+fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
+    let probability = probabilities(sets, evidence);
+    let left: Vec<usize> = (0..sets.len()).map(|place| predictive(sets, place, evidence)).collect();
     let mut answers: Vec<Answer> = Vec::new();
-    for (place, set) in sets.iter().enumerate() {
-        let probability = weight(set) / all;
-        match answers.iter_mut().find(|own| sets[own.set].names() == set.names()) {
+    for (place, probability) in probability.iter().copied().enumerate() {
+        let dismissed = left[place] != place && sets[left[place]].names().is_empty();
+        let set = if dismissed { place } else { standing(place, sets, &left) };
+        let is_it = |own: &&mut Answer| sets[own.set].names() == sets[set].names();
+        match answers.iter_mut().find(is_it) {
             Some(own) => {
-                if set.log_posterior() > sets[own.set].log_posterior() {
-                    own.set = place;
+                if sets[set].log_posterior() > sets[own.set].log_posterior() {
+                    own.set = set;
                 }
                 own.probability += probability;
+                own.dismissed |= dismissed;
             }
             None => answers.push(Answer {
-                set: place,
+                set,
                 probability,
+                dismissed,
             }),
         }
     }
     answers.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    let first = answers[0].set;
+    for own in &mut answers[1..] {
+        own.dismissed |= sets[own.set].is_a_limit_beside(&sets[first]);
+    }
     answers
+}
+
+/// The set that a set speaks for: itself, if the runs that judge leave it whole, or else the most probable one that they leave
+/// whole and that has what they leave of it. That part says what is there, not that nothing else is.
+fn standing(place: usize, sets: &[Set], left: &[usize]) -> usize {
+    if left[place] == place {
+        return place;
+    }
+    let part = left[place];
+    let speaks = |&other: &usize| left[other] == other && is_part(&sets[part], &sets[other]);
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    (0..sets.len()).filter(speaks).max_by(order).unwrap_or(part)
 }
 
 /// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
@@ -145,16 +198,16 @@ pub fn nameless(sets: &[Set]) -> usize {
     nameless.max_by(order).unwrap_or(0)
 }
 
-/// The answer.
-pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
-    let answers = answers(sets);
-    let credible = credible(sets, &answers, &evidence.numbers);
+/// The answer, and the place of the set that it tells of; of a class the most probable one.
+pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
+    let answers = answers(sets, evidence);
     let alone = nameless(sets);
     let before = sets[alone].explanation.clone();
-    let predictive = predictive(sets, credible[0], evidence);
+    let credible = credible(sets, &answers, &evidence.numbers);
     // What explains less than most of the gap is not the answer, however probable beside the others.
-    let explains = closed(&before, &sets[predictive].explanation, evidence) >= GREATER_PART;
-    let best = if explains { predictive } else { alone };
+    let explains = |set: usize| closed(&before, &sets[set].explanation, evidence) >= GREATER_PART;
+    let members = if explains(credible[0]) { credible } else { vec![alone] };
+    let best = members[0];
     let after = sets[best].explanation.clone();
     let finding = |set: &Set, own: &Placed| Finding {
         effect: own.effect.clone(),
@@ -165,53 +218,29 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
         closed: closed(&before, &set.explanation, evidence),
         rivals: set.rivals.clone(),
     };
-    let (mut findings, mut alike) = (Vec::new(), 0);
-    if best == credible[0] {
-        let members: Vec<&Set> = credible.iter().map(|&place| &sets[place]).collect();
-        let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
-        let (common, others): (Vec<&Placed>, Vec<&Placed>) = members[0].named().partition(|own| is_common(own));
-        findings.extend(common.into_iter().map(|own| finding(members[0], own)));
-        let found = findings.len();
-        findings.extend(others.into_iter().map(|own| finding(members[0], own)));
-        for set in &members[1..] {
-            let effects = set.named().filter(|own| !is_common(own));
-            let new: Vec<Finding> = effects
-                .filter(|own| {
-                    !findings
-                        .iter()
-                        .any(|known| (known.effect.as_str(), known.at.as_str()) == own.name())
-                })
-                .map(|own| finding(set, own))
-                .collect();
-            findings.extend(new);
-        }
-        alike = if members.len() > 1 { findings.len() - found } else { 0 };
-    } else {
-        findings.extend(sets[best].named().map(|own| finding(&sets[best], own)));
-    }
+    let (findings, alike) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
     let verdict = match (findings.is_empty(), alike) {
         (true, _) if is_missing(&sets[best], evidence) => Verdict::Unknown,
         (true, _) => Verdict::None,
         (false, 0) => Verdict::Found,
         (false, _) => Verdict::Class,
     };
-    let of_answer = |wanted: &dyn Fn(usize) -> bool| -> f64 {
-        let wanted = answers.iter().filter(|own| wanted(own.set));
+    let sum = |wanted: &dyn Fn(&Answer) -> bool| -> f64 {
+        let wanted = answers.iter().filter(|own| wanted(own));
         wanted.map(|own| own.probability).sum()
     };
+    let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
     let probability = match verdict {
-        Verdict::None => Some(of_answer(&|set| sets[set].names().is_empty())),
-        Verdict::Found => Some(of_answer(&|set| is_part(&sets[best], &sets[set]))),
-        Verdict::Class => Some(of_answer(&|set| {
-            credible.iter().any(|&own| is_part(&sets[own], &sets[set]))
-        })),
+        Verdict::None => Some(sum(&|own| sets[own.set].names().is_empty())),
+        // Given that one of the names that may be an answer is the truth.
+        Verdict::Found | Verdict::Class => Some(sum(&|own| !own.dismissed && holds(own)) / sum(&|own| !own.dismissed)),
         Verdict::Unknown => None,
     };
     let nuisances = |set: &Set| {
         let effects = set.assembly.effects().iter().filter(|own| own.nuisance);
         effects.map(|own| finding(set, own)).collect()
     };
-    Discovery {
+    let discovery = Discovery {
         verdict,
         probability,
         candidates: candidates(sets, &answers, &before, evidence),
@@ -222,7 +251,30 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> Discovery {
         after,
         visible: Vec::new(),
         learned: None,
+    };
+    (discovery, best)
+}
+
+/// The findings of a list of sets, what all of them have first, and how many follow that stand in each other's place.
+fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Vec<Finding>, usize) {
+    let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
+    let (common, others): (Vec<&Placed>, Vec<&Placed>) = members[0].named().partition(|own| is_common(own));
+    let first = common.iter().chain(&others).map(|own| finding(members[0], own));
+    let mut findings: Vec<Finding> = first.collect();
+    for set in &members[1..] {
+        for own in set.named() {
+            let is_known = |known: &Finding| (known.effect.as_str(), known.at.as_str()) == own.name();
+            if !findings.iter().any(is_known) {
+                findings.push(finding(set, own));
+            }
+        }
     }
+    let alike = if members.len() > 1 {
+        findings.len() - common.len()
+    } else {
+        0
+    };
+    (findings, alike)
 }
 
 /// True where a model leaves more of any sensor than models of its kind do, and more than the uncertainty of all that
@@ -235,16 +287,24 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     is_large && excess(&set.explanation, evidence) > 0.0
 }
 
-/// The smallest list of sets that is certain, without those that only add to another one of it. It is the
-/// base model alone unless that is less probable than the others have to be certain.
+/// The smallest list of sets that is certain, without those that only add to another one of it. It is the base model alone
+/// where the runs that judge leave nothing of the most probable names, and unless that is less probable than the others have
+/// to be certain.
 fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
-    let none = answers.iter().find(|own| sets[own.set].names().is_empty());
-    if let Some(none) = none.filter(|none| none.probability > numbers.doubt) {
-        return vec![none.set];
+    let is_named = |own: &&Answer| !sets[own.set].names().is_empty();
+    let none: f64 = answers
+        .iter()
+        .filter(|own| !is_named(own))
+        .map(|own| own.probability)
+        .sum();
+    if answers[0].dismissed || none > numbers.doubt {
+        return vec![nameless(sets)];
     }
+    let standing = answers.iter().filter(|own| is_named(own) && !own.dismissed);
+    let all: f64 = standing.clone().map(|own| own.probability).sum();
     let mut sum = 0.0;
-    let held = answers.iter().take_while(|own| {
-        let wanted = sum < numbers.certain();
+    let held = standing.take_while(|own| {
+        let wanted = sum < numbers.certain() * all;
         sum += own.probability;
         wanted
     });
@@ -270,6 +330,8 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();
     names.dedup();
+    let may_be = answers.iter().filter(|own| !own.dismissed);
+    let all: f64 = may_be.map(|own| own.probability).sum();
     let probable = names.into_iter().filter_map(|name| {
         let with = sets.iter().filter(|set| set.names().contains(&name));
         let order = |a: &&Set, b: &&Set| {
@@ -277,7 +339,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             fewer.then(a.log_posterior().total_cmp(&b.log_posterior()))
         };
         let best = with.max_by(order)?;
-        let holds = |own: &&Answer| sets[predictive(sets, own.set, evidence)].names().contains(&name);
+        let holds = |own: &&Answer| !own.dismissed && sets[own.set].names().contains(&name);
         let form = best
             .assembly
             .effects()
@@ -289,7 +351,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             effect: name.0.to_owned(),
             at: name.1.to_owned(),
             form,
-            probability: answers.iter().filter(holds).fold(0.0, |sum, own| sum + own.probability),
+            probability: answers.iter().filter(holds).map(|own| own.probability).sum::<f64>() / all,
             explained: closed(before, &best.explanation, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
         })
@@ -334,22 +396,10 @@ pub fn predicts(set: &Set, other: &Set, evidence: &Evidence) -> bool {
 
 /// Logarithm of the likelihood of the runs that judge, but for a constant (the logarithmic score).
 fn log_score(set: &Set, evidence: &Evidence) -> f64 {
-    let Some(discrepancy) = &set.explanation.refit.discrepancy else {
-        return f64::NEG_INFINITY;
-    };
-    let mut residual = Vec::new();
-    for (place, series) in evidence.of_role(Role::HeldOut) {
-        let parts = if series.kind.complex() { 2 } else { 1 };
-        let own = &set.explanation.gap.residuals[place];
-        let units = series
-            .sigma
-            .iter()
-            .zip(&series.noise)
-            .map(|(sigma, noise)| sigma / noise);
-        let units = units.flat_map(|unit| std::iter::repeat_n(unit, parts));
-        residual.extend(own.iter().zip(units).map(|(residual, unit)| residual * unit));
-    }
-    discrepancy.carried_to(evidence, Role::HeldOut).log_likelihood(residual)
+    *set.score.get_or_init(|| {
+        let parts = set.log_likelihoods(Role::HeldOut, evidence);
+        parts.map_or(f64::NEG_INFINITY, |parts| parts.iter().sum())
+    })
 }
 
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.
