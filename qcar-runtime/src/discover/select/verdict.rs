@@ -155,14 +155,13 @@ fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     for (place, probability) in probability.iter().copied().enumerate() {
         let dismissed = left[place] != place && sets[left[place]].names().is_empty();
         let set = if dismissed { place } else { standing(place, sets, &left) };
-        let is_it = |own: &&mut Answer| sets[own.set].names() == sets[set].names();
+        let is_it = |own: &&mut Answer| own.dismissed == dismissed && sets[own.set].names() == sets[set].names();
         match answers.iter_mut().find(is_it) {
             Some(own) => {
                 if sets[set].log_posterior() > sets[own.set].log_posterior() {
                     own.set = set;
                 }
                 own.probability += probability;
-                own.dismissed |= dismissed;
             }
             None => answers.push(Answer {
                 set,
