@@ -10,9 +10,15 @@ mod screen;
 mod race;
 // where a model alone explains best,
 mod alone;
-// how probable each set is,
+// a set of effects with its fit,
+mod set;
+// how probable each is,
 mod bagged;
-// and what is said of it,
+// what the runs that judge leave of it,
+mod judging;
+// which names are the answer,
+mod answers;
+// and what is said of them,
 mod verdict;
 // which rivals explain better beside effects that were added later,
 mod exchange;
@@ -28,9 +34,11 @@ use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use exchange::exchanges;
+use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, is_missing, judged, nameless, predictive};
+use set::{Set, closed, is_missing, nameless};
+use verdict::judged;
 use visible::visible;
 
 pub use alone::{Alone, Minimum, alone};
@@ -308,7 +316,7 @@ const RIVALS: usize = 3;
 fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
     let mut rivals: Vec<Rival> = Vec::new();
     for left in dropped {
-        let own = verdict::rival(&candidates[left.candidate], left.behind);
+        let own = rival(&candidates[left.candidate], left.behind);
         let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
         let is_answer = !candidates[left.candidate].nuisance && !rivals.iter().any(is_it);
         if rivals.len() < RIVALS && is_answer {
@@ -316,6 +324,16 @@ fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
         }
     }
     rivals
+}
+
+/// A candidate as a rival.
+fn rival(candidate: &Candidate, behind: f64) -> Rival {
+    Rival {
+        effect: candidate.effect.clone(),
+        at: candidate.at.clone(),
+        behind: -behind,
+        early: true,
+    }
 }
 
 /// Logarithm of the odds of a candidate before any measurement: even odds that something is missing, equal ones for all

@@ -5,7 +5,7 @@
 //! turn around. The bagged posterior is as uncertain as the data scatter. It keeps each fit: only the weights of the data are
 //! drawn, not the parameters.
 
-use super::verdict::Set;
+use super::set::Set;
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
