@@ -1,7 +1,8 @@
 //! The shipped campaigns of real measurements as evidence: what a base model leaves, and what the missing law closes.
 
 use qcar::catalogue::load;
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Role};
+use qcar_runtime::discover::observe::{Prediction, predict};
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -62,6 +63,44 @@ fn with_law(folder: &Path, model: &str, parameters: &str, law: &str) -> PathBuf 
     file
 }
 
+/// The drive with dry friction.
+fn with_friction(folder: &Path) -> PathBuf {
+    let parameters = "param f_c: N = 10 \"friction\"; param k_p: N/m = 1e5 \"presliding\";";
+    let law = "state z_f: N; rate z_f = k_p*v - k_p*abs(v)*z_f/f_c; force = z_f;";
+    with_law(folder, "screw_drive", parameters, law)
+}
+
+/// Parameters that are moved side by side give the slopes that each gives alone, to the last bit, through steps that are
+/// halved and states that begin anew.
+#[test]
+fn slopes_do_not_depend_on_what_else_is_moved() {
+    let campaign = campaign("emps");
+    let folder = tempfile::tempdir().expect("a place for files");
+    let model = load(&with_friction(folder.path()).to_string_lossy()).expect("a valid model");
+    let about = model.about();
+    let evidence = Evidence::from_campaign(&campaign, about).expect("the runs can be read");
+    let given = campaign.parameters.iter().map(|p| (p.name.clone(), p.value));
+    let given = given.chain([("f_c".to_owned(), 20.0), ("k_p".to_owned(), 1e5)]);
+    let values = Values::resolve(about, &given.collect(), &Default::default()).expect("all are given");
+    let free = |parameter: usize| Free {
+        parameter,
+        lower: 0.0,
+        upper: 1e6,
+    };
+    let all: Vec<Free> = (0..about.parameters.len()).map(free).collect();
+    let slopes = |free: &[Free]| -> Vec<Prediction> {
+        predict(&*model, &values, free, &evidence, Role::Fit).expect("the model has the sensors")
+    };
+    let together = slopes(&all);
+    assert!(all.len() > 4 && !together.is_empty());
+    for (place, own) in all.iter().enumerate() {
+        for (alone, together) in slopes(&[*own]).iter().zip(&together) {
+            let name = &about.parameters[place].name;
+            assert!(together.slopes[place] == alone.slopes[0], "{name}");
+        }
+    }
+}
+
 /// Published: M 95.11 kg, Fv 203.5 N s/m, Fc 20.39 N, offset -3.16 N (Janot, Gautier and Brunot 2019).
 #[test]
 fn the_drive_lacks_its_dry_friction() {
@@ -69,10 +108,7 @@ fn the_drive_lacks_its_dry_friction() {
     let (base, before) = fitted(&campaign, &*load("screw_drive").expect("shipped"), &[]);
     assert!(before.fit > 5.0 && base.estimate[1] > 380.0);
     let folder = tempfile::tempdir().expect("a place for files");
-    let parameters = "param f_c: N = 10 \"friction\"; param k_p: N/m = 1e5 \"presliding\";";
-    let law = "state z_f: N; rate z_f = k_p*v - k_p*abs(v)*z_f/f_c; force = z_f;";
-    let file = with_law(folder.path(), "screw_drive", parameters, law);
-    let model = load(&file.to_string_lossy()).expect("a valid model");
+    let model = load(&with_friction(folder.path()).to_string_lossy()).expect("a valid model");
     let (found, after) = fitted(&campaign, &*model, &[("f_c", 5.0, 0.1, 100.0), ("k_p", 1e5, 1e3, 1e6)]);
     assert!(after.fit < 0.5 * before.fit, "{} to {}", before.fit, after.fit);
     // Nothing holds the carriage: without setting it right, drift would hide nine tenths of what friction explains.

@@ -112,32 +112,39 @@ impl Pair {
             |to| interpreted.parameter_jacobian(&p, &x, &u, to),
         );
         self.compare_points(c, &p, numbers);
-        self.compare_sets(&p, &x, &u);
+        self.compare_sets(self.model, &p, &x, &u);
+        self.compare_sets(&self.evaluator, &p, &x, &u);
         self.compare_responses(c, numbers);
         self.compare_rolling(c, &x, &u, numbers);
     }
 
     /// Several parameter sets at once, each with its own state and input: what each gives alone.
-    fn compare_sets(&self, p: &[f64], x: &[f64], u: &[f64]) {
+    fn compare_sets(&self, sets: &dyn Model, p: &[f64], x: &[f64], u: &[f64]) {
         let about = self.model.about();
         let row = |(place, value): (usize, &f64)| -> Lanes {
             std::array::from_fn(|set| value * (1.0 + 0.01 * (set * (place + 1)) as f64))
         };
         let rows = |of: &[f64]| -> Vec<Lanes> { of.iter().enumerate().map(row).collect() };
+        let room = |rows: usize| vec![[0.0; LANES]; rows];
         let (ps, xs, us) = (rows(p), rows(x), rows(u));
-        let mut constants = vec![[0.0; LANES]; about.constants];
-        self.model.prepare_sets(&ps, &mut constants);
-        let (sets, alone) = (self.model, &self.evaluator);
+        let alone = &self.evaluator;
+        let mut constants = room(about.constants);
+        sets.prepare_sets(&ps, &mut constants);
         sets_equal(&constants, [&ps, &[], &[]], |[p, _, _], to| alone.prepare(p, to));
-        let mut rates = vec![[0.0; LANES]; about.states.len()];
+        let mut rates = room(about.states.len());
         sets.derivative_sets(&constants, &xs, &us, &mut rates);
         sets_equal(&rates, [&constants, &xs, &us], |[c, x, u], to| {
             alone.derivative(c, x, u, to)
         });
-        let mut matrices = vec![[0.0; LANES]; about.matrices.len()];
+        let mut outputs = room(about.outputs.len());
+        sets.outputs_sets(&constants, &xs, &us, &mut outputs);
+        sets_equal(&outputs, [&constants, &xs, &us], |[c, x, u], to| {
+            alone.outputs(c, x, u, to)
+        });
+        let mut matrices = room(about.matrices.len());
         sets.matrices_sets(&ps, &xs, &us, &mut matrices);
         sets_equal(&matrices, [&ps, &xs, &us], |[p, x, u], to| alone.matrices(p, x, u, to));
-        let mut sensitivities = vec![[0.0; LANES]; about.sensitivities.len()];
+        let mut sensitivities = room(about.sensitivities.len());
         sets.sensitivities_sets(&ps, &xs, &us, &mut sensitivities);
         sets_equal(&sensitivities, [&ps, &xs, &us], |[p, x, u], to| {
             alone.sensitivities(p, x, u, to)

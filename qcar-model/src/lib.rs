@@ -78,6 +78,13 @@ pub trait Model: Send + Sync {
         });
     }
 
+    /// [`Model::outputs`] of several prepared parameter sets, each at a state and input of its own.
+    fn outputs_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], y: &mut [Lanes]) {
+        one_by_one([constants, x, u], y, |constants, x, u, y| {
+            self.outputs(constants, x, u, y)
+        });
+    }
+
     /// [`Model::matrices`] of several parameter sets, each at a state and input of its own. The bits are the same.
     fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
         one_by_one([p, x, u], nonzeros, |p, x, u, nonzeros| {

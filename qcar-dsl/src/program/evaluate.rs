@@ -7,7 +7,7 @@ mod order;
 // One program.
 mod code;
 
-use qcar_model::{About, Contact, Model, Points, ResponseMut};
+use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
 use code::Code;
@@ -126,6 +126,26 @@ impl Model for Evaluator {
         sweep(&self.parameter_jacobian, &unprepared(p, at.x, at.u), at.count, nonzeros);
     }
 
+    fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
+        self.prepare.sets(&[(Part::Parameters, p)], constants);
+    }
+
+    fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
+        self.derivative.sets(&prepared_sets(constants, x, u), dx);
+    }
+
+    fn outputs_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], y: &mut [Lanes]) {
+        self.outputs.sets(&prepared_sets(constants, x, u), y);
+    }
+
+    fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        self.matrices.sets(&unprepared_sets(p, x, u), nonzeros);
+    }
+
+    fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        self.sensitivities.sets(&unprepared_sets(p, x, u), nonzeros);
+    }
+
     fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], into: ResponseMut<'_>) {
         let Some(response) = self.responses.get(excitation) else {
             return;
@@ -178,4 +198,16 @@ fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
 
 fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
     Given::default().with(Part::States, x).with(Part::Inputs, u)
+}
+
+type GivenSets<'a> = [(Part, &'a [Lanes]); 3];
+
+/// As [`prepared`], of several sets.
+fn prepared_sets<'a>(constants: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+    [(Part::Constants, constants), (Part::States, x), (Part::Inputs, u)]
+}
+
+/// As [`unprepared`], of several sets.
+fn unprepared_sets<'a>(p: &'a [Lanes], x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+    [(Part::Parameters, p), (Part::States, x), (Part::Inputs, u)]
 }

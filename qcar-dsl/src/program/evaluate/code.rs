@@ -5,6 +5,8 @@
 
 use std::cell::{Cell, RefCell};
 
+use qcar_model::{LANES, Lanes};
+
 use super::given::{self, Given, Part, Read};
 use super::order;
 use crate::derive::vectors::Vectors;
@@ -127,6 +129,26 @@ impl Code {
         });
     }
 
+    /// Runs with several sets of what it reads at once, each row one value of all of them.
+    pub fn sets(&self, given: &[(Part, &[Lanes])], into: &mut [Lanes]) {
+        self.with_registers::<LANES>(|registers| {
+            for read in &self.reads {
+                let rows = given
+                    .iter()
+                    .find(|(part, _)| *part == read.part)
+                    .map_or(&[][..], |own| own.1);
+                for (register, &entry) in registers[read.registers()].iter_mut().zip(&read.entries) {
+                    *register = rows[entry];
+                }
+            }
+            self.load_numbers(registers);
+            self.operate(registers);
+            for (output, &register) in into[..self.outputs.len()].iter_mut().zip(&self.outputs) {
+                *output = registers[register as usize];
+            }
+        });
+    }
+
     fn with_registers<const N: usize>(&self, work: impl FnOnce(&mut [[f64; N]])) {
         SCRATCH.with_borrow_mut(|scratch| {
             if scratch.len() < self.registers * N {
@@ -144,6 +166,10 @@ impl Code {
                 *register = [values[entry]; N];
             }
         }
+        self.load_numbers(registers);
+    }
+
+    fn load_numbers<const N: usize>(&self, registers: &mut [[f64; N]]) {
         for (register, &number) in registers[self.first_number..].iter_mut().zip(&self.numbers) {
             *register = [number; N];
         }

@@ -5,7 +5,9 @@
 
 // Recorded inputs at the nodes of an integration.
 mod input;
-// From one of them to the next.
+// One parameter set at work, or several side by side.
+mod side;
+// From one node to the next.
 mod stepper;
 
 pub use input::{Between, Recorded};
@@ -13,9 +15,12 @@ pub use input::{Between, Recorded};
 use std::cmp::Ordering;
 use std::sync::OnceLock;
 
-use crate::model::{About, Model, Quantity, SignalKind, StateKind};
+use rayon::prelude::*;
+
+use crate::model::{About, LANES, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
 use input::rows;
+use side::{Alone, Several, Side};
 use stepper::Stepper;
 
 /// Where a sensor's signal is found while time goes on.
@@ -39,7 +44,7 @@ pub struct Replay<'a> {
     nodes: OnceLock<Vec<Vec<f64>>>,
 }
 
-/// What a replay gives.
+/// What a replay gives, of each set that took part: a set is a lane of the rows.
 pub struct Replayed {
     /// For each reading its samples; not finite from where the model runs away even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
@@ -49,6 +54,15 @@ pub struct Replayed {
     end: Vec<f64>,
     /// How often each step was halved.
     halvings: Vec<u8>,
+}
+
+/// A parameter set, and where states begin elsewhere than they were seen: by so much.
+#[derive(Clone, Debug)]
+pub struct Moved {
+    /// The values of the parameters.
+    pub p: Vec<f64>,
+    /// States and by how much.
+    pub begin: Vec<(usize, f64)>,
 }
 
 /// How long the steps of a replay are.
@@ -86,34 +100,61 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
-    pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        self.repeated(p, begin, Steps::Found)
+    /// What follows from the parameters.
+    pub fn run(&self, moved: &Moved) -> Replayed {
+        let mut alone = Alone::new(self.model, &moved.p);
+        let rest = vec![0.0; self.model.about().states.len()];
+        self.repeated(&mut alone, rest, &moved.begin, Steps::Found)
     }
 
-    /// The same in the steps of another replay: their difference is that of parameters alone.
-    pub fn like(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        self.repeated(p, begin, Steps::Like(other))
+    /// The signals of other parameters in the steps of a replay: their difference is that of parameters alone.
+    pub fn like(&self, other: &Replayed, moved: &[Moved]) -> Vec<Vec<Vec<f64>>> {
+        self.together(moved, Steps::Like(other))
     }
 
-    /// The same beside another replay, and no longer than the two differ: from there on it is that one.
-    pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
-        self.advance(p, (self.rest(), begin), Steps::Beside(other))
+    /// The signals of other beginnings beside a replay, and no longer than they differ from it: from there on they are its own.
+    pub fn beside(&self, other: &Replayed, moved: &[Moved]) -> Vec<Vec<Vec<f64>>> {
+        self.together(moved, Steps::Beside(other))
     }
 
-    fn rest(&self) -> Vec<f64> {
-        vec![0.0; self.model.about().states.len()]
+    /// As many sets at once as there are lanes.
+    fn together(&self, moved: &[Moved], steps: Steps<'_>) -> Vec<Vec<Vec<f64>>> {
+        let some = |moved: &[Moved]| match moved {
+            [one] => {
+                let mut alone = Alone::new(self.model, &one.p);
+                vec![self.other(&mut alone, &one.begin, steps).signals]
+            }
+            several => {
+                let mut lanes = Several::new(self.model, several);
+                let replayed = self.other(&mut lanes, &side::begin(several), steps);
+                side::apart(replayed.signals, several.len())
+            }
+        };
+        moved.par_chunks(LANES).flat_map_iter(some).collect()
     }
 
-    /// From rest, or of a motion that repeats a period of it.
-    fn repeated(&self, p: &[f64], begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
-        let mut replayed = self.advance(p, (self.rest(), begin), steps);
+    /// In the steps of another replay: from its beginning, which is near the one of a motion that repeats.
+    fn other<S: Side>(&self, side: &mut S, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
+        let first = match steps {
+            Steps::Like(other) if self.how.periodic => other.states[0].clone(),
+            _ => vec![0.0; self.model.about().states.len()],
+        };
+        let first = first.iter().flat_map(|&x| std::iter::repeat_n(x, S::LANES)).collect();
+        match steps {
+            Steps::Beside(_) => self.advance(side, (first, begin), steps),
+            _ => self.repeated(side, first, begin, steps),
+        }
+    }
+
+    /// From a state, or of a motion that repeats a period of it.
+    fn repeated<S: Side>(&self, side: &mut S, from: Vec<f64>, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
+        let mut replayed = self.advance(side, (from, begin), steps);
         let periods = if self.how.periodic { PERIODS } else { 0 };
         for _ in 0..periods {
             if replayed.repeats() {
                 break;
             }
-            replayed = self.advance(p, (replayed.end, &[]), steps);
+            replayed = self.advance(side, (replayed.end, &[]), steps);
         }
         replayed
     }
@@ -130,40 +171,53 @@ impl<'a> Replay<'a> {
     }
 
     /// From a state with some of it elsewhere.
-    fn advance(&self, p: &[f64], (mut x, begin): (Vec<f64>, &[(usize, f64)]), taken: Steps<'_>) -> Replayed {
+    fn advance<S: Side>(
+        &self,
+        side: &mut S,
+        (mut x, begin): (Vec<f64>, &[(usize, f64)]),
+        taken: Steps<'_>,
+    ) -> Replayed {
         let steps = steps(self.how.rate);
         let inputs = self.nodes.get_or_init(|| self.inputs(steps));
         let about = self.model.about();
-        let mut constants = vec![0.0; about.constants];
-        self.model.prepare(p, &mut constants);
         let mut restarts = self.restarts.iter().peekable();
-        let mut y = vec![0.0; about.outputs.len()];
-        let mut stepper = Stepper::new(self.model, &constants, 1.0 / (self.how.rate * steps as f64));
+        let mut y = vec![0.0; about.outputs.len() * S::LANES];
+        let mut stepper = Stepper::new(
+            side,
+            (x.len(), about.inputs.len()),
+            1.0 / (self.how.rate * steps as f64),
+        );
         let mut halvings = Vec::with_capacity(inputs.len() / 2);
-        let (mut signals, mut states) = (vec![Vec::new(); self.readings.len()], Vec::new());
+        let (mut signals, mut states) = (vec![Vec::new(); self.readings.len() * S::LANES], Vec::new());
         let mut apart = vec![0.0_f64; x.len()];
         for (sample, nodes) in inputs.chunks(2 * steps).enumerate() {
             let first = 2 * steps * sample;
             if let Some((_, seen)) = restarts.next_if(|(at, _)| *at == sample) {
-                seen.iter().for_each(|&(state, value)| x[state] = value);
+                seen.iter()
+                    .for_each(|&(state, value)| lanes_of::<S>(&mut x, state).fill(value));
                 stepper.forget();
             }
             if sample == 0 {
-                begin.iter().for_each(|&(state, by)| x[state] += by);
+                begin.iter().for_each(|&(place, by)| x[place] += by);
             }
             if let Steps::Beside(other) = taken
-                && has_joined(&x, &other.states[sample], &mut apart)
+                && has_joined::<S>(&x, &other.states[sample], &mut apart)
             {
-                let rest = signals.iter_mut().zip(&other.signals);
-                rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
+                let rest = signals.chunks_exact_mut(S::LANES).zip(&other.signals);
+                rest.flat_map(|(lanes, other)| lanes.iter_mut().map(move |signal| (signal, other)))
+                    .for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
                 break;
             }
-            self.model.outputs(&constants, &x, &inputs[first], &mut y);
-            for (signal, reading) in signals.iter_mut().zip(&self.readings) {
-                signal.push(match *reading {
-                    Reading::Output(output) => y[output],
-                    Reading::State(state) => x[state],
-                });
+            stepper.side.outputs(&x, &inputs[first], &mut y);
+            for (signals, reading) in signals.chunks_exact_mut(S::LANES).zip(&self.readings) {
+                let read = match *reading {
+                    Reading::Output(output) => lanes_of::<S>(&mut y, output),
+                    Reading::State(state) => lanes_of::<S>(&mut x, state),
+                };
+                signals
+                    .iter_mut()
+                    .zip(read)
+                    .for_each(|(signal, read)| signal.push(*read));
             }
             states.push(x.clone());
             for node in (first..first + nodes.len()).step_by(2) {
@@ -212,15 +266,20 @@ impl Replayed {
 }
 
 /// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
-fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
+fn has_joined<S: Side>(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     const TRACE: f64 = 1e-4;
     let mut joined = true;
-    for ((x, other), apart) in x.iter().zip(other).zip(apart) {
-        let difference = (x - other).abs();
+    for (place, (x, apart)) in x.iter().zip(apart).enumerate() {
+        let difference = (x - other[place / S::LANES]).abs();
         *apart = apart.max(difference);
         joined &= difference <= TRACE * *apart;
     }
     joined
+}
+
+/// The values of one state or output of all sets.
+fn lanes_of<S: Side>(of: &mut [f64], place: usize) -> &mut [f64] {
+    &mut of[place * S::LANES..][..S::LANES]
 }
 
 /// Steps of at most a millisecond, and at least two a sample, whose band may reach up to half its rate: they are halved where

@@ -4,7 +4,7 @@
 //! difference of both is the error that is held down (Hairer, Norsett, Wanner: Solving ordinary differential equations I,
 //! section II.4). How often each step was halved is kept: where parameters move by a difference, the steps stay.
 
-use crate::model::Model;
+use super::side::Side;
 use crate::solver::rk4;
 
 /// Error of a step that is allowed, over the largest value that a state had.
@@ -15,9 +15,9 @@ const MOST: u8 = 4;
 const ROOM: f64 = 1.0 / 32.0;
 
 /// Goes from step to step.
-pub struct Stepper<'a> {
-    model: &'a dyn Model,
-    constants: &'a [f64],
+pub struct Stepper<'a, S> {
+    /// The model.
+    pub side: &'a mut S,
     /// Of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
@@ -34,13 +34,11 @@ pub struct Stepper<'a> {
     halvings: u8,
 }
 
-impl<'a> Stepper<'a> {
-    /// Of a prepared parameter set.
-    pub fn new(model: &'a dyn Model, constants: &'a [f64], length: f64) -> Self {
-        let (states, inputs) = (model.about().states.len(), model.about().inputs.len());
+impl<'a, S: Side> Stepper<'a, S> {
+    /// Of so many states, those of all sets, and inputs, in steps of a length in s.
+    pub fn new(side: &'a mut S, (states, inputs): (usize, usize), length: f64) -> Self {
         Self {
-            model,
-            constants,
+            side,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
@@ -65,7 +63,7 @@ impl<'a> Stepper<'a> {
         self.start[1].copy_from_slice(&self.k[4]);
         loop {
             let halvings = self.halvings;
-            let error = self.parts(inputs, halvings, x);
+            let error = self.parts(inputs, halvings, x, Self::error);
             if error <= 1.0 || halvings == MOST {
                 let sizes = self.largest.iter_mut().zip(&*x);
                 sizes.for_each(|(largest, x)| *largest = largest.max(x.abs()));
@@ -84,18 +82,23 @@ impl<'a> Stepper<'a> {
 
     /// A step that is halved so many times.
     pub fn follow(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) {
-        self.parts(inputs, halvings, x);
+        self.parts(inputs, halvings, x, |_, _, _| 0.0);
     }
 
-    /// All parts of a step; the largest error of one, over what is allowed.
-    fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) -> f64 {
+    /// All parts of a step; the largest error of one, as it is counted of their length and end.
+    fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64], error: fn(&Self, f64, &[f64]) -> f64) -> f64 {
         // What is held jumps from one sample to the next.
         self.knows_slope &= self.last == inputs[0];
         let error = if halvings == 0 {
-            self.part(inputs, self.length, x)
+            self.part(inputs, self.length, x);
+            error(self, self.length, x)
         } else {
             let parts = 1_u32 << halvings;
-            let errors = (0..parts).map(|part| self.short_part(inputs, (part, parts), x));
+            let length = self.length / f64::from(parts);
+            let errors = (0..parts).map(|part| {
+                self.short_part(inputs, (part, parts), x);
+                error(self, length, x)
+            });
             // What is no number is no small error either.
             errors.fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) })
         };
@@ -104,7 +107,7 @@ impl<'a> Stepper<'a> {
     }
 
     /// One of the parts of a step. Between the start, the middle and the end of it inputs lie on a parabola.
-    fn short_part(&mut self, [a, b, c]: [&[f64]; 3], (part, parts): (u32, u32), x: &mut [f64]) -> f64 {
+    fn short_part(&mut self, [a, b, c]: [&[f64]; 3], (part, parts): (u32, u32), x: &mut [f64]) {
         let mut inputs = std::mem::take(&mut self.inputs);
         for (half, into) in inputs.iter_mut().enumerate() {
             let t = (f64::from(2 * part) + half as f64) / f64::from(2 * parts);
@@ -113,30 +116,31 @@ impl<'a> Stepper<'a> {
                 *value = weights[0] * a[k] + weights[1] * b[k] + weights[2] * c[k];
             }
         }
-        let error = self.part([&inputs[0], &inputs[1], &inputs[2]], self.length / f64::from(parts), x);
+        self.part([&inputs[0], &inputs[1], &inputs[2]], self.length / f64::from(parts), x);
         self.inputs = inputs;
-        error
     }
 
-    /// A part of a step; its error over what is allowed.
-    fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) -> f64 {
-        let Self {
-            model, constants, k, ..
-        } = self;
+    /// A part of a step.
+    fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
+        let Self { side, k, .. } = self;
         if self.knows_slope {
             k.swap(0, 4);
         } else {
-            model.derivative(constants, x, inputs[0], &mut k[0]);
+            side.derivative(x, inputs[0], &mut k[0]);
         }
         let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
-            model.derivative(constants, x, inputs[(2.0 * part) as usize], k);
+            side.derivative(x, inputs[(2.0 * part) as usize], k);
         };
         rk4::step(derivative, h, x, k, &mut self.x);
         x.copy_from_slice(&self.x);
         self.knows_slope = true;
+    }
+
+    /// The error of the last part, of length `h` to `x`, over what is allowed.
+    fn error(&self, h: f64, x: &[f64]) -> f64 {
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());
-            let error = (h / 6.0 * (k[3][i] - k[4][i])).abs();
+            let error = (h / 6.0 * (self.k[3][i] - self.k[4][i])).abs();
             if error == 0.0 { 0.0 } else { error / (TOLERANCE * size) }
         };
         (0..x.len())

@@ -1,9 +1,8 @@
 //! Time histories: the model is driven by what was recorded, and its sensors are read at the same instants.
 
 use nalgebra::Complex;
-use rayon::prelude::*;
 
-use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, Replayed, reading};
+use crate::discover::observe::replay::{Between, Moved, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{
     Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
     order_of, signal_of,
@@ -49,32 +48,29 @@ pub fn history(
         &series.iter().map(|(_, s)| &s.sensor).collect::<Vec<_>>(),
     )?;
     let start = inputs.start;
-    let begin = begin(model.about(), misread.begun(run));
-    let base = &replay.run(values.as_slice(), &begin);
-    let moved: Vec<(f64, Replayed)> = free
-        .par_iter()
-        .map(|free| {
-            let mut values = values.clone();
-            let value = values.as_slice()[free.parameter];
-            let step = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower));
-            values.set(free.parameter, value + step);
-            (step, replay.like(base, values.as_slice(), &begin))
-        })
-        .collect();
-    let elsewhere: Vec<(usize, f64)> = if begun {
+    let (p, begin) = (values.as_slice(), begin(model.about(), misread.begun(run)));
+    let moved = |p: &[f64], begin: Vec<(usize, f64)>| Moved { p: p.to_vec(), begin };
+    let base = &replay.run(&moved(p, begin.clone()));
+    let differences = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
+    let steps: Vec<f64> = free.iter().map(differences).collect();
+    let with_step = |(free, step): (&Free, &f64)| {
+        let mut values = values.clone();
+        values.set(free.parameter, p[free.parameter] + step);
+        moved(values.as_slice(), begin.clone())
+    };
+    let others: Vec<Moved> = free.iter().zip(&steps).map(with_step).collect();
+    let others = replay.like(base, &others);
+    let states = if begun {
         unknown(model.about(), spread)
     } else {
         Vec::new()
     };
-    let elsewhere: Vec<(usize, f64, Replayed)> = elsewhere
-        .into_par_iter()
-        .map(|(state, sigma)| {
-            let step = OF_SPREAD * sigma;
-            let begin: Vec<_> = begin.iter().copied().chain([(state, step)]).collect();
-            (state, step, replay.beside(base, values.as_slice(), &begin))
-        })
-        .collect();
-    let shown = |replayed: &Replayed, column: usize| stimulus.of_band(&replayed.signals[column]);
+    let from = |&(state, sigma): &(usize, f64)| {
+        let elsewhere = [(state, OF_SPREAD * sigma)];
+        moved(p, begin.iter().copied().chain(elsewhere).collect())
+    };
+    let elsewhere = replay.beside(base, &states.iter().map(from).collect::<Vec<_>>());
+    let shown = |signals: &[Vec<f64>], column: usize| stimulus.of_band(&signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
         let late = misread.late.get(*place).copied().unwrap_or(0.0);
         let read = |signal: &[f64]| -> (Vec<f64>, Vec<f64>) {
@@ -84,9 +80,9 @@ pub fn history(
                 .map(|t| between(signal, (t - start - late) * rate))
                 .unzip()
         };
-        let (value, by_sample) = read(&shown(base, column));
-        let slope = |step: f64, replayed: &Replayed| -> Vec<Complex<f64>> {
-            let (moved, _) = read(&shown(replayed, column));
+        let (value, by_sample) = read(&shown(&base.signals, column));
+        let slope = |step: f64, signals: &[Vec<f64>]| -> Vec<Complex<f64>> {
+            let (moved, _) = read(&shown(signals, column));
             moved
                 .iter()
                 .zip(&value)
@@ -96,10 +92,11 @@ pub fn history(
         let name = |state: usize| model.about().states[state].name.to_string();
         Prediction {
             series: *place,
-            slopes: moved.iter().map(|(step, own)| slope(*step, own)).collect(),
-            begun: elsewhere
+            slopes: steps.iter().zip(&others).map(|(step, own)| slope(*step, own)).collect(),
+            begun: states
                 .iter()
-                .map(|(state, step, own)| (name(*state), slope(*step, own)))
+                .zip(&elsewhere)
+                .map(|(&(state, sigma), own)| (name(state), slope(OF_SPREAD * sigma, own)))
                 .collect(),
             value: value.iter().map(|&value| Complex::from(value)).collect(),
             delay: Some(Delay {
@@ -122,8 +119,11 @@ pub fn replayed(
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     let sensors = evidence.sensors(run);
     let replay = prepare(model, evidence, run, &sensors)?;
-    let begin = begin(model.about(), misread.begun(run));
-    let signals = replay.run(values.as_slice(), &begin).signals;
+    let moved = Moved {
+        p: values.as_slice().to_vec(),
+        begin: begin(model.about(), misread.begun(run)),
+    };
+    let signals = replay.run(&moved).signals;
     let stimulus = &evidence.runs[run].stimulus;
     let shown = signals.iter().map(|signal| stimulus.of_band(signal));
     Ok(sensors.into_iter().cloned().zip(shown).collect())
