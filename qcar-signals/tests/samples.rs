@@ -287,6 +287,74 @@ fn rpc() {
 }
 
 #[test]
+fn crg() {
+    agree("crg/");
+    let file = fs::read(sample("crg/handmade_curved_banked_sloped.crg").unwrap()).unwrap();
+    let text = String::from_utf8(file.clone()).unwrap();
+    let with = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        recognise(text.replace(from, to).as_bytes()).map_err(|fault| fault.to_string())
+    };
+    assert!(
+        recognise(&file)
+            .unwrap()
+            .passed_over
+            .iter()
+            .any(|own| own.name == "reference line phi")
+    );
+    for (from, to, parts) in [
+        ("#:LRFI", "#:LRFX", ["line 37", "the format `LRFX`", "KRBI"]),
+        ("= 22.0", "= 23.0", ["23 rows of data", "24 rows", "cut off"]),
+        ("= 22.0", "= 21.0", ["23 rows of data", "22 rows", "damaged"]),
+        (
+            "INCREMENT = 1.0",
+            "INCREMENT = 0.0",
+            ["`REFERENCE_LINE_INCREMENT`", "found 0", "positive"],
+        ),
+        (
+            "INCREMENT = 1.0",
+            "INCREMENT = one",
+            ["line 34", "REFERENCE_LINE_INCREMENT = one", "a number"],
+        ),
+        (
+            "v = -1.250",
+            "v = -1.750",
+            ["line 43", "v = -1.75 m behind that at -1.5 m", "right to left"],
+        ),
+        (
+            " 0.0000000 0.0111111\n 0.0550000",
+            " 0.0000000\n 0.0550000",
+            ["line 62", "found 1 numbers", "expected 2"],
+        ),
+        (
+            " 0.0550000 0.0550000",
+            " 0.055,000 0.0550000",
+            ["line 63", "`0.055,000`", "`*missing*`"],
+        ),
+        (
+            "$ROAD_CRG  ",
+            "$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$ROAD_CRG  ",
+            ["line 24", "SCALE_Z_GRID = 2", "modifiers applied"],
+        ),
+        (
+            "$ROAD_CRG  ",
+            "$ROAD_CRG_FILE\nother.crg\n$\n$ROAD_CRG  ",
+            ["line 23", "another file", "give that file"],
+        ),
+        (
+            "D:long",
+            "D:short",
+            ["no longitudinal section", "$KD_DEFINITION", "D:long section 1,m"],
+        ),
+    ] {
+        let message = with(from, to).unwrap_err();
+        for part in parts {
+            assert!(message.contains(part), "`{part}` is not in: {message}");
+        }
+    }
+}
+
+#[test]
 fn tdms() {
     agree("tdms/");
     let fault = fault_of_cut("tdms/waveform_2segments.tdms", 68623);

@@ -284,7 +284,7 @@ pub(crate) fn histories(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Vec<
         .collect()
 }
 
-fn history(about: &About, name: &str, ride: &Ride) -> History {
+pub(super) fn history(about: &About, name: &str, ride: &Ride) -> History {
     let channel = |name: &str, unit: &str, samples: &Vec<f64>| Channel {
         name: name.into(),
         unit: unit.into(),

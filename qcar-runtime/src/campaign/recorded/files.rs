@@ -28,14 +28,18 @@ impl Files {
     pub fn get(&self, file: &Path) -> Result<Rc<Recording>, InputError> {
         let known = self.read.borrow().get(file).cloned();
         known.unwrap_or_else(|| {
-            let recording = read(file).map(Rc::new);
+            let recording = recording(file).map(Rc::new);
             self.read.borrow_mut().insert(file.into(), recording.clone());
             recording
         })
     }
 }
 
-fn read(file: &Path) -> Result<Recording, InputError> {
+/// The recording in a file.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(in crate::campaign) fn recording(file: &Path) -> Result<Recording, InputError> {
     let bytes = unpacked(file).map_err(|error| {
         let remedy = match error.kind() {
             io::ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
@@ -63,7 +67,7 @@ fn unpacked(file: &Path) -> io::Result<Vec<u8>> {
 }
 
 /// A fault of a file as the workbench reports it.
-pub(super) fn problem(file: &Path, fault: &Fault) -> Problem {
+pub(in crate::campaign) fn problem(file: &Path, fault: &Fault) -> Problem {
     let place = match (&fault.place, &fault.channel) {
         (Within::File, None) => Place::File,
         (Within::File, Some(channel)) => Place::Channel(channel.clone(), None),
