@@ -91,7 +91,8 @@ impl Ground {
                 *class,
                 choice.map_or(Some(SEED), |seed| seed.parse().ok())?,
             )),
-            None => (!name.is_empty()).then(|| Ground::Measured(name.into(), choice.map(String::from))),
+            // A single letter is meant for a class.
+            None => (name.len() > 1).then(|| Ground::Measured(name.into(), choice.map(String::from))),
         }
     }
 }

@@ -71,7 +71,7 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
 
 /// The keyword of a section, in capitals; empty where one ends.
 fn section(line: &str) -> Option<String> {
-    let word = line.strip_prefix('$')?.split([' ', '\t', '\r', '!']).next()?;
+    let word = line.strip_prefix('$')?.split([' ', '\t', '\r', '\n', '!']).next()?;
     Some(word.to_ascii_uppercase())
 }
 

@@ -314,7 +314,7 @@ fn crg() {
         (
             "INCREMENT = 1.0",
             "INCREMENT = one",
-            ["line 34", "REFERENCE_LINE_INCREMENT = one", "a number"],
+            ["line 32", "REFERENCE_LINE_INCREMENT = one", "a number"],
         ),
         (
             "v = -1.250",

@@ -92,5 +92,8 @@ fn shown(density: f64, si: &str) -> f64 {
 }
 
 fn squared(si: &str) -> String {
-    format!("({})^2/Hz", units::name(si))
+    match units::name(si) {
+        product if product.contains(['/', ' ']) => format!("({product})^2/Hz"),
+        plain => format!("{plain}^2/Hz"),
+    }
 }
