@@ -215,6 +215,7 @@ impl Simulated {
         render::Result {
             campaign: &self.campaign.name,
             model: &self.model.about().name,
+            notices: &self.campaign.notices,
             at_start: guessed(&self.campaign, &self.model, &self.values),
             cleats: self.cleats.as_ref().map(|(_, driven)| &driven.compared),
             records: &self.records,
