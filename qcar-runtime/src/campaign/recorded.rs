@@ -11,6 +11,8 @@ use window::Span;
 
 // Each file read once.
 mod files;
+// Samples that come unevenly.
+mod uneven;
 // Samples that come evenly.
 mod even;
 // When a run begins and ends.

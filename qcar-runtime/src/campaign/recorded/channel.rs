@@ -8,6 +8,7 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::super::contents::Tap;
 use super::even::{self, Even};
 use super::files::problem;
+use super::uneven::laid;
 use super::values::values;
 use super::window::{Span, clock};
 use crate::error::{InputError, Place, Problem};
@@ -20,6 +21,8 @@ pub(super) struct Channel<'a> {
     values: Vec<f64>,
     /// Hz.
     pub rate: f64,
+    /// The shortest and the longest step of samples that came unevenly, s.
+    pub uneven: Option<(f64, f64)>,
 }
 
 impl<'a> Channel<'a> {
@@ -42,12 +45,18 @@ impl<'a> Channel<'a> {
             let place = Place::Channel(signal.full_name(), None);
             return Err(Problem::new(file, place, "no times", expected, remedy).into());
         };
+        let values = values(file, signal, &base, tap)?;
+        let (base, values, uneven) = match laid(&base, &values, rate) {
+            Some(laid) => (laid.base, laid.values, Some(laid.steps)),
+            None => (base, values, None),
+        };
         Ok(Channel {
             tap,
             signal,
-            values: values(file, signal, &base, tap)?,
             base,
+            values,
             rate,
+            uneven,
         })
     }
 

@@ -6,6 +6,7 @@ use qcar_signals::resample::Grid;
 use qcar_signals::signal::TimeBase;
 
 use super::super::steps;
+use super::uneven::Pace;
 
 /// Relative distance from whole hertz within which a clock is meant to have them.
 const WHOLE: f64 = 1e-6;
@@ -45,10 +46,7 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
     let own = match base {
         TimeBase::Even { step, .. } => 1.0 / step,
         TimeBase::Times(times) if times.len() > 1 => {
-            let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
-            let typical = 1.0 / steps::median(&steps);
-            let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
-            ones.len() as f64 / ones.iter().sum::<f64>()
+            Pace::of(times).map_or_else(|| usual_rate(times), |pace| pace.rate)
         }
         TimeBase::Times(_) | TimeBase::Unknown => return declared,
     };
@@ -58,6 +56,14 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
         .or(whole)
         .or(Some(own))
         .filter(|rate| rate.is_finite() && *rate > 0.0)
+}
+
+/// Of the steps that are one sample long.
+fn usual_rate(times: &[f64]) -> f64 {
+    let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
+    let typical = 1.0 / steps::median(&steps);
+    let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
+    ones.len() as f64 / ones.iter().sum::<f64>()
 }
 
 impl<'a> Even<'a> {

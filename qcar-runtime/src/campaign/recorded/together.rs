@@ -59,7 +59,19 @@ impl<'a> Together<'a> {
         let both = self.channels.iter().zip(&self.even);
         let of = |(channel, even): (&Channel, &Even)| {
             let (samples, grid) = even.in_window();
-            of_samples(run, (&channel.tap.name, channel.tap.si), samples, grid)
+            let mut found = of_samples(run, (&channel.tap.name, channel.tap.si), samples, grid);
+            found.extend(channel.uneven.map(|(least, most)| Finding {
+                run: run.name.clone(),
+                channel: channel.tap.name.clone(),
+                span: (grid.start, grid.end()),
+                what: format!(
+                    "samples come unevenly, {:.3} to {:.3} ms apart: between them values are taken on straight lines",
+                    1e3 * least,
+                    1e3 * most
+                ),
+                fatal: false,
+            }));
+            found
         };
         both.flat_map(of).collect()
     }
