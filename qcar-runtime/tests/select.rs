@@ -43,6 +43,8 @@ struct Hanging {
 struct Bench {
     model: Strut,
     masses: Vec<Hanging>,
+    /// What stands for a learned law: a mass without a name.
+    laws: Vec<Hanging>,
     delays: bool,
 }
 
@@ -57,15 +59,16 @@ impl Workshop for Bench {
     }
 
     fn laws(&self) -> Vec<Candidate> {
-        Vec::new()
+        self.laws.iter().map(hanging).collect()
     }
 
     fn with(&self, effect: &str, _: &str, _: Option<&str>) -> Option<Box<dyn Workshop>> {
-        let known = self.masses.iter().any(|own| own.name == effect);
+        let known = self.masses.iter().chain(&self.laws).any(|own| own.name == effect);
         known.then(|| {
             Box::new(Bench {
                 model: Strut::new(WITH_MASS),
                 masses: Vec::new(),
+                laws: Vec::new(),
                 delays: self.delays,
             }) as Box<dyn Workshop>
         })
@@ -189,6 +192,16 @@ const LEVELS: [(f64, Role); 3] = [(0.025, Role::Fit), (0.05, Role::Fit), (0.1, R
 
 /// Starts a fifth off, with all but the known masses free.
 fn answer(masses: Vec<Hanging>, delays: bool, evidence: &Evidence) -> Discovery {
+    let bench = Bench {
+        model: Strut::new(PLAIN),
+        masses,
+        laws: Vec::new(),
+        delays,
+    };
+    answer_of(bench, evidence)
+}
+
+fn answer_of(bench: Bench, evidence: &Evidence) -> Discovery {
     let model = Strut::new(PLAIN);
     let given = model.about().parameters.iter().zip(TRUTH).enumerate();
     let given = given.map(|(k, (own, truth))| Given {
@@ -200,7 +213,6 @@ fn answer(masses: Vec<Hanging>, delays: bool, evidence: &Evidence) -> Discovery 
         given: given.collect(),
         vehicle: Default::default(),
     };
-    let bench = Bench { model, masses, delays };
     discover(Box::new(bench), &setting, evidence, &|_| ()).expect("the model has the sensors")
 }
 
@@ -243,4 +255,21 @@ fn what_a_nuisance_had_hidden_is_found_once_it_is_fitted() {
     assert_eq!(found.findings[0].effect, "right");
     let (_, delay, error) = found.nuisances[1][0].parameters[0];
     assert!((delay - 1.5e-3).abs() < 3.0 * error, "{delay} ± {error} s");
+}
+
+/// The law explains more than the base model, and less than either member of the class.
+#[test]
+fn a_law_takes_the_place_of_a_class_only_where_it_explains_more_than_its_members() {
+    let [one, other, law] = [("one", (20.0, 200.0)), ("other", (20.0, 200.0)), ("law", (5.0, 40.0))]
+        .map(|(name, mass)| Hanging { name, mass });
+    let bench = Bench {
+        model: Strut::new(PLAIN),
+        masses: vec![one, other],
+        laws: vec![law],
+        delays: false,
+    };
+    let class = answer_of(bench, &evidence(0.0, &LEVELS));
+    assert_eq!(class.verdict, Verdict::Class);
+    assert_eq!(class.alike, 2);
+    assert!(class.learned.is_none());
 }

@@ -10,7 +10,15 @@ mod screen;
 mod race;
 // where a model alone explains best,
 mod alone;
-// how probable each set is,
+// a set of effects with its fit,
+mod set;
+// how probable each is,
+mod bagged;
+// what the runs that judge leave of it,
+mod judging;
+// which names are the answer,
+mod answers;
+// and what is said of them,
 mod verdict;
 // which rivals explain better beside effects that were added later,
 mod exchange;
@@ -26,9 +34,11 @@ use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use exchange::exchanges;
+use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use verdict::{Set, closed, is_missing, judged, nameless, predictive};
+use set::{Set, closed, is_missing, nameless};
+use verdict::judged;
 use visible::visible;
 
 pub use alone::{Alone, Minimum, alone};
@@ -78,16 +88,16 @@ pub fn discover(
         sets.extend(others);
     }
     let alone = &sets[nameless(&sets)];
-    let mut discovery = judged(&sets, evidence);
+    let (mut discovery, found) = judged(&sets, evidence);
     if is_unexplained(&discovery, &evidence.numbers) {
         let learned = learn::learn(alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
-    } else if let Some(found) = doubtful(&sets, &discovery, evidence) {
+    } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], alone, evidence) {
         // Names may make up for a law that the catalogue does not have.
         let law = learn::single(alone, evidence, progress);
         let odds = evidence.numbers.odds_of_certain().ln();
-        let law = law.filter(|law| law.log_posterior() - found.log_posterior() > odds);
+        let law = law.filter(|law| law.log_posterior() - sets[found].log_posterior() > odds);
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
@@ -174,22 +184,10 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// The set that was found, where it has several effects, or leaves more of the gap than chance would.
-fn doubtful<'s>(sets: &'s [Set], discovery: &Discovery, evidence: &Evidence) -> Option<&'s Set> {
-    let found = discovery.told_apart().0;
-    let is_it = |set: &&Set| {
-        let is_found = |own: &Placed| {
-            found
-                .iter()
-                .any(|finding| (&*finding.effect, &*finding.at) == own.name())
-        };
-        set.names().len() == found.len() && set.named().all(is_found)
-    };
-    let order = |a: &&Set, b: &&Set| a.log_posterior().total_cmp(&b.log_posterior());
-    let found = sets.iter().filter(is_it).max_by(order);
-    let alone = &sets[nameless(sets)].explanation;
-    let closes = |set: &Set| closed(alone, &set.explanation, evidence);
-    found.filter(|set| set.names().len() > 1 || closes(set) < evidence.numbers.certain())
+/// True where the set that was found has several effects, or leaves more of the gap than chance would.
+fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
+    let closes = closed(&alone.explanation, &found.explanation, evidence);
+    found.names().len() > 1 || closes < evidence.numbers.certain()
 }
 
 /// The most probable set.
@@ -318,7 +316,7 @@ const RIVALS: usize = 3;
 fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
     let mut rivals: Vec<Rival> = Vec::new();
     for left in dropped {
-        let own = verdict::rival(&candidates[left.candidate], left.behind);
+        let own = rival(&candidates[left.candidate], left.behind);
         let is_it = |known: &Rival| (&known.effect, &known.at) == (&own.effect, &own.at);
         let is_answer = !candidates[left.candidate].nuisance && !rivals.iter().any(is_it);
         if rivals.len() < RIVALS && is_answer {
@@ -326,6 +324,16 @@ fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
         }
     }
     rivals
+}
+
+/// A candidate as a rival.
+fn rival(candidate: &Candidate, behind: f64) -> Rival {
+    Rival {
+        effect: candidate.effect.clone(),
+        at: candidate.at.clone(),
+        behind: -behind,
+        early: true,
+    }
 }
 
 /// Logarithm of the odds of a candidate before any measurement: even odds that something is missing, equal ones for all

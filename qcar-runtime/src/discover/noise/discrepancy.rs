@@ -100,12 +100,14 @@ impl Discrepancy {
             .sum()
     }
 
-    /// Logarithm of the likelihood of residuals of the data (in units of their noise), but for a constant.
-    pub fn log_likelihood(&self, mut residual: Vec<f64>) -> f64 {
+    /// Logarithm of the likelihood of residuals of the data (in units of their noise), but for a constant: a part for each sensor
+    /// in one kind of run and each distance at which correlation ends, in an order that is the evidence's.
+    pub fn log_likelihoods(&self, mut residual: Vec<f64>) -> Vec<f64> {
         self.whiten(&mut residual);
-        let square: f64 = residual.iter().map(|value| value * value).sum();
-        let determinant: f64 = self.groups.iter().map(Group::log_determinant).sum();
-        -square / 2.0 - determinant
+        self.groups
+            .iter()
+            .flat_map(|group| group.log_likelihoods(&residual))
+            .collect()
     }
 
     /// Sets every `τ` to what explains these residuals of the data (in units of their noise) best.

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use super::assembly::Placed;
 use super::explained;
-use super::verdict::Set;
+use super::set::Set;
 use crate::discover::observe::Evidence;
 
 /// The set with each of its effects replaced by each rival that was behind by less than the later effects have gained: these

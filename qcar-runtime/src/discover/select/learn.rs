@@ -4,9 +4,10 @@
 use rayon::prelude::*;
 
 use super::assembly::Placed;
+use super::judging::predicts;
 use super::race::{Finalist, race};
 use super::screen::Prospect;
-use super::verdict::{Set, closed, predicts};
+use super::set::{Set, closed};
 use super::{News, Progress, explained, looks};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::observe::Evidence;

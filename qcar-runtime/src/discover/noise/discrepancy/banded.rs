@@ -68,9 +68,9 @@ impl Banded {
         }
     }
 
-    /// Sum of the logarithms of the diagonal.
-    pub fn log_diagonal(&self) -> f64 {
-        self.start[1..].iter().map(|end| self.entries[end - 1].ln()).sum()
+    /// The logarithms of the diagonal.
+    pub fn log_diagonal(&self) -> impl Iterator<Item = f64> {
+        self.start[1..].iter().map(|end| self.entries[end - 1].ln())
     }
 }
 

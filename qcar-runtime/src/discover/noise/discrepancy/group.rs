@@ -15,6 +15,8 @@ pub struct Group {
     pub key: Key,
     /// For each value, in the order of where it stands, the rows of its real parts among the residuals.
     rows: Vec<[usize; 2]>,
+    /// How many values stand within each distance at which correlation ends, in the same order.
+    cells: Vec<usize>,
     /// Rows of a value: two where it is complex.
     parts: usize,
     /// What the evidence of each run counts: a tyre's law is wrong in all rides alike, and moves all masses along an axis by
@@ -72,6 +74,10 @@ impl Group {
             key,
             weight,
             rows: values.iter().map(|value| value.rows).collect(),
+            cells: values
+                .chunk_by(|a, b| a.place.floor() == b.place.floor())
+                .map(<[Value]>::len)
+                .collect(),
             parts: values.first().map_or(1, |value| value.parts),
             correlation: Banded::new(values.len(), correlated, entry),
             least,
@@ -99,8 +105,21 @@ impl Group {
 
     /// Half the logarithm of the determinant of the covariance of all parts.
     pub fn log_determinant(&self) -> f64 {
-        let of_part = self.factor.as_ref().map_or(0.0, Banded::log_diagonal);
+        let of_part: f64 = self.factor.iter().flat_map(Banded::log_diagonal).sum();
         self.weight * self.parts as f64 * of_part
+    }
+
+    /// Logarithm of the likelihood of whitened residuals, but for a constant, cell by cell: each given the cells before it.
+    pub fn log_likelihoods(&self, whitened: &[f64]) -> Vec<f64> {
+        let mut determinant = self.factor.iter().flat_map(Banded::log_diagonal);
+        let mut rows = self.rows.iter();
+        let of_value = |rows: &[usize; 2]| {
+            let square: f64 = rows[..self.parts].iter().map(|&row| whitened[row].powi(2)).sum();
+            -square / 2.0 - self.weight * self.parts as f64 * determinant.next().unwrap_or(0.0)
+        };
+        let mut of_values = rows.by_ref().map(of_value);
+        let of_cell = |&count: &usize| of_values.by_ref().take(count).sum();
+        self.cells.iter().map(of_cell).collect()
     }
 
     pub fn whiten(&self, column: &mut [f64]) {
@@ -129,7 +148,7 @@ impl Group {
         let of_part = |part: &Vec<f64>| {
             let mut values = part.clone();
             factor.forward(&mut values);
-            square(&values) + self.weight * factor.log_diagonal()
+            square(&values) + self.weight * factor.log_diagonal().sum::<f64>()
         };
         residual.iter().map(of_part).sum::<f64>() + self.prior(tau)
     }
