@@ -334,23 +334,99 @@ fn crg() {
         (
             "$ROAD_CRG  ",
             "$ROAD_CRG_MODS\nSCALE_Z_GRID = 2\n$ROAD_CRG  ",
-            ["line 24", "SCALE_Z_GRID = 2", "modifiers applied"],
+            ["line 26", "SCALE_Z_GRID = 2", "modifiers applied"],
         ),
         (
             "$ROAD_CRG  ",
             "$ROAD_CRG_FILE\nother.crg\n$\n$ROAD_CRG  ",
-            ["line 23", "another file", "give that file"],
+            ["line 25", "another file", "give that file"],
         ),
         (
             "D:long",
             "D:short",
             ["no longitudinal section", "$KD_DEFINITION", "D:long section 1,m"],
         ),
+        (
+            "v = -1.250,m ",
+            "v = -1.250,mm",
+            [
+                "line 43",
+                "the unit `mm` of `long section at v = -1.250`",
+                "expected `m`",
+            ],
+        ),
+        (
+            "slope,m/m",
+            "slope,%",
+            ["line 41", "the unit `%` of `reference line slope`", "`m/m`"],
+        ),
+        (
+            "v = -1.250",
+            "v = nan",
+            ["line 43", "`long section at v = nan`", "the place"],
+        ),
+        (
+            "section at v = -1.250",
+            "section 1",
+            ["line 43", "`long section 1` beside", "all numbered"],
+        ),
+        (
+            " 0.0220000 0.0220000 0.0220000",
+            " 0.0220000 0.0220000**gap*****",
+            ["line 41", "no value in row 4 of `reference line slope`", "without gaps"],
+        ),
+        (
+            " 0.0550000 0.0550000",
+            "     1e999 0.0550000",
+            ["line 63", "`1e999`", "`*missing*`"],
+        ),
+        (
+            "u,m,0,1.0",
+            "u,m,0,0.5",
+            ["line 38", "found 0.5 m", "1 m, as REFERENCE_LINE_INCREMENT says"],
+        ),
     ] {
         let message = with(from, to).unwrap_err();
         for part in parts {
             assert!(message.contains(part), "`{part}` is not in: {message}");
         }
+    }
+    // The increment stands in the virtual channel, too.
+    let from_channel = with("REFERENCE_LINE_INCREMENT = 1.0", "* no increment").unwrap();
+    let whole = recognise(&file).unwrap();
+    for name in ["u", "v=0"] {
+        assert_eq!(from_channel.signal(name).unwrap(), whole.signal(name).unwrap());
+    }
+}
+
+#[test]
+fn headers_of_roads_that_contradict_themselves() {
+    let file = fs::read(sample("crg/missing_border_kdbi.crg").unwrap()).unwrap();
+    for (from, to, parts) in [
+        (
+            "D:long section 2",
+            "D:long section 3",
+            ["line 30", "`long section 3`", "`long section 2` or"],
+        ),
+        (
+            "reference_line_end_b      =   1.0",
+            "reference_line_end_b      =   2.0",
+            [
+                "line 14",
+                "REFERENCE_LINE_END_B = 0.02, and 0.01 at the start",
+                "a column",
+            ],
+        ),
+        (
+            "long_section_v_increment  =   2.9",
+            "long_section_v_increment  =   2.8",
+            ["`ROAD_CRG`", "5 sections whose places do not follow", "agree"],
+        ),
+    ] {
+        let at = file.windows(from.len()).position(|own| own == from.as_bytes()).unwrap();
+        let mut wrong = file.clone();
+        wrong[at..at + from.len()].copy_from_slice(to.as_bytes());
+        says(&recognise(&wrong).unwrap_err().to_string(), &parts);
     }
 }
 
