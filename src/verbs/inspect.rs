@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use qcar_runtime::bounded;
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_signals::read::read;
+use qcar_signals::error::ReadError;
+use qcar_signals::read::recognise;
 use qcar_signals::signal::{Recording, Scalar, Signal, Value};
 use serde::Serialize;
 
@@ -49,8 +50,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 /// # Errors
 /// A file that cannot be read.
 pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
-    bounded::open(file).map_err(|error| {
-        let remedy = "correct the path, or put the file there";
+    let bytes = bounded::measured(file).map_err(|error| {
+        let remedy = bounded::remedy(&error, "correct the path, or put the file there");
         InputError::from(Problem::new(
             file,
             Place::File,
@@ -59,7 +60,8 @@ pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
             remedy,
         ))
     })?;
-    read(file).map_err(|error| Failure::Input(error.to_string()))
+    let file = file.into();
+    recognise(&bytes).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
 }
 
 /// What a file holds, as JSON.

@@ -42,7 +42,7 @@ impl Pace {
 /// Even samples of an uneven channel.
 pub(super) struct Laid {
     pub base: TimeBase,
-    /// Not a number within a gap.
+    /// In the unit of the file; not a number within a gap.
     pub values: Vec<f64>,
     /// The shortest and the longest step, s, gaps aside.
     pub steps: (f64, f64),
