@@ -88,10 +88,10 @@ impl<'a> Channel<'a> {
             let place = Place::Channel(self.signal.full_name(), broken.at);
             Problem::new(file, place, broken.found, broken.expected, broken.remedy)
         })?;
-        let scaled = self.samples[even.samples.clone()]
+        let mut scaled = self.samples[even.samples.clone()]
             .iter()
             .map(|sample| self.scaling.value(*sample));
-        if scaled.into_iter().all(f64::is_finite) {
+        if scaled.all(f64::is_finite) {
             return Ok(even);
         }
         let (expected, remedy) = (
