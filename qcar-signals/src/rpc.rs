@@ -41,13 +41,12 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
                 number.all(&group[channel * length..(channel + 1) * length], shape.order)
             }
         };
+        let scale = header.scale(channel, number).map_err(|fault| fault.of(&name))?;
         let mut samples = Vec::with_capacity(shape.groups() * shape.points_of_group);
         for group in data.data.chunks_exact(group).take(shape.groups()) {
-            samples.extend_from_slice(&own(group));
+            samples.extend(own(group).into_iter().map(|sample| sample * scale));
         }
         samples.truncate(shape.samples);
-        let scale = header.scale(channel, number).map_err(|fault| fault.of(&name))?;
-        samples.iter_mut().for_each(|sample| *sample *= scale);
         let unit = header.text(&format!("UNITS.CHAN_{}", channel + 1));
         recording.signals.push(Signal {
             name,
