@@ -139,7 +139,8 @@ fn mdf(file: &Path, bytes: f64) -> Done<()> {
             out.write_all(&value(at, channel).to_le_bytes())?;
         }
     }
-    Ok(out.flush()?)
+    // What is still on its way to the disk would be measured, too.
+    Ok(out.into_inner()?.sync_all()?)
 }
 
 /// RPC III of short integers: a file of one frame, with its frame again and again.
@@ -163,5 +164,5 @@ fn rpc(file: &Path, bytes: f64) -> Done<()> {
     for _ in 0..frames {
         out.write_all(&frame)?;
     }
-    Ok(out.flush()?)
+    Ok(out.into_inner()?.sync_all()?)
 }
