@@ -623,6 +623,31 @@ fn names(answer: &Value) -> (Value, Vec<(Value, Value)>) {
 #[test]
 fn a_force_that_was_recorded_upside_down_is_named() {
     let folder = tempfile::tempdir().expect("a folder");
+    write_held("acceleration", folder.path());
+    let answer = discover(folder.path(), None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(names(&answer).1, [("input_gain".into(), "motor".into())], "{answer}");
+    let effect = &answer["effects"][0];
+    let [gain, error] = ["parameters", "stderr"].map(|of| effect[of]["input_gain"].as_f64().expect("a number"));
+    assert!((gain + 1.0).abs() < 3.0 * error && error < 0.02, "{gain} ± {error}");
+}
+
+#[test]
+fn an_output_that_the_model_lacks_is_named_with_its_quantity() {
+    let folder = tempfile::tempdir().expect("a folder");
+    write_held("position", folder.path());
+    let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+    let output = command.arg("discover").arg(folder.path()).output().expect("qcar runs");
+    let told = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success(), "{told}");
+    assert!(
+        told.contains("add `output body.acceleration;`"),
+        "it names what was measured: {told}"
+    );
+}
+
+/// A campaign with the acceleration of a held mass, and a model of it that outputs a quantity.
+fn write_held(quantity: &str, folder: &Path) {
     let model = "axle held {
     \"A mass held by a spring and a damper\"
     known param m_body: kg = 2 in 0.1..100 \"Mass\";
@@ -632,10 +657,11 @@ fn a_force_that_was_recorded_upside_down_is_named() {
         mass body = m_body;
         force motor on body;
         link held: body { spring k_body; damper c_body; }
-        output body.acceleration;
+        output body.QUANTITY;
     }
 }
-";
+"
+    .replace("QUANTITY", quantity);
     let mut manifest = "format = 1\nname = \"held\"\nmodel = \"held.axle\"\n
 [[channel]]\nname = \"force\"\nlocation = \"motor\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"force\"\nunit = \"N\"\n
 [[channel]]\nname = \"body\"\nlocation = \"body\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"acceleration\"\nunit = \"m/s^2\"\n
@@ -647,20 +673,10 @@ fn a_force_that_was_recorded_upside_down_is_named() {
         manifest += &format!(
             "\n[[run]]\nkind = \"time_history\"\nfile = \"{role}.csv\"\nrole = \"{role}\"\nsample_rate = 200.0\nband_limited = true\n"
         );
-        fs::write(
-            folder.path().join(format!("{role}.csv")),
-            upside_down(phase, &mut noise),
-        )
-        .expect("a record");
+        fs::write(folder.join(format!("{role}.csv")), upside_down(phase, &mut noise)).expect("a record");
     }
-    fs::write(folder.path().join("held.axle"), model).expect("a model");
-    fs::write(folder.path().join("campaign.toml"), manifest).expect("a manifest");
-    let answer = discover(folder.path(), None);
-    assert_eq!(answer["verdict"], "found", "{answer}");
-    assert_eq!(names(&answer).1, [("input_gain".into(), "motor".into())], "{answer}");
-    let effect = &answer["effects"][0];
-    let [gain, error] = ["parameters", "stderr"].map(|of| effect[of]["input_gain"].as_f64().expect("a number"));
-    assert!((gain + 1.0).abs() < 3.0 * error && error < 0.02, "{gain} ± {error}");
+    fs::write(folder.join("held.axle"), model).expect("a model");
+    fs::write(folder.join("campaign.toml"), manifest).expect("a manifest");
 }
 
 /// 2 kg on 800 N/m and 6 N s/m, by Runge and Kutta's method; the force is written with the wrong sign.

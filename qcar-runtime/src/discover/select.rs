@@ -89,7 +89,7 @@ pub fn discover(
     }
     let alone = &sets[nameless(&sets)];
     let (mut discovery, found) = judged(&sets, evidence);
-    if is_unexplained(&discovery, &evidence.numbers) {
+    if is_unexplained(&discovery) {
         let learned = learn::learn(alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
@@ -115,9 +115,10 @@ fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     answer != set && closes >= GREATER_PART
 }
 
-/// True where something is missing that no effect of the catalogue explains, be it less than models of this kind leave.
-fn is_unexplained(discovery: &Discovery, numbers: &Numbers) -> bool {
-    let is_improbable = |probability: f64| probability < numbers.doubt;
+/// True where something is missing, more probably than not, that no effect of the catalogue explains, be it less than models
+/// of this kind leave.
+fn is_unexplained(discovery: &Discovery) -> bool {
+    let is_improbable = |probability: f64| probability < 0.5;
     match discovery.verdict {
         Verdict::Unknown => true,
         Verdict::None => discovery.probability.is_some_and(is_improbable),
@@ -267,8 +268,9 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
-    if is_missing(set, evidence) {
-        // Where the parameters of a model are that leaves much says little of where they are beside the right effect.
+    // How far the parameters of a model that leaves much are off, and so what an effect would gain, is not known to first order.
+    let far_off = is_missing(set, evidence);
+    if far_off {
         let given = Place::given(&looks.coarse);
         for prospect in &mut prospects {
             prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);
@@ -279,9 +281,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
-    // Beside a model that leaves much, what an effect gains to first order says little: one of each place is fitted.
-    let least = if is_missing(set, evidence) { 0.0 } else { least };
-    let entering = entrants(&candidates, &prospects, least);
+    let entering = entrants(&candidates, &prospects, (!far_off).then_some(least));
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];

@@ -175,7 +175,8 @@ fn order(quantity: Quantity) -> i32 {
     }
 }
 
-fn missing(about: &About, signal: &Signal) -> SignalError {
+/// What keeps a signal from being found: the model has no such place, or gives no such quantity of it.
+pub fn missing(about: &About, signal: &Signal) -> SignalError {
     let model = about.name.to_string();
     let location = signal.location.to_string();
     let known = places(about, &signal.axis);

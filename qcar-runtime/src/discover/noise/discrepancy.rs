@@ -27,7 +27,7 @@ use group::{Group, Key};
 use value::{Value, values};
 
 /// What every group of series may miss, and how much of that is assumed.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Discrepancy {
     groups: Vec<Group>,
 }

@@ -14,7 +14,7 @@ use std::cmp::Ordering;
 use std::sync::OnceLock;
 
 use crate::model::{About, Model, Quantity, SignalKind, StateKind};
-use crate::response::signal::{SignalError, output_of};
+use crate::response::signal::{SignalError, missing, output_of};
 use input::rows;
 use stepper::Stepper;
 
@@ -248,10 +248,6 @@ pub fn reading(about: &About, signal: &crate::model::Signal) -> Result<Reading, 
     }
     match output_of(about, signal)? {
         (output, 0) => Ok(Reading::Output(output)),
-        _ => Err(SignalError::NoOutput {
-            location: signal.location.to_string(),
-            quantity: "signal as it was measured",
-            model: about.name.to_string(),
-        }),
+        _ => Err(missing(about, signal)),
     }
 }

@@ -52,7 +52,7 @@ pub struct Hypothesis<'a> {
 }
 
 /// Values of parameters by name, and errors of sensors, from which a fit begins.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Place {
     /// Parameters.
     pub named: BTreeMap<String, f64>,

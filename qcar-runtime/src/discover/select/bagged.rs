@@ -1,11 +1,12 @@
-//! How probable each set is where no model is right in every detail: the mean of its posterior probability over data drawn
-//! again with replacement, a bagged posterior (Huggins and Miller, Bayesian Analysis 18, 2023).
+//! How probable each set is.
 //!
-//! Of two models that are both a little wrong, the evidence of many data prefers one with a certainty that other data would
-//! turn around. The bagged posterior is as uncertain as the data scatter. It keeps each fit: only the weights of the data are
-//! drawn, not the parameters.
+//! Where the most probable set leaves no more than noise, that is its posterior probability. Where it leaves more, no model is
+//! right in every detail: of two models that are both a little wrong, the evidence of many data prefers one with a certainty
+//! that other data would turn around. There it is the mean of the posterior probability over data drawn again with
+//! replacement, a bagged posterior (Huggins and Miller, Bayesian Analysis 18, 2023), which is as uncertain as the data
+//! scatter. It keeps each fit: only the weights of the data are drawn, not the parameters.
 
-use super::set::Set;
+use super::set::{Set, excess};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
@@ -15,12 +16,26 @@ const DRAWS: usize = 1000;
 
 /// The probability of each set.
 pub fn probabilities(sets: &[Set], evidence: &Evidence) -> Vec<f64> {
+    let whole: Vec<f64> = sets.iter().map(Set::log_posterior).collect();
+    let most_probable = sets
+        .iter()
+        .max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
+    if most_probable.is_none_or(|set| excess(&set.explanation, evidence) == 0.0) {
+        return posterior(&whole);
+    }
     let parts: Vec<Vec<f64>> = sets
         .iter()
         .map(|set| set.log_likelihoods(Role::Fit, evidence).unwrap_or_default())
         .collect();
-    let whole: Vec<f64> = sets.iter().map(Set::log_posterior).collect();
     bagged(&whole, &parts)
+}
+
+/// The probability of each model: `whole` is its logarithm, but for a constant.
+fn posterior(whole: &[f64]) -> Vec<f64> {
+    let most = whole.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let weights: Vec<f64> = whole.iter().map(|log| (log - most).exp()).collect();
+    let all: f64 = weights.iter().sum();
+    weights.into_iter().map(|weight| weight / all).collect()
 }
 
 /// The mean over draws of the parts of the data: `whole` is the logarithm of the posterior of each model, but for a constant,
@@ -36,13 +51,10 @@ fn bagged(whole: &[f64], parts: &[Vec<f64>]) -> Vec<f64> {
             let changed: f64 = drawn.iter().zip(parts).map(|(drawn, part)| drawn * part).sum();
             whole + changed
         });
-        let again: Vec<f64> = again.collect();
-        let most = again.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let weights: Vec<f64> = again.iter().map(|log| (log - most).exp()).collect();
-        let all: f64 = weights.iter().sum();
+        let again = posterior(&again.collect::<Vec<f64>>());
         mean.iter_mut()
-            .zip(&weights)
-            .for_each(|(mean, weight)| *mean += weight / (all * DRAWS as f64));
+            .zip(again)
+            .for_each(|(mean, own)| *mean += own / DRAWS as f64);
     }
     mean
 }

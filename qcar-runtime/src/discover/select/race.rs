@@ -3,7 +3,7 @@
 //! Every round has about twice the budget of the one before for half of the candidates. One that is behind stays as long
 //! as its own last steps still gained more than it is behind by.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 use rayon::prelude::*;
 
@@ -160,14 +160,19 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// The prospects that gain most, and the best of each place that gains more than `least`.
-pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: f64) -> Vec<&'p Prospect> {
-    let mut places: Vec<&str> = Vec::new();
+/// The prospects that gain most, and the best of each place that gains more than `least`. Where that is `None`, the screening
+/// says little, and the best of each place and of each effect enters.
+pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: Option<f64>) -> Vec<&'p Prospect> {
+    let (mut places, mut effects) = (HashSet::new(), HashSet::new());
     let enters = |(rank, prospect): &(usize, &Prospect)| {
-        let at = candidates[prospect.candidate].at.as_str();
-        let first = !places.contains(&at);
-        places.push(at);
-        prospect.gain() > 0.0 && (*rank < ENTRANTS || first && prospect.gain() > least)
+        let own = &candidates[prospect.candidate];
+        let is_first_there = places.insert(own.at.as_str());
+        let is_first_of_it = effects.insert(own.effect.as_str());
+        let is_open = match least {
+            Some(least) => is_first_there && prospect.gain() > least,
+            None => is_first_there || is_first_of_it,
+        };
+        prospect.gain() > 0.0 && (*rank < ENTRANTS || is_open)
     };
     prospects
         .iter()
@@ -237,4 +242,64 @@ fn best<'a>(
         }
     }
     (stay, dropped)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::assembly::Place;
+    use super::{ENTRANTS, entrants};
+    use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
+    use crate::discover::noise::Form;
+    use crate::discover::select::screen::Prospect;
+
+    fn candidate(effect: &str, at: &str) -> Candidate {
+        let parameter = Added {
+            name: String::new(),
+            effect_name: String::new(),
+            start: 0.0,
+            range: (-1.0, 1.0),
+            known: false,
+            role: ParameterRole::Shape,
+        };
+        Candidate {
+            effect: effect.into(),
+            at: at.into(),
+            form: None,
+            nuisance: false,
+            change: Change::Sensor {
+                location: at.into(),
+                axis: None,
+                form: Form::Delay,
+                parameter,
+            },
+        }
+    }
+
+    /// Two places, at one of which as many effects gain much as enter anyway; two more effects come after them, one of which
+    /// gains nothing.
+    #[test]
+    fn an_effect_that_gains_little_beside_a_model_that_is_far_off_is_fitted() {
+        let names = (0..ENTRANTS).map(|k| (format!("law {k}"), "damper", 100.0 - k as f64));
+        let later = [
+            ("friction", "damper", 5.0),
+            ("law 0", "spring", 4.0),
+            ("stop", "spring", 0.0),
+        ];
+        let later = later.map(|(effect, at, gain)| (effect.to_owned(), at, gain));
+        let all: Vec<(String, &str, f64)> = names.chain(later).collect();
+        let candidates: Vec<Candidate> = all.iter().map(|(effect, at, _)| candidate(effect, at)).collect();
+        let prospect = |(candidate, (_, _, gain)): (usize, &(String, &str, f64))| Prospect {
+            candidate,
+            starts: vec![(Place::default(), *gain)],
+            afresh: None,
+        };
+        let prospects: Vec<Prospect> = all.iter().enumerate().map(prospect).collect();
+        let entering = |least: Option<f64>| -> Vec<usize> {
+            let entering = entrants(&candidates, &prospects, least).into_iter();
+            entering.map(|own| own.candidate).skip(ENTRANTS).collect()
+        };
+        assert_eq!(entering(None), [ENTRANTS, ENTRANTS + 1]);
+        assert_eq!(entering(Some(3.0)), [ENTRANTS + 1]);
+        assert_eq!(entering(Some(6.0)), []);
+    }
 }

@@ -155,7 +155,7 @@ pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) ->
 
 /// The squared gap over its uncertainty on the runs that judge (those that were fitted, where none do) beyond what noise
 /// alone leaves, which is 1.
-fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
+pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let gap = if held_out { own.gap.held_out } else { own.gap.fit };
     (gap.powi(2) - 1.0).max(0.0)

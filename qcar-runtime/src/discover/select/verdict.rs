@@ -117,7 +117,10 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             effect: name.0.to_owned(),
             at: name.1.to_owned(),
             form,
-            probability: answers.iter().filter(holds).map(|own| own.probability).sum::<f64>() / all,
+            probability: answers
+                .iter()
+                .filter(holds)
+                .fold(0.0, |sum, own| sum + own.probability / all),
             explained: closed(before, &best.explanation, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
         })
