@@ -58,7 +58,10 @@ pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
     }
     // All of its place at once: a vector that grows takes up to twice as much.
     let mut bytes = Vec::with_capacity(size as usize);
-    Limited { inner: file, left }.read_to_end(&mut bytes)?;
+    file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > left {
+        return Err(too_large());
+    }
     if !bytes.starts_with(GZIP) {
         return Ok(bytes);
     }
