@@ -33,6 +33,8 @@ pub mod interruption;
 pub mod parameters;
 // What a parameter set must not do to a model.
 pub mod inertias;
+// Roads as a user names them.
+pub mod roads;
 // Models by name or path.
 pub mod catalogue;
 // Effects that a model may miss.

@@ -102,6 +102,11 @@ pub fn or_dash(value: Option<f64>, digits: usize) -> String {
     value.map_or("-".into(), |value| number(value, digits))
 }
 
+/// What is odd, a line for each sentence.
+pub fn noted(of: &[String]) -> String {
+    of.iter().map(|notice| format!("note: {notice}\n")).collect()
+}
+
 /// So many of something, in the plural where there is not just one.
 pub fn counted(count: usize, what: &str) -> String {
     let ending = if count == 1 { "" } else { "s" };

@@ -4,11 +4,19 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// Bytes of a text or of an unpacked table that are read, unless [`VARIABLE`] says otherwise.
+use flate2::read::MultiGzDecoder;
+
+/// Bytes of a text or of an unpacked file that are read, unless [`VARIABLE`] says otherwise.
 const MOST: u64 = 256 << 20;
+
+/// The same of a measured file that is not packed, and so cannot become larger than its disk.
+const MOST_PLAIN: u64 = 4 << 30;
 
 /// The environment variable with another limit, in MiB.
 const VARIABLE: &str = "QCAR_MAX_MIB";
+
+/// What gzip packed begins with this.
+const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Opens a file that is neither a folder nor a device nor a pipe, which might never end.
 ///
@@ -27,10 +35,46 @@ pub fn open(path: &Path) -> io::Result<File> {
 
 /// What comes from `inner`, with an error of [`ErrorKind::FileTooLarge`] where that goes beyond the limit.
 pub fn limited<R: Read>(inner: R) -> impl Read {
-    let given = std::env::var(VARIABLE).ok().and_then(|text| text.parse::<u64>().ok());
-    Limited {
-        inner,
-        left: given.map_or(MOST, |mebibytes| mebibytes.saturating_mul(1 << 20)),
+    let left = limit().unwrap_or(MOST);
+    Limited { inner, left }
+}
+
+/// The limit that the user has set, bytes.
+fn limit() -> Option<u64> {
+    let given = std::env::var(VARIABLE).ok()?.parse::<u64>().ok()?;
+    Some(given.saturating_mul(1 << 20))
+}
+
+/// The content of a measured file, which gzip may have packed.
+///
+/// # Errors
+/// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set.
+pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
+    let file = open(path)?;
+    let size = file.metadata()?.len();
+    let left = limit().unwrap_or(MOST_PLAIN);
+    if size > left {
+        return Err(too_large());
+    }
+    // All of its place at once: a vector that grows takes up to twice as much.
+    let mut bytes = Vec::with_capacity(size as usize);
+    file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > left {
+        return Err(too_large());
+    }
+    if !bytes.starts_with(GZIP) {
+        return Ok(bytes);
+    }
+    let mut whole = Vec::new();
+    limited(MultiGzDecoder::new(bytes.as_slice())).read_to_end(&mut whole)?;
+    Ok(whole)
+}
+
+/// What to do about an error of [`measured`]: raise the limit, or what `else_do` says.
+pub fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
+    match error.kind() {
+        ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
+        _ => else_do,
     }
 }
 
@@ -52,11 +96,12 @@ struct Limited<R> {
 impl<R: Read> Read for Limited<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(buffer)?;
-        let too_large = || {
-            let said = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
-            io::Error::new(ErrorKind::FileTooLarge, said)
-        };
         self.left = self.left.checked_sub(read as u64).ok_or_else(too_large)?;
         Ok(read)
     }
+}
+
+fn too_large() -> io::Error {
+    let said = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
+    io::Error::new(ErrorKind::FileTooLarge, said)
 }

@@ -31,17 +31,20 @@ mod findings;
 pub mod workbook;
 // From `campaign.toml` to the types.
 mod manifest;
-// Quasi-static curves and roads.
+// Quasi-static curves.
 mod curve;
+// Roads.
+mod profile;
 // The answer that some campaigns are published with.
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Quantity, Recording, Road, Role, RoleNames, Run, Side,
-    Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
+    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording, Road, Role, RoleNames, Run,
+    Side, Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
 };
-pub use curve::{Curve, DynamicCurve, RoadSamples};
+pub use curve::{Curve, DynamicCurve};
 pub use finding::Finding;
 pub use history::History;
+pub use profile::RoadSamples;
 pub use truth::{Effect, Truth};
 pub use unit::{Declared, Dimension, dimension, examples};

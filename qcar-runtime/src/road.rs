@@ -133,6 +133,12 @@ impl Road {
         Self::through(samples::simplify(&points, samples::EXACT))
     }
 
+    /// The same road with its first point at x = 0.
+    pub fn beginning_at_zero(&self) -> Self {
+        let first = self.vertices[0][0];
+        Self::through(self.vertices.iter().map(|&[x, z]| [x - first, z]).collect())
+    }
+
     /// The same road seen by a wheel that rolls the other way: x becomes -x.
     pub fn mirrored(&self) -> Self {
         Self::through(self.vertices.iter().rev().map(|&[x, z]| [-x, z]).collect())

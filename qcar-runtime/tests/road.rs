@@ -148,6 +148,41 @@ fn a_random_road_has_the_density_of_its_class() {
 }
 
 #[test]
+fn every_class_has_the_density_of_the_standard() {
+    // ISO 8608, table C.2: geometric means of G(n0) at n0 = 0.1 cycles/m, 1e-6 m³.
+    let table = [16.0, 64.0, 256.0, 1024.0, 4096.0, 16384.0, 65536.0, 262144.0];
+    let classes = [
+        Class::A,
+        Class::B,
+        Class::C,
+        Class::D,
+        Class::E,
+        Class::F,
+        Class::G,
+        Class::H,
+    ];
+    for (class, density) in classes.into_iter().zip(table) {
+        let road = |seed| {
+            let (length, spacing) = (2010.0, 0.03);
+            Road::from_random(&Random {
+                class,
+                seed,
+                length,
+                spacing,
+            })
+            .unwrap()
+        };
+        let found = (1..=4).map(|seed| band_density(&road(seed), 0.05, 0.2)).sum::<f64>() / 4.0;
+        // G(n0) (n/n0)^-2, its mean over the band.
+        let expected = 1e-6 * density * 0.01 / (0.05 * 0.2);
+        assert!(
+            (found / expected - 1.0).abs() < 0.2,
+            "{class:?}: {found}, not {expected}"
+        );
+    }
+}
+
+#[test]
 fn a_seed_is_a_road() {
     let random = Random {
         class: Class::B,

@@ -36,5 +36,7 @@ mod tdms;
 pub mod mat;
 // Of Excel.
 mod excel;
+// Of ASAM, for roads.
+mod crg;
 // The door: which format it is, and its channels.
 pub mod read;

@@ -99,8 +99,13 @@ struct Records<'a> {
     stride: usize,
     /// Bytes of the id before each record.
     before: usize,
+    /// The number of the first, from 0.
+    first: usize,
     count: usize,
 }
+
+/// Bytes of records that are gone through channel by channel while they are at hand.
+const AT_HAND: usize = 1 << 18;
 
 impl<'a> Records<'a> {
     /// The records that a group promises, if they are there.
@@ -116,8 +121,35 @@ impl<'a> Records<'a> {
             bytes: &bytes[..count * stride],
             stride,
             before,
+            first: 0,
             count,
         })
+    }
+
+    /// The same in parts, one behind the other.
+    fn parts(&self) -> impl Iterator<Item = Records<'a>> {
+        let most = (AT_HAND / self.stride.max(1)).max(1);
+        let firsts = (0..self.count).step_by(most);
+        firsts.map(move |first| {
+            let count = most.min(self.count - first);
+            Records {
+                bytes: &self.bytes[first * self.stride..(first + count) * self.stride],
+                first: self.first + first,
+                count,
+                ..*self
+            }
+        })
+    }
+
+    /// The stored values of several fields.
+    fn columns(&self, fields: &[&Field]) -> Vec<Vec<f64>> {
+        let mut columns: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(self.count)).collect();
+        for part in self.parts() {
+            for (column, field) in columns.iter_mut().zip(fields) {
+                column.extend(field.values(&part));
+            }
+        }
+        columns
     }
 }
 
@@ -158,25 +190,27 @@ fn add_group(recording: &mut Recording, group: &str, channels: Vec<Channel>, rec
             }
         }
     }
-    for channel in channels.into_iter().filter(|channel| channel.role == Role::Values) {
-        let (field, conversion) = match (channel.field, channel.conversion) {
-            (Ok(field), Ok(conversion)) => (field, conversion),
-            (Err(why), _) | (_, Err(why)) => {
-                recording.pass_over(channel.name, channel.place, why);
-                continue;
+    let (mut known, mut fields) = (Vec::new(), Vec::new());
+    for channel in channels.iter().filter(|channel| channel.role == Role::Values) {
+        match (&channel.field, &channel.conversion) {
+            (Ok(field), Ok(conversion)) => {
+                known.push((channel, conversion));
+                fields.push(field);
             }
-        };
-        let samples = field.values(records);
+            (Err(why), _) | (_, Err(why)) => recording.pass_over(&channel.name, channel.place.clone(), why),
+        }
+    }
+    for ((channel, conversion), samples) in known.into_iter().zip(records.columns(&fields)) {
         let (samples, labels) = conversion.apply(samples);
         recording.signals.push(Signal {
-            name: channel.name,
-            unit: channel.unit,
+            name: channel.name.clone(),
+            unit: channel.unit.clone(),
             time: time.clone(),
             samples,
             labels,
             source: Source {
                 group: group.into(),
-                place: channel.place,
+                place: channel.place.clone(),
             },
         });
     }

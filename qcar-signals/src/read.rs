@@ -8,7 +8,7 @@ use flate2::read::MultiGzDecoder;
 
 use crate::error::{Fault, Place, Read, ReadError};
 use crate::signal::Recording;
-use crate::{csv, excel, mat, mdf, rpc, tdms, uff};
+use crate::{crg, csv, excel, mat, mdf, rpc, tdms, uff};
 
 /// What a file begins with that gzip packed.
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -75,6 +75,9 @@ fn unpacked(bytes: &[u8]) -> Read<Recording> {
     }
     if uff::is_uff(bytes) {
         return uff::read(bytes);
+    }
+    if crg::is_crg(bytes) {
+        return crg::read(bytes);
     }
     csv::read(bytes)
 }

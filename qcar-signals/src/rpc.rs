@@ -41,10 +41,12 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
                 number.all(&group[channel * length..(channel + 1) * length], shape.order)
             }
         };
-        let groups = data.data.chunks_exact(group).take(shape.groups());
-        let mut samples: Vec<f64> = groups.flat_map(own).take(shape.samples).collect();
         let scale = header.scale(channel, number).map_err(|fault| fault.of(&name))?;
-        samples.iter_mut().for_each(|sample| *sample *= scale);
+        let mut samples = Vec::with_capacity(shape.groups() * shape.points_of_group);
+        for group in data.data.chunks_exact(group).take(shape.groups()) {
+            samples.extend(own(group).into_iter().map(|sample| sample * scale));
+        }
+        samples.truncate(shape.samples);
         let unit = header.text(&format!("UNITS.CHAN_{}", channel + 1));
         recording.signals.push(Signal {
             name,

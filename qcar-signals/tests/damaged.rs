@@ -155,6 +155,13 @@ fn mat() {
 }
 
 #[test]
+fn crg() {
+    let binary = ["crg/slope_banking_krbi.crg", "crg/missing_border_kdbi.crg"];
+    survives(&binary, 3000);
+    survives(&["crg/handmade_curved_banked_sloped.crg", "crg/start_ldfi.crg"], 3000);
+}
+
+#[test]
 fn workbooks() {
     survives(&["table/kc_bounce.xlsx", "table/vehicle_template.xlsx"], 2000);
 }
@@ -204,6 +211,13 @@ fn ten_gigabytes_that_are_only_claimed_take_no_memory() {
     refused(
         &claiming("uff/binary8byte_58b.uff", count, b"1250000000"),
         &["10000000000 bytes", "channel `NONE`"],
+    );
+
+    let file = sample("crg/slope_banking_krbi.crg");
+    let end = find(&file, b"reference_line_end_u") + 27;
+    refused(
+        &claiming("crg/slope_banking_krbi.crg", end, b"   6.0000000000000000e+07"),
+        &["1200000001 rows", "120 rows of data"],
     );
 
     let file = sample("tdms/waveform_2segments.tdms");

@@ -287,6 +287,11 @@ fn rpc() {
 }
 
 #[test]
+fn crg() {
+    agree("crg/");
+}
+
+#[test]
 fn tdms() {
     agree("tdms/");
     let fault = fault_of_cut("tdms/waveform_2segments.tdms", 68623);

@@ -2,7 +2,7 @@
 
 use qcar_dsl::matlab::{function, is_name};
 use qcar_runtime::error::InputError;
-use qcar_signals::mat::write::{Array, v5};
+use qcar_signals::mat::write::{Array, v5, v73};
 
 use super::{File, Subject};
 use crate::failure::flag;
@@ -24,14 +24,27 @@ pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
     })
 }
 
-/// The matrices, the names and units of their rows and columns, and the values of the parameters: a MAT-file of version 5.
+/// What [`variables`] gives as a MAT-file of version 5.
 pub fn data(subject: Subject, of: &StateSpace) -> Vec<u8> {
+    v5(&format!("{} by qcar", of.model), &variables(subject, of))
+}
+
+/// The same of version 7.3.
+///
+/// # Errors
+/// What the writer of HDF5 says.
+pub fn data_in_hdf5(subject: Subject, of: &StateSpace) -> Result<Vec<u8>, String> {
+    v73(&variables(subject, of))
+}
+
+/// The matrices, the names and units of their rows and columns, and the values of the parameters.
+fn variables(subject: Subject, of: &StateSpace) -> [(String, Array); 7] {
     let parameters = &subject.compiled.about.parameters;
     let value = parameters.iter().zip(subject.values);
     let values = value.map(|(own, &value)| (own.name.to_string(), Array::number(value)));
     let matrix = |name: &str, columns: usize| (name.to_string(), Array::rows(&of.matrices[name], columns));
     let (states, inputs) = (of.states.len(), of.inputs.len());
-    let variables = [
+    [
         matrix("A", states),
         matrix("B", inputs),
         matrix("C", states),
@@ -39,8 +52,7 @@ pub fn data(subject: Subject, of: &StateSpace) -> Vec<u8> {
         ("names".into(), names(subject, of)),
         ("p".into(), Array::fields(values.collect())),
         ("linear".into(), Array::number(f64::from(u8::from(of.linear)))),
-    ];
-    v5(&format!("{} by qcar", of.model), &variables)
+    ]
 }
 
 /// As the function of [`program`] gives them.

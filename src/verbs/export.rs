@@ -50,6 +50,9 @@ enum Kind {
     Matlab,
     /// FILE.mat: A, B, C, D, names, units and values, MAT version 5
     Mat,
+    /// FILE.mat: the same in MAT version 7.3, which is HDF5
+    #[value(name = "mat73")]
+    Mat73,
     /// FILE.mo: a flat model of Modelica
     Modelica,
     /// FILE.js: an object with the functions of the model, for a page or Node
@@ -88,7 +91,7 @@ impl Kind {
             Kind::C => "c",
             Kind::Fmu => "fmu",
             Kind::Matlab => "m",
-            Kind::Mat => "mat",
+            Kind::Mat | Kind::Mat73 => "mat",
             Kind::Modelica => "mo",
             Kind::Js => "js",
             Kind::Json => "json",
@@ -188,6 +191,11 @@ fn files(
             vec![own(matlab::data(subject, &matrices(model, values)?))],
             String::new(),
         ),
+        Kind::Mat73 => {
+            let file = matlab::data_in_hdf5(subject, &matrices(model, values)?);
+            let refused = |said| flag("--as", said, "variables that HDF5 can hold", "write --as mat");
+            (vec![own(file.map_err(refused)?)], String::new())
+        }
         Kind::Modelica => text(modelica::model(subject.compiled, subject.values)),
         Kind::Js => (
             vec![javascript::file(subject, model.about(), values, stem)],

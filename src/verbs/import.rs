@@ -28,8 +28,8 @@ mod kind;
 /// Look into measured files and begin a campaign with them
 ///
 /// Lists the channels of each file, proposes which sensor of the model each is, by its name and unit, and which kind of run the file
-/// is: of a sweep the frequencies and the velocity of the pad. The new folder holds a campaign.toml that says what is still to be
-/// filled in. The files stay where they are.
+/// is: of a sweep the frequencies and the velocity of the pad. Several sweeps in one recording, with two seconds of rest between, become
+/// runs of their own. The new folder holds a campaign.toml that says what is still to be filled in. The files stay where they are.
 #[derive(Args)]
 #[command(
     after_help = "Example:\n  qcar import models/campaigns/axle_a_rig/rig/sweep_025.csv.gz models/campaigns/axle_a_rig/rig/sweep_100.csv.gz --out imported --model axle_a"
@@ -69,7 +69,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         });
     }
     let proposed = sensors::propose(&files, model.about());
-    let runs: Vec<kind::Proposed> = files.iter().map(|file| kind::propose(file, &proposed)).collect();
+    let runs: Vec<Vec<kind::Proposed>> = files.iter().map(|file| kind::propose(file, &proposed)).collect();
     let model_name = seen_from(
         &arguments.out,
         &arguments.model,
@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     );
     let mut text = make_head(&name, &model_name, model.about());
     text += &sensors::sections(&proposed);
-    text += &kind::sections(&runs);
+    text += &kind::sections(&runs.iter().flatten().collect::<Vec<_>>());
     put(&arguments.out, "campaign.toml", &text)?;
     Ok(prose(&told(arguments, &files, &proposed, &runs)))
 }
@@ -113,11 +113,17 @@ fn name_of(folder: &Path) -> Result<String, Failure> {
     })
 }
 
-fn told(arguments: &Arguments, files: &[Measured], proposed: &sensors::Sensors, runs: &[kind::Proposed]) -> String {
+fn told(
+    arguments: &Arguments,
+    files: &[Measured],
+    proposed: &sensors::Sensors,
+    runs: &[Vec<kind::Proposed>],
+) -> String {
     let mut text = String::new();
-    for (file, run) in files.iter().zip(runs) {
+    for (file, runs) in files.iter().zip(runs) {
         text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.recording));
-        text += &format!("taken for {}\n\n", run.said());
+        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.said())));
+        text += "\n";
     }
     text += &sensors::table(proposed);
     let out = arguments.out.display();

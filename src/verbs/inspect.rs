@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use qcar_runtime::bounded;
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_signals::read::read;
+use qcar_signals::error::ReadError;
+use qcar_signals::read::recognise;
 use qcar_signals::signal::{Recording, Scalar, Signal, Value};
 use serde::Serialize;
 
@@ -22,7 +23,7 @@ const DIGITS: usize = 6;
 
 /// List the channels of a measured file: units, rates, ranges
 ///
-/// The content says which format it is: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, or text.
+/// The content says which format it is: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or text.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz --format json"
@@ -49,8 +50,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 /// # Errors
 /// A file that cannot be read.
 pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
-    bounded::open(file).map_err(|error| {
-        let remedy = "correct the path, or put the file there";
+    let bytes = bounded::measured(file).map_err(|error| {
+        let remedy = bounded::remedy(&error, "correct the path, or put the file there");
         InputError::from(Problem::new(
             file,
             Place::File,
@@ -59,7 +60,8 @@ pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
             remedy,
         ))
     })?;
-    read(file).map_err(|error| Failure::Input(error.to_string()))
+    let file = file.into();
+    recognise(&bytes).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
 }
 
 /// What a file holds, as JSON.

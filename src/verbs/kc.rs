@@ -16,7 +16,7 @@ use crate::failure::Failure;
 use crate::json;
 use crate::parameters;
 use crate::progress::while_counting;
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, noted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
@@ -85,7 +85,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         write::start_values(&campaign, &gradients)?;
     }
     Ok(match arguments.format {
-        Format::Text => prose(&text(&gradients)),
+        Format::Text => prose(&(text(&gradients) + &noted(&campaign.notices))),
         Format::Json => json::line(&gradients),
     })
 }

@@ -17,7 +17,7 @@ use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::json::{self, Ordered};
 use crate::progress::while_counting;
-use crate::table::{Table, counted, number, or_dash};
+use crate::table::{Table, counted, noted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
@@ -179,7 +179,7 @@ impl Planned {
             "{}: what would say most about {count} of {}\n",
             self.campaign, self.model
         );
-        out.extend(self.notices.iter().map(|notice| format!("note: {notice}\n")));
+        out += &noted(&self.notices);
         if self.further.is_empty() {
             return out + "Nothing could be added: every output and excitation of the model is in use.\n";
         }

@@ -16,6 +16,7 @@ use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::progress::while_counting;
+use crate::roads;
 use crate::table::Table;
 use crate::terminal::prose;
 use crate::verbs::TableFormat;
@@ -32,7 +33,7 @@ mod render;
 mod figure;
 
 use gather::Asked;
-use subject::{Beneath, RandomRoad, Subject};
+use subject::{Beneath, Subject};
 
 /// Print what metrics of an axle depend on: elasticities, shares of variance, and how sure they are
 ///
@@ -57,9 +58,9 @@ pub struct Arguments {
     /// One value, in place of that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
-    /// A random road of ISO 8608 beside the cleats, such as C@60km/h; may be repeated
-    #[arg(long, value_name = "CLASS@SPEED")]
-    road: Vec<RandomRoad>,
+    /// A road beside the cleats: a class of ISO 8608 or a measured profile, such as C@60km/h or road.crg#v=0.5@50km/h; may be repeated
+    #[arg(long, value_name = "ROAD@SPEED")]
+    road: Vec<roads::Asked>,
     /// Only these runs; a * stands for any letters
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     runs: Vec<String>,

@@ -17,6 +17,7 @@ use crate::files::folder_for_results;
 use crate::histories::{History, Kind};
 use crate::parameters::{self, Setting};
 use crate::progress::while_counting;
+use crate::roads;
 use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
@@ -28,6 +29,10 @@ mod records;
 mod figure;
 // The result as text, JSON and CSV.
 pub(crate) mod render;
+// Power spectral densities of what roads do.
+mod spectra;
+// Rides over roads that nobody has measured.
+mod ground;
 
 use compared::Compared;
 use records::Record;
@@ -37,18 +42,25 @@ use records::Record;
 /// Sweeps and time histories are replayed: what was recorded of the inputs drives the model, from a state at the beginning
 /// that is estimated where a time history is. Their error is the root mean square of the difference over that of the
 /// measured signal without its mean (NRMS).
+/// With `--road` the model rolls over roads instead that nobody has measured it on, on the tyre of the campaign: what a class of ISO
+/// 8608 or a measured profile does to each mass, weighted as ISO 2631-1 has it, and to the load of the tyre.
 /// Of cleat runs the errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
 /// square, after both records are aligned at the peak of the wheel.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays\n  qcar simulate models/campaigns/axle_a_rig --out viewer --as mdf"
+    after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays\n  qcar simulate models/campaigns/axle_a_rig --out viewer --as mdf\n  qcar simulate models/campaigns/axle_a_rig --road C@80km/h --road B#3@120km/h:20s --out spectra"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an SVG
+    /// Roll over this road in place of the campaign's runs; may be repeated: a class of ISO 8608 such as C@80km/h, C#7@80km/h with a seed
+    /// of its own, or a measured profile such as road.crg#v=0.5@50km/h; each perhaps with a duration, `:20s`
+    #[arg(long, value_name = "ROAD@SPEED")]
+    road: Vec<roads::Asked>,
+    /// Write the time histories into this folder, a file for each run; of a sweep or time history measured beside simulated, and an
+    /// SVG; of a road power spectral densities as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// What kind of files
@@ -90,6 +102,9 @@ pub enum VariantName {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
+    if !arguments.road.is_empty() {
+        return over_roads(arguments);
+    }
     let simulated = simulate(&arguments.campaign, &arguments.choices)?;
     if let Some(folder) = &arguments.out {
         for history in simulated.cleat_histories() {
@@ -101,6 +116,45 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         TableFormat::Text => prose(&simulated.result().text()),
         TableFormat::Json => simulated.json(),
         TableFormat::Csv => simulated.result().csv(),
+    })
+}
+
+/// Rolls over roads in place of the runs of the campaign.
+fn over_roads(arguments: &Arguments) -> Result<String, Failure> {
+    let Opened {
+        campaign,
+        model,
+        values,
+    } = open(&arguments.campaign, &arguments.choices)?;
+    let variant = arguments.choices.variant.into();
+    let rolled = ground::roll(&campaign, &model, &values, &arguments.road, variant)?;
+    if let Some(folder) = &arguments.out {
+        rolled.put(folder, arguments.kind)?;
+    }
+    Ok(match arguments.format {
+        TableFormat::Text => prose(&rolled.text()),
+        TableFormat::Json => rolled.json(),
+        TableFormat::Csv => rolled.csv(),
+    })
+}
+
+/// A campaign with its model and the values of that.
+struct Opened {
+    campaign: Campaign,
+    model: Loaded,
+    values: Values,
+}
+
+fn open(campaign: &Path, choices: &Choices) -> Result<Opened, Failure> {
+    let campaign = Campaign::open(campaign)?;
+    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
+    let manifest = campaign.manifest();
+    let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
+    let values = parameters::resolve(model.about(), files, &choices.set)?;
+    Ok(Opened {
+        campaign,
+        model,
+        values,
     })
 }
 
@@ -118,11 +172,11 @@ pub struct Simulated {
 /// # Errors
 /// A campaign without any of them, and what keeps one from being read or simulated.
 pub fn simulate(campaign: &Path, choices: &Choices) -> Result<Simulated, Failure> {
-    let campaign = Campaign::open(campaign)?;
-    let model = catalogue::of_campaign(&campaign, choices.model.as_deref())?;
-    let manifest = campaign.manifest();
-    let files = std::iter::once(manifest.as_path()).chain(choices.params.as_deref());
-    let values = parameters::resolve(model.about(), files, &choices.set)?;
+    let Opened {
+        campaign,
+        model,
+        values,
+    } = open(campaign, choices)?;
     let cleats = over_cleats(&campaign, &model, &values, choices.variant.into())?;
     let records = records::records(&campaign, &*model, &values)?;
     if cleats.is_none() && records.is_empty() {
@@ -161,6 +215,7 @@ impl Simulated {
         render::Result {
             campaign: &self.campaign.name,
             model: &self.model.about().name,
+            notices: &self.campaign.notices,
             at_start: guessed(&self.campaign, &self.model, &self.values),
             cleats: self.cleats.as_ref().map(|(_, driven)| &driven.compared),
             records: &self.records,

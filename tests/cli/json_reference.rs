@@ -44,6 +44,7 @@ fn verbs_print_the_keys_that_are_documented() {
     agree("kc", &result(&format!("kc {AXLE}"))[0]);
     agree("effects", &result("effects coulomb_friction"));
     agree("simulate", &result(&format!("simulate {AXLE}")));
+    agree("simulate --road", &result(&format!("simulate {AXLE} --road C@60km/h")));
     agree(
         "compare",
         &result(&format!("compare axle_a axle_a --params {AXLE} --set m_wheel=40")),

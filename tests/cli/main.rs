@@ -22,6 +22,7 @@ mod readme;
 mod records;
 mod rides;
 mod rigs;
+mod roads;
 mod targets;
 mod terminal;
 mod trials;

@@ -189,3 +189,22 @@ fn a_campaign_that_cannot_be_driven_says_what_to_correct() {
         );
     }
 }
+
+/// What is odd about a campaign is said by every verb that rests on it.
+#[test]
+fn what_is_odd_about_the_campaign_is_said_with_the_result() {
+    let folder = tempfile::tempdir().unwrap();
+    copy(Path::new(AXLE), folder.path());
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let spare = "[[channel]]\nname = \"spare\"\nlocation = \"body\"\nside = \"left\"\naxis = \"z\"\nquantity = \"velocity\"\nunit = \"m/s\"\n\n";
+    fs::write(&manifest, text.replacen("[[run]]", &format!("{spare}[[run]]"), 1)).unwrap();
+    for verb in ["simulate", "kc"] {
+        let said = succeeds(&[verb, folder.path().to_str().unwrap()]);
+        let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            said.contains("note: ") && said.contains("`spare` is recorded in no run"),
+            "{verb}: {said}"
+        );
+    }
+}

@@ -91,6 +91,30 @@ fn a_small_file_that_unpacks_to_a_large_one_ends_at_the_limit() {
 }
 
 #[test]
+fn a_measured_file_ends_at_the_limit_packed_or_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = format!("t;a\n{}", "0;1\n".repeat(1 << 19));
+    fs::write(folder.path().join("plain.csv"), &text).unwrap();
+    let mut packed = GzEncoder::new(Vec::new(), Compression::fast());
+    packed.write_all(text.as_bytes()).unwrap();
+    fs::write(folder.path().join("packed.csv.gz"), packed.finish().unwrap()).unwrap();
+    for file in ["plain.csv", "packed.csv.gz"] {
+        let within = |limit: &str| {
+            let mut command = Command::new(env!("CARGO_BIN_EXE_qcar"));
+            let ran = command.args(["inspect", file]).env("QCAR_MAX_MIB", limit);
+            let ran = ran.current_dir(folder.path()).output().unwrap();
+            (ran.status.code(), String::from_utf8(ran.stderr).unwrap())
+        };
+        let (status, said) = within("1");
+        assert_eq!(status, Some(2), "{said}");
+        for fragment in [file, "set QCAR_MAX_MIB", "raise the limit"] {
+            assert!(said.contains(fragment), "expected `{fragment}` in\n{said}");
+        }
+        assert_eq!(within("3").0, Some(0), "{}", within("3").1);
+    }
+}
+
+#[test]
 fn pipes_and_devices_are_no_files() {
     let folder = tempfile::tempdir().unwrap();
     assert!(

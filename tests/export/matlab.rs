@@ -1,4 +1,4 @@
-//! MAT-files in SciPy, and functions in GNU Octave: the matrices that `qcar matrices` prints.
+//! MAT-files in SciPy and h5py, and functions in GNU Octave: the matrices that `qcar matrices` prints.
 
 use std::fs;
 use std::path::Path;
@@ -21,16 +21,27 @@ fn printed(model: &str, given: &[&str]) -> Value {
 
 #[test]
 fn scipy_reads_the_matrices_that_are_printed() {
-    let Some(python) = python_with("scipy", "exported MAT-files") else {
-        return;
-    };
+    if let Some(python) = python_with("scipy", "exported MAT-files") {
+        reads_what_is_printed(&python, "mat", "matlab.py");
+    }
+}
+
+#[test]
+fn h5py_reads_the_matrices_that_are_printed() {
+    if let Some(python) = python_with("h5py", "exported MAT-files of version 7.3") {
+        reads_what_is_printed(&python, "mat73", "mat73.py");
+    }
+}
+
+/// What a script finds in an exported file is what `qcar matrices` prints.
+fn reads_what_is_printed(python: &Path, kind: &str, script: &str) {
+    let script = format!("{}/tests/export/{script}", env!("CARGO_MANIFEST_DIR"));
     for (model, given) in [("axle_d", &["--params", PARAMS][..]), (MASSLESS, &[])] {
         let folder = tempfile::tempdir().unwrap();
         let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
         let (file, result) = (path("model.mat"), path("result.json"));
-        qcar(&[&["export", model, "--as", "mat", "--out", &file], given].concat());
-        let script = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/export/matlab.py");
-        run(&python, &[script, &file, &result], folder.path());
+        qcar(&[&["export", model, "--as", kind, "--out", &file], given].concat());
+        run(python, &[&script, &file, &result], folder.path());
         let read: Value = serde_json::from_str(&fs::read_to_string(&result).unwrap()).unwrap();
         let printed = printed(model, given);
         for matrix in ["A", "B", "C", "D"] {

@@ -3,8 +3,10 @@
 use std::fs;
 use std::path::Path;
 
+use qcar_runtime::campaign::Test;
+
 use crate::formats::sweeps;
-use crate::writers::mdf4;
+use crate::writers::{Channel, Group, mdf4};
 use crate::{open, qcar};
 
 fn files(folder: &Path) {
@@ -53,6 +55,55 @@ fn an_imported_campaign_fits_once_it_is_filled_in() {
     assert!(status == 0 && said.starts_with("rig: ok\n"), "{said}");
     let (status, said) = qcar(folder.path(), "fit rig --starts 4");
     assert!(status == 0 && said.contains("converged"), "{said}");
+}
+
+#[test]
+fn sweeps_of_one_recording_become_runs() {
+    let folder = tempfile::tempdir().unwrap();
+    let all = sweeps();
+    let (rate, count) = (all[0].rate, all[0].channels.len());
+    let rest = (2.0 * rate) as usize;
+    let knocks = (0..rest).map(|at| if at % 400 < 200 { 0.1 } else { -0.1 });
+    let joined = |at: usize| {
+        let samples = all
+            .iter()
+            .flat_map(|sweep| std::iter::repeat_n(0.0, rest).chain(sweep.channels[at].samples.iter().copied()));
+        let samples = samples.chain(std::iter::repeat_n(0.0, rest)).chain(knocks.clone());
+        Channel::new(&all[0].channels[at].name, "g", samples.collect())
+    };
+    let long = Group {
+        rate,
+        channels: (0..count).map(joined).collect(),
+    };
+    fs::write(folder.path().join("long.mf4"), mdf4::file(&[long])).unwrap();
+    let (status, said) = qcar(folder.path(), "import long.mf4 --out rig --model axle_a");
+    assert_eq!(status, 0, "{said}");
+    let campaign = open(&folder.path().join("rig")).unwrap();
+    let names: Vec<&str> = campaign.runs.iter().map(|run| run.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["../long.mf4 part 1", "../long.mf4 part 2", "../long.mf4 part 3"],
+        "{said}"
+    );
+    let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(words.contains("s: the pad moves and does not sweep"), "{said}");
+    let duration = all[0].len() as f64 / rate;
+    for (at, (run, level)) in campaign.runs.iter().zip([0.025, 0.05, 0.1]).enumerate() {
+        let Test::Sweep(sweep) = &run.test else {
+            panic!("{said}")
+        };
+        assert_eq!(
+            (sweep.peak_velocity, sweep.start_frequency, sweep.end_frequency),
+            (level, 0.5, 30.0),
+            "{said}"
+        );
+        let (from, to) = (run.window.from.unwrap(), run.window.to.unwrap());
+        let begins = 2.0 + at as f64 * (2.0 + duration);
+        assert!(
+            (from - begins).abs() < 1.5 && (to - begins - duration).abs() < 2.0,
+            "{from} {to} {begins}"
+        );
+    }
 }
 
 #[test]

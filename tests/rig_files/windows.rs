@@ -189,3 +189,53 @@ fn sines_of_a_rig_come_to_one_rate() {
         assert!(worst < 2.0 * RIPPLE, "{size}: {worst}");
     }
 }
+
+/// Stamps of messages on a bus, 10 ms apart and up to 6 ms late, and the body at 1 Hz.
+fn messages(without: std::ops::Range<usize>) -> Vec<u8> {
+    let mut text = "time;Pad_FL [m/s^2];Body_FL [m/s^2]\n".to_string();
+    for k in (0..800).filter(|k| !without.contains(k)) {
+        let t = 0.01 * k as f64 + 0.006 * (k as f64 * 0.618).fract();
+        text += &format!("{t:.6};{};{}\n", slow(t), slow(t + 0.1));
+    }
+    text.into_bytes()
+}
+
+fn slow(t: f64) -> f64 {
+    (TAU * t).sin()
+}
+
+#[test]
+fn messages_of_a_bus_are_laid_on_even_instants() {
+    let sections =
+        channel("pad", "source = \"Pad_FL\"") + &channel("body", "source = \"Body_FL\"") + &history("can.txt", "");
+    let whole = folder(&sections, ("can.txt", &messages(0..0)));
+    let campaign = open(whole.path()).unwrap();
+    let history = campaign.history(&campaign.runs[0]).unwrap();
+    // A straight line over the longest step, 16 ms, misses a sine of 1 Hz by no more than (0.016 × 2π)² / 8.
+    for (name, shift) in [("pad_left_z", 0.0), ("body_left_z", 0.1)] {
+        let off = worst(&history, name, shift, slow);
+        assert!(off < 1.3e-3 && off > 1e-6, "{name}: {off}");
+    }
+    assert!(
+        (history.sample_rate / 100.0 - 1.0).abs() < 0.1,
+        "{}",
+        history.sample_rate
+    );
+    assert_eq!(campaign.notices.len(), 2, "{:?}", campaign.notices);
+    assert!(
+        campaign.notices[0].contains("`pad_left_z`, 0.000 s to 7.99"),
+        "{:?}",
+        campaign.notices
+    );
+    assert!(
+        campaign.notices[0].contains("samples come unevenly"),
+        "{:?}",
+        campaign.notices
+    );
+    let cut = folder(&sections, ("can.txt", &messages(300..330)));
+    let error = open(cut.path()).unwrap_err().to_string();
+    assert!(
+        error.contains("Pad_FL") && error.contains("without values") && error.contains("beside it"),
+        "{error}"
+    );
+}

@@ -274,8 +274,19 @@ pub struct Road {
     pub name: String,
     /// Relative to the folder of the campaign.
     pub file: String,
-    /// Its corners `[x, z]`, m, where the file is a workbook.
-    pub corners: Option<Vec<[f64; 2]>>,
+    /// How the file holds it.
+    pub profile: Profile,
+}
+
+/// How a file holds the profile of a road.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Profile {
+    /// A plain table of x, z and slope.
+    Table,
+    /// Corners `[x, z]`, m, that a workbook gave.
+    Corners(Vec<[f64; 2]>),
+    /// A measured file, of which this channel holds the heights; none where the file has but one.
+    Measured(Option<String>),
 }
 
 impl Campaign {

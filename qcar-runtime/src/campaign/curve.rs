@@ -1,9 +1,9 @@
-//! K&C curves and road profiles.
+//! K&C curves.
 
 use std::path::{Path, PathBuf};
 
-use super::contents::{Campaign, Road, Run, Test};
-use super::manifest::{CURVE, DYNAMIC_CURVE, ROAD};
+use super::contents::{Campaign, Run, Test};
+use super::manifest::{CURVE, DYNAMIC_CURVE};
 use super::table::{self, Table};
 use crate::error::{InputError, Place, Problem};
 
@@ -31,19 +31,6 @@ pub struct DynamicCurve {
     pub velocity: Vec<f64>,
     /// N.
     pub force: Vec<f64>,
-}
-
-/// A road profile as sampled. It goes on flat beyond its ends.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoadSamples {
-    /// Where it was read, to be named in errors.
-    pub file: PathBuf,
-    /// m, increasing.
-    pub x: Vec<f64>,
-    /// m.
-    pub z: Vec<f64>,
-    /// Of the segment to the right of each point.
-    pub slope: Vec<f64>,
 }
 
 impl Campaign {
@@ -100,48 +87,6 @@ impl Campaign {
             force,
         })
     }
-
-    /// Reads a road profile.
-    ///
-    /// # Errors
-    /// Where its file holds anything but finite numbers, or `x` does not increase.
-    pub fn road(&self, road: &Road) -> Result<RoadSamples, InputError> {
-        let file = self.folder.join(&road.file);
-        if let Some(corners) = &road.corners {
-            return between(file, &road.name, corners);
-        }
-        let mut table = read(&file, ROAD)?;
-        let x = increasing(&mut table, "x")?;
-        Ok(RoadSamples {
-            x,
-            z: table.take("z"),
-            slope: table.take("slope"),
-            file,
-        })
-    }
-}
-
-/// A road of straight pieces; two corners above each other are a step.
-fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSamples, InputError> {
-    let backward = corners.windows(2).find(|pair| pair[1][0] < pair[0][0]);
-    let third = corners.windows(3).find(|three| three[0][0] == three[2][0]);
-    if let Some(pair) = backward.or(third) {
-        let place = Place::Name(format!("{name} x"));
-        let found = format!("{} m after {} m", pair[1][0], pair[0][0]);
-        let expected = "a larger value, or the same value twice for a step";
-        return Err(Problem::new(file, place, found, expected, "sort the rows, or correct the value").into());
-    }
-    let (mut x, mut z, mut slope) = (Vec::new(), Vec::new(), Vec::new());
-    for (at, corner) in corners.iter().enumerate() {
-        let next = corners.get(at + 1).copied().unwrap_or([f64::INFINITY, corner[1]]);
-        // The foot of a step is where the slope of the piece before it leads.
-        if next[0] > corner[0] {
-            x.push(corner[0]);
-            z.push(corner[1]);
-            slope.push((next[1] - corner[1]) / (next[0] - corner[0]));
-        }
-    }
-    Ok(RoadSamples { file, x, z, slope })
 }
 
 fn other_kind(file: &Path, expected: &str) -> InputError {
@@ -155,12 +100,12 @@ fn other_kind(file: &Path, expected: &str) -> InputError {
     .into()
 }
 
-fn read(file: &Path, names: &[&str]) -> Result<Table, InputError> {
+pub(super) fn read(file: &Path, names: &[&str]) -> Result<Table, InputError> {
     let table = table::read(file)?;
     InputError::unless_empty(table::check_names(file, &table.names, names, &[]), Some(table))
 }
 
-fn increasing(table: &mut Table, name: &str) -> Result<Vec<f64>, InputError> {
+pub(super) fn increasing(table: &mut Table, name: &str) -> Result<Vec<f64>, InputError> {
     let values = table.take(name);
     match values.windows(2).position(|pair| pair[1] <= pair[0]) {
         None => Ok(values),

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use super::contents::{Campaign, Channel, Parameter, Road, RoleNames, Test, unit_of_fact};
+use super::contents::{Campaign, Channel, Parameter, Profile, Road, RoleNames, Test, unit_of_fact};
 use super::fields::{Document, Section};
 use super::reading::Recorded;
 use super::recorded::{self, Files};
 use super::table;
 use super::unit::Declared;
 use crate::error::{InputError, Place, Problem};
-use runs::{Known, run};
+use runs::{Known, is_table, run};
 use sensors::sensors;
 
 // What its workbook adds.
@@ -193,12 +193,21 @@ fn parameter(name: String, section: &Section<'_>) -> Option<Parameter> {
 }
 
 fn road(section: &Section<'_>) -> Option<Road> {
-    let (name, file) = (section.text("name"), section.text("file"));
+    let (name, file, source) = (
+        section.text("name"),
+        section.text("file"),
+        section.optional_text("source"),
+    );
     section.finish();
+    let file = file?;
+    let profile = match is_table(&file) && source.is_none() {
+        true => Profile::Table,
+        false => Profile::Measured(source),
+    };
     Some(Road {
         name: name?,
-        file: file?,
-        corners: None,
+        file,
+        profile,
     })
 }
 
@@ -273,7 +282,7 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
-    let roads = campaign.roads.iter().filter(|road| road.corners.is_none());
+    let roads = campaign.roads.iter().filter(|road| road.profile == Profile::Table);
     runs.chain(roads.map(|road| (road.file.as_str(), ROAD, &[][..])))
         .collect()
 }

@@ -6,12 +6,13 @@ use super::contents::{Campaign, Run, Tap};
 use super::reading::{Missing, Recorded};
 use crate::error::{InputError, Place, Problem};
 use channel::Channel;
-use files::problem;
 use together::Together;
 use window::Span;
 
 // Each file read once.
 mod files;
+// Samples that come unevenly.
+mod uneven;
 // Samples that come evenly.
 mod even;
 // When a run begins and ends.
@@ -23,7 +24,7 @@ mod channel;
 // All channels of a run at one rate.
 mod together;
 
-pub(super) use files::Files;
+pub(super) use files::{Files, problem, recording};
 
 impl Campaign {
     /// What was read of a run, `None` where its file is a plain table.

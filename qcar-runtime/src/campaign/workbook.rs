@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use qcar_signals::signal::{Recording, Signal};
 
-use super::contents::{Road, Role, Run, Tap, Test, Window};
+use super::contents::{Profile, Road, Role, Run, Tap, Test, Window};
 use super::recorded::Files;
 use super::unit::Declared;
 use crate::error::{InputError, Place};
@@ -181,7 +181,7 @@ fn roads(cells: &mut Cells<'_>, recording: &Recording, file: &str) -> Vec<Road> 
                     roads.push(Road {
                         name: name.into(),
                         file: file.into(),
-                        corners: Some(corners.map(|(x, z)| [of_x.si(*x), of_z.si(*z)]).collect()),
+                        profile: Profile::Corners(corners.map(|(x, z)| [of_x.si(*x), of_z.si(*z)]).collect()),
                     });
                 }
             }

@@ -20,31 +20,56 @@ pub struct Course {
     pub obstacle: bool,
 }
 
-/// Of the random road, s: enough for ten periods of a body on its springs.
-const DURATION: f64 = 8.0;
+/// Of the random road, s, where nobody says how long: enough for ten periods of a body on its springs.
+pub const DURATION: f64 = 8.0;
 const SAMPLE_RATE: f64 = 1000.0;
 /// Of the random road, m: it is level until the tyre is on it.
 const SPACING: f64 = 0.03;
+/// The seed of a random road of which nobody gives one.
+pub const SEED: u64 = 1;
 
 impl Course {
-    /// A random road of ISO 8608, always the same of a class, at a speed (m/s); with a name such as `iso_C_60kmh`.
+    /// A random road of ISO 8608 at a speed (m/s) for a duration (s); with a name such as `iso_C_60kmh`, or `iso_C7_60kmh` of seed 7.
     ///
     /// # Errors
     /// A speed that is too low for the road to rise from level.
-    pub fn random(class: Class, speed: f64) -> Result<Self, RoadError> {
-        let length = speed * DURATION + 1.0;
+    pub fn random(class: Class, seed: u64, speed: f64, duration: f64) -> Result<Self, RoadError> {
         let random = Random {
             class,
-            seed: 1,
-            length,
+            seed,
+            length: speed * duration + 1.0,
             spacing: SPACING,
         };
+        let number = if seed == SEED { String::new() } else { seed.to_string() };
         Ok(Self {
-            name: format!("iso_{class:?}_{:.0}kmh", 3.6 * speed),
+            name: format!("iso_{class:?}{number}_{:.0}kmh", 3.6 * speed),
             road: Road::from_random(&random)?,
             speed,
             sample_rate: SAMPLE_RATE,
-            samples: (DURATION * SAMPLE_RATE) as usize,
+            samples: (duration * SAMPLE_RATE) as usize,
+            obstacle: false,
+        })
+    }
+
+    /// All of a road from its first point on at a speed (m/s), or for a duration (s) that ends no later; the speed joins the name,
+    /// as in `belgian_50kmh`.
+    ///
+    /// # Errors
+    /// A road that ends before the duration does.
+    pub fn along(name: &str, road: Road, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
+        let [first, last] = road.extent();
+        let whole = (last - first) / speed;
+        let duration = duration.unwrap_or(whole);
+        if duration > whole {
+            let needed = first + speed * duration;
+            return Err(RoadError::TooShort { end: last, needed });
+        }
+        Ok(Self {
+            name: format!("{name}_{:.0}kmh", 3.6 * speed),
+            road: road.beginning_at_zero(),
+            speed,
+            sample_rate: SAMPLE_RATE,
+            samples: (duration * SAMPLE_RATE) as usize,
             obstacle: false,
         })
     }

@@ -1,6 +1,11 @@
-//! MAT-files of version 5, written: what MATLAB, Octave and SciPy load. Nothing is packed.
+//! MAT-files, written: of version 5 what MATLAB, Octave and SciPy load, of version 7.3 what MATLAB and programs for HDF5 do.
+//! Nothing is packed.
 //!
-//! Source: "MAT-File Format" of The MathWorks.
+//! Source of version 5: "MAT-File Format" of The MathWorks.
+
+mod v73;
+
+pub use v73::v73;
 
 use super::{HEADER, VERSION};
 

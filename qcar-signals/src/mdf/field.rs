@@ -94,7 +94,7 @@ impl Field {
             invalid,
         } = *self
         else {
-            return (0..records.count).map(|at| at as f64).collect();
+            return (records.first..).take(records.count).map(|at| at as f64).collect();
         };
         if records.count == 0 {
             return Vec::new();

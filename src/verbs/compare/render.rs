@@ -9,7 +9,7 @@ use super::gather::Comparison;
 use super::modes::Pair;
 use super::moved::Parameter;
 use super::ratios::Largest;
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
 /// What the terminal gets.
@@ -32,7 +32,7 @@ pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> S
         gradients(of),
         cleat("cleat_change_%", Some(&result.cleat.summary)),
         cleat("measured_change_%", result.cleat.measured.as_ref()),
-        of.notices.iter().map(|notice| format!("note: {notice}\n")).collect(),
+        noted(&of.notices),
     ];
     for section in sections.iter().filter(|section| !section.is_empty()) {
         let _ = write!(out, "\n{section}");

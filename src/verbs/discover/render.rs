@@ -18,7 +18,7 @@ use super::places::{self, Missing};
 use crate::effects;
 use crate::json::{self, Ordered};
 use crate::left::{BeforeAfter, Left, channel, left};
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
 /// The answer as `docs/json.md` describes it.
@@ -298,7 +298,7 @@ fn offsets_table(of: &Explanation) -> String {
 
 pub(super) fn text(of: &Answer) -> String {
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
-    let mut out = format!("{}: {}\n\n", of.campaign, sentence(of));
+    let mut out = format!("{}: {}\n{}\n", of.campaign, sentence(of), noted(&of.evidence.notices));
     let mut gaps = Table::new(["gap_over_uncertainty", "before", "after"]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),

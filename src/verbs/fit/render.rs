@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::Fitted;
 use crate::json::{self, Ordered};
-use crate::table::{Table, number, or_dash};
+use crate::table::{Table, noted, number, or_dash};
 use crate::units;
 
 /// Parameters by name, channels run by run.
@@ -89,7 +89,7 @@ fn summary(of: &Fitted) -> String {
         fit.starts,
         fit.evaluations,
     );
-    out.extend(of.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
+    out += &noted(&of.campaign.notices);
     out
 }
 

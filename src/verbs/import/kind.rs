@@ -1,5 +1,7 @@
 //! Which kind of run a file is.
 
+use std::ops::Range;
+
 use qcar_runtime::campaign::Quantity;
 use qcar_signals::si::in_si;
 use qcar_signals::signal::{Recording, Signal, TimeBase};
@@ -7,7 +9,7 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::Measured;
 use super::guess::quantity_of;
 use super::sensors::Sensors;
-use super::swept::{Swept, swept};
+use super::swept::{Swept, parts, swept};
 use crate::table::number;
 
 /// Significant digits of what is proposed.
@@ -21,6 +23,16 @@ pub(super) struct Proposed {
     kind: Kind,
     /// Hz, the highest among its sensors.
     rate: Option<f64>,
+    /// Of a recording with several runs.
+    part: Option<Part>,
+}
+
+/// A part of a recording, which is a run of its own.
+struct Part {
+    name: String,
+    /// s, on the clock of the recording.
+    from: f64,
+    to: f64,
 }
 
 enum Kind {
@@ -29,19 +41,32 @@ enum Kind {
     /// Of a K&C rig: the names of the displacement and of the force.
     Curve(String, String),
     TimeHistory,
+    /// A part between sweeps in which the pad does something else: no run.
+    Other,
+}
+
+impl Part {
+    fn said(&self) -> String {
+        format!("from {} to {} s", self.from, self.to)
+    }
 }
 
 impl Proposed {
     /// In words.
     pub fn said(&self) -> String {
+        let when = self
+            .part
+            .as_ref()
+            .map_or_else(String::new, |part| format!(", {}", part.said()));
         match &self.kind {
             Kind::Sweep(own) => format!(
-                "a {} sweep from {} to {} Hz at {} m/s",
+                "a {} sweep from {} to {} Hz at {} m/s{when}",
                 if own.logarithmic { "logarithmic" } else { "linear" },
                 number(own.start, DIGITS),
                 number(own.end, DIGITS),
-                number(own.peak_velocity, DIGITS)
+                number(own.peak_velocity, DIGITS),
             ),
+            Kind::Other => format!("no run{when}: the pad moves and does not sweep"),
             Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),
             Kind::Curve(displacement, force) => format!("a K&C curve, `{force}` over `{displacement}`"),
             Kind::TimeHistory => "a time history".into(),
@@ -49,13 +74,33 @@ impl Proposed {
     }
 }
 
-/// The kind of run that a file holds.
-pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
+/// The runs that a file holds: of a recording with several sweeps each of them, else one of all of it.
+pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
     let of = |drives: bool| {
         let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
         known.filter_map(|sensor| Some((sensor, file.recording.find(&sensor.source).ok()?)))
     };
+    let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
+    let rate = signals
+        .filter_map(|signal| signal.time.rate())
+        .reduce(f64::max)
+        .map(whole);
+    let proposed = |kind: Kind, part: Option<Part>| Proposed {
+        file: file.seen.clone(),
+        kind,
+        rate,
+        part,
+    };
     let pad = of(true).next();
+    let parts = pad.map_or_else(Vec::new, |(sensor, signal)| sweeps(signal, sensor.guess.quantity));
+    if parts.iter().filter(|(swept, _)| swept.is_some()).count() > 1 {
+        let named = parts.into_iter().enumerate();
+        let one = |(at, (swept, (from, to))): (usize, (Option<Swept>, (f64, f64)))| {
+            let name = format!("{} part {}", file.seen, at + 1);
+            proposed(swept.map_or(Kind::Other, Kind::Sweep), Some(Part { name, from, to }))
+        };
+        return named.map(one).collect();
+    }
     let kind = match pad {
         Some((sensor, signal)) => {
             let rate = signal.time.rate();
@@ -65,15 +110,25 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Proposed {
         None if of(false).any(|(_, signal)| is_impact(&signal.samples)) => Kind::Cleat,
         None => curve(&file.recording).unwrap_or(Kind::TimeHistory),
     };
-    let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
-    Proposed {
-        file: file.seen.clone(),
-        kind,
-        rate: signals
-            .filter_map(|signal| signal.time.rate())
-            .reduce(f64::max)
-            .map(whole),
-    }
+    vec![proposed(kind, None)]
+}
+
+/// The parts in which a pad moves, each with its sweep, if it is one, and the time from which and to which it lasts, s.
+fn sweeps(signal: &Signal, quantity: Quantity) -> Vec<(Option<Swept>, (f64, f64))> {
+    let (Some(rate), Some(start)) = (signal.time.rate(), signal.time.start()) else {
+        return Vec::new();
+    };
+    let samples = in_units(signal);
+    let tenth = |sample: usize, round: fn(f64) -> f64| round(10.0 * (start + sample as f64 / rate)) / 10.0;
+    let end = start + samples.len().saturating_sub(1) as f64 / rate;
+    let one = |part: Range<usize>| {
+        let span = (
+            tenth(part.start, f64::floor).max(start),
+            tenth(part.end, f64::ceil).min(end),
+        );
+        (swept(&samples[part], rate, quantity), span)
+    };
+    parts(&samples, rate, quantity).into_iter().map(one).collect()
 }
 
 /// A file without times that has one displacement and one force.
@@ -123,18 +178,32 @@ fn is_impact(samples: &[f64]) -> bool {
 }
 
 /// The `[[run]]` sections. The last sweep judges the fit of the others.
-pub(super) fn sections(runs: &[Proposed]) -> String {
-    let is_record = |run: &&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
+pub(super) fn sections(runs: &[&Proposed]) -> String {
+    let is_record = |run: &&&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
     let sweeps = runs.iter().filter(is_record).count();
     let last = runs.iter().rposition(|run| is_record(&run));
     let mut text = "\n# The runs. A part of a recording is a run of its own: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
     for (at, run) in runs.iter().enumerate() {
+        if let (Kind::Other, Some(part)) = (&run.kind, &run.part) {
+            text += &format!(
+                "\n# {:?} {}: the pad moves and does not sweep.\n",
+                run.file,
+                part.said()
+            );
+            continue;
+        }
         let judges = matches!(run.kind, Kind::Cleat) || (sweeps > 1 && last == Some(at));
         let role = match judges {
             true => "\"held_out\" # it judges the fit",
             false => "\"fit\" # parameters are fitted to it",
         };
         text += &format!("\n[[run]]\nfile = {:?}\nrole = {role}\n{}", run.file, keys(&run.kind));
+        text += &run.part.as_ref().map_or_else(String::new, |part| {
+            format!(
+                "name = {:?}\nfrom = {:?} # s\nto = {:?}\n",
+                part.name, part.from, part.to
+            )
+        });
         text += &match run.rate {
             _ if matches!(run.kind, Kind::Curve(..)) => String::new(),
             Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
@@ -168,5 +237,6 @@ fn keys(kind: &Kind) -> String {
         Kind::TimeHistory => {
             "kind = \"time_history\"\nband_limited = true # false where the inputs are held between samples\n".into()
         }
+        Kind::Other => String::new(),
     }
 }

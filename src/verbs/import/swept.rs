@@ -1,5 +1,7 @@
 //! What a sine sweep does, from the signal of its pad.
 
+use std::ops::Range;
+
 use qcar_runtime::campaign::Quantity;
 
 /// A sine whose frequency rises, at a velocity that stays.
@@ -35,6 +37,32 @@ struct Half {
     time: f64,
     frequency: f64,
     velocity: f64,
+}
+
+/// What of a record is looked at together for whether the pad rests, s.
+const BLOCK: f64 = 0.5;
+/// A pad rests where its velocity is below this share of its largest.
+const REST: f64 = 0.1;
+/// Blocks that a rest between two parts of a record has at least.
+const REST_BLOCKS: usize = 2;
+
+/// The parts of a record in which the pad moves, each with the rest around it up to a block, or all of it where there is no rest.
+pub(super) fn parts(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Range<usize>> {
+    let length = ((BLOCK * rate) as usize).min(samples.len()).max(1);
+    let velocity = velocity(samples, rate, quantity);
+    let largest = |block: &[f64]| block.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let least = REST * largest(&velocity);
+    let moving: Vec<usize> = (0..)
+        .zip(velocity.chunks(length))
+        .filter(|(_, own)| largest(own) > least)
+        .map(|(at, _)| at)
+        .collect();
+    let parts = moving.chunk_by(|one, next| next - one <= REST_BLOCKS);
+    let around = |part: &[usize]| {
+        let (first, last) = (part[0], part[part.len() - 1]);
+        first.saturating_sub(1) * length..((last + 2) * length).min(samples.len())
+    };
+    parts.map(around).collect()
 }
 
 /// What the samples of a pad sweep over, if they do.
@@ -175,7 +203,7 @@ mod tests {
 
     use qcar_runtime::campaign::Quantity;
 
-    use super::swept;
+    use super::{parts, swept};
 
     /// Accelerations of a sweep of 25 mm/s from 0.5 to 30 Hz in 40 s.
     fn sweep(logarithmic: bool) -> Vec<f64> {
@@ -209,6 +237,24 @@ mod tests {
                 "{found:?}"
             );
         }
+    }
+
+    #[test]
+    fn sweeps_with_a_rest_between_are_parts() {
+        let rest = |seconds: usize| (0..1000 * seconds).map(|k| 1e-3 * (k as f64).sin());
+        let one = sweep(true);
+        let loud: Vec<f64> = one.iter().map(|value| 4.0 * value).collect();
+        let all: Vec<f64> = rest(3).chain(one).chain(rest(2)).chain(loud).chain(rest(1)).collect();
+        let found = parts(&all, 1000.0, Quantity::Acceleration);
+        let near = |at: usize, expected: usize| at.abs_diff(expected) <= 1000;
+        assert_eq!(found.len(), 2, "{found:?}");
+        assert!(near(found[0].start, 3000) && near(found[0].end, 43_000), "{found:?}");
+        assert!(near(found[1].start, 45_000) && near(found[1].end, 85_000), "{found:?}");
+        let levels: Vec<f64> = found
+            .into_iter()
+            .map(|part| swept(&all[part], 1000.0, Quantity::Acceleration).unwrap().peak_velocity)
+            .collect();
+        assert_eq!(levels, [0.025, 0.1]);
     }
 
     #[test]

@@ -3,13 +3,13 @@
 use std::fmt::Write;
 
 use super::gather::{MetricResult, Sensitivity};
-use crate::table::{Table, counted, number};
+use crate::table::{Table, counted, noted, number};
 use crate::units;
 
 /// For people.
 pub(super) fn text(of: &Sensitivity) -> String {
     let mut out = format!("{}: {}\n", of.subject, runs(of));
-    out.extend(of.notices.iter().map(|notice| format!("note: {notice}\n")));
+    out += &noted(&of.notices);
     if of.metrics.is_empty() {
         return out + "It has no metric that could be measured on these runs.\n";
     }

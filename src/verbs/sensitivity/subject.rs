@@ -2,18 +2,17 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::str::FromStr;
 
-use qcar_runtime::campaign::{Campaign, Declared, Role, RoleNames, Test};
+use qcar_runtime::campaign::{Campaign, Role, RoleNames, Test};
 use qcar_runtime::metric::{Course, Ground};
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::road::Class;
 use qcar_runtime::simulate::{Cleat, tyre_of};
 use qcar_runtime::tyre::Tyre;
 
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, Beside, Setting, out_of_range};
+use crate::roads::Asked;
 use crate::verbs::fit::{self, Choices};
 
 /// A model with values on its tyre.
@@ -48,43 +47,6 @@ pub(crate) struct Errors {
     pub correlations: BTreeMap<(String, String), f64>,
 }
 
-/// A random road of ISO 8608 and the speed at which it is driven over.
-#[derive(Clone, Debug)]
-pub(crate) struct RandomRoad(Course);
-
-/// The classes, in their order.
-const CLASSES: [(&str, Class); 8] = [
-    ("A", Class::A),
-    ("B", Class::B),
-    ("C", Class::C),
-    ("D", Class::D),
-    ("E", Class::E),
-    ("F", Class::F),
-    ("G", Class::G),
-    ("H", Class::H),
-];
-
-/// Of a random road, m/s: it is as long as what is driven, and faster than any car.
-const FASTEST: f64 = 100.0;
-
-impl FromStr for RandomRoad {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let expected = || format!("expected a class of ISO 8608 and a speed, such as C@60km/h, found `{text}`");
-        let (class, speed) = text.split_once('@').ok_or_else(expected)?;
-        let class = CLASSES.iter().find(|(name, _)| *name == class.trim());
-        let speed = Declared::quantity(speed).filter(|(speed, unit)| unit.is_like("m/s") && *speed > 0.0);
-        let ((_, class), (speed, _)) = class.zip(speed).ok_or_else(expected)?;
-        if speed > FASTEST {
-            return Err(format!("expected a speed of at most {FASTEST} m/s, found `{text}`"));
-        }
-        Course::random(*class, speed)
-            .map(RandomRoad)
-            .map_err(|error| error.to_string())
-    }
-}
-
 /// What a user gives beside the subject.
 pub(crate) struct Beneath<'a> {
     /// Start values, facts of the vehicle and cleat runs.
@@ -93,8 +55,8 @@ pub(crate) struct Beneath<'a> {
     pub params: Option<&'a Path>,
     /// And above those.
     pub set: &'a [Setting],
-    /// Random roads beside the cleats.
-    pub roads: &'a [RandomRoad],
+    /// Roads beside the cleats.
+    pub roads: &'a [Asked],
 }
 
 impl Subject {
@@ -105,12 +67,14 @@ impl Subject {
     pub fn of(text: &str, beneath: &Beneath<'_>) -> Result<Self, Failure> {
         let mut subject = Self::over_cleats(text, beneath)?;
         if subject.tyre.is_none() && !beneath.roads.is_empty() {
-            let found = "a random road, and no tyre that could roll over it";
+            let found = "a road, and no tyre that could roll over it";
             let expected = "r_tire, static_tire_def and static_tire_load";
             let remedy = "give a campaign, or parameter values with [vehicle], or leave the road out";
             return Err(flag(&subject.name, found, expected, remedy).into());
         }
-        subject.courses.extend(beneath.roads.iter().map(|road| road.0.clone()));
+        for road in beneath.roads {
+            subject.courses.push(road.course()?);
+        }
         Ok(subject)
     }
 

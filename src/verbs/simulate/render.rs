@@ -17,7 +17,7 @@ use super::records::{Record, RecordError};
 use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
-use crate::table::{Table, number};
+use crate::table::{Table, noted, number};
 use crate::units;
 
 /// What peaks and after-shakes are in.
@@ -29,6 +29,8 @@ pub(super) struct Result<'a> {
     pub campaign: &'a str,
     /// Name.
     pub model: &'a str,
+    /// What samples and the manifest of the campaign show to be odd.
+    pub notices: &'a [String],
     /// Parameters that still have their start values.
     pub at_start: Vec<String>,
     /// Runs over cleats, where there are any.
@@ -46,7 +48,7 @@ struct Json<'a> {
     runs: &'a [Difference],
     summary: Option<&'a BTreeMap<String, Sizes>>,
     records: Vec<&'a RecordError>,
-    notices: &'a [String],
+    notices: Vec<&'a String>,
 }
 
 impl Result<'_> {
@@ -58,7 +60,11 @@ impl Result<'_> {
             runs: self.cleats.map_or(&[], |cleats| &cleats.runs),
             summary: self.cleats.map(|cleats| &cleats.summary),
             records: self.errors().collect(),
-            notices: self.cleats.map_or(&[], |cleats| &cleats.notices),
+            notices: self
+                .notices
+                .iter()
+                .chain(self.cleats.map_or(&[][..], |cleats| &cleats.notices))
+                .collect(),
         })
     }
 
@@ -66,7 +72,11 @@ impl Result<'_> {
         let cleats = self.cleats.map(text);
         let records = (!self.records.is_empty()).then(|| self.records_text());
         let parts: Vec<String> = cleats.into_iter().chain(records).collect();
-        format!("{}{}", parts.join("\n"), note(&self.at_start))
+        let noted = match noted(self.notices) {
+            none if none.is_empty() => none,
+            notes => format!("\n{notes}"),
+        };
+        format!("{}{noted}{}", parts.join("\n"), note(&self.at_start))
     }
 
     /// A table of the cleats, one of the records, and an empty line between them.
@@ -284,7 +294,7 @@ pub(crate) fn histories(about: &About, cleats: &[Cleat], rides: &[Ride]) -> Vec<
         .collect()
 }
 
-fn history(about: &About, name: &str, ride: &Ride) -> History {
+pub(super) fn history(about: &About, name: &str, ride: &Ride) -> History {
     let channel = |name: &str, unit: &str, samples: &Vec<f64>| Channel {
         name: name.into(),
         unit: unit.into(),

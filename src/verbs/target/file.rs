@@ -10,7 +10,7 @@ use toml::Spanned;
 
 use crate::catalogue;
 use crate::files::read_text;
-use crate::verbs::sensitivity::subject::RandomRoad;
+use crate::roads;
 
 /// The file as it is written.
 #[derive(Deserialize)]
@@ -22,7 +22,7 @@ pub(super) struct File {
     pub campaign: Option<PathBuf>,
     /// Values above those.
     pub params: Option<PathBuf>,
-    /// Random roads beside the cleats.
+    /// Roads beside the cleats.
     #[serde(default)]
     pub roads: Vec<Spanned<String>>,
     #[serde(default, rename = "target")]
@@ -204,21 +204,19 @@ impl Read {
         }
     }
 
-    /// The random roads.
+    /// The roads, whose files are relative to the folder of this one.
     ///
     /// # Errors
     /// Every one that is none.
-    pub fn roads(&self) -> Result<Vec<RandomRoad>, InputError> {
+    pub fn roads(&self) -> Result<Vec<roads::Asked>, InputError> {
         let (mut roads, mut problems) = (Vec::new(), Vec::new());
         for own in &self.file.roads {
-            match own.get_ref().parse() {
-                Ok(road) => roads.push(road),
+            match own.get_ref().parse::<roads::Asked>() {
+                Ok(road) => roads.push(road.beside(self.path.parent().unwrap_or(Path::new("")))),
                 Err(_) => {
-                    let (found, expected) = (
-                        format!("`{}`", own.get_ref()),
-                        "a class of ISO 8608 and a speed of at most 100 m/s",
-                    );
-                    problems.push(self.problem(own, "roads", &found, expected, "write it as \"C@60km/h\""));
+                    let found = format!("`{}`", own.get_ref());
+                    let remedy = "write it as \"C@60km/h\"";
+                    problems.push(self.problem(own, "roads", &found, roads::EXPECTED, remedy));
                 }
             }
         }

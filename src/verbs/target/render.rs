@@ -8,13 +8,13 @@ use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
-use crate::table::{Table, counted, number, or_dash};
+use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
 
 /// For people.
 pub(super) fn text(of: &Answer) -> String {
     let mut out = format!("{} ({})\n", of.subject, of.model);
-    out.extend(of.notices.iter().map(|notice| format!("note: {notice}\n")));
+    out += &noted(&of.notices);
     out += "\n";
     out += &verdict(of);
     out += "\n";

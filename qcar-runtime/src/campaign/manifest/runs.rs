@@ -71,7 +71,7 @@ fn without(section: &Section<'_>, known: &Known<'_>) -> Vec<String> {
 }
 
 /// Whether a file may be a plain table.
-fn is_table(file: &str) -> bool {
+pub(super) fn is_table(file: &str) -> bool {
     file.ends_with(".csv") || file.ends_with(".csv.gz")
 }
 

@@ -1,5 +1,7 @@
 //! What a tap makes of a channel.
 
+use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 
 use qcar_signals::resample::reach;
@@ -8,18 +10,23 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::super::contents::Tap;
 use super::even::{self, Even};
 use super::files::problem;
-use super::values::values;
+use super::uneven::laid;
+use super::values::Scaling;
 use super::window::{Span, clock};
 use crate::error::{InputError, Place, Problem};
 
-/// A channel with its values in SI.
+/// A channel whose values are in SI. They are computed where they are wanted, since a recording may be much longer than a run.
 pub(super) struct Channel<'a> {
     pub tap: &'a Tap,
     signal: &'a Signal,
     base: TimeBase,
-    values: Vec<f64>,
+    /// As the file has them; of samples that came unevenly, on even instants.
+    samples: Cow<'a, [f64]>,
+    scaling: Scaling,
     /// Hz.
     pub rate: f64,
+    /// The shortest and the longest step of samples that came unevenly, s.
+    pub uneven: Option<(f64, f64)>,
 }
 
 impl<'a> Channel<'a> {
@@ -42,32 +49,63 @@ impl<'a> Channel<'a> {
             let place = Place::Channel(signal.full_name(), None);
             return Err(Problem::new(file, place, "no times", expected, remedy).into());
         };
+        let scaling = Scaling::of(file, signal, &base, tap)?;
+        let (base, samples, uneven) = match laid(&base, &signal.samples, rate) {
+            Some(laid) => (laid.base, Cow::Owned(laid.values), Some(laid.steps)),
+            None => (base, Cow::Borrowed(signal.samples.as_slice()), None),
+        };
         Ok(Channel {
             tap,
             signal,
-            values: values(file, signal, &base, tap)?,
             base,
+            samples,
+            scaling,
             rate,
+            uneven,
         })
     }
 
     /// A column of a table without times is as long as it is filled.
     pub fn up_to_its_last_value(mut self) -> Self {
         if self.signal.time == TimeBase::Unknown {
-            let last = self.values.iter().rposition(|value| value.is_finite());
-            self.values.truncate(last.map_or(0, |last| last + 1));
+            let last = self.signal.samples.iter().rposition(|value| value.is_finite());
+            self.samples = Cow::Borrowed(&self.signal.samples[..last.map_or(0, |last| last + 1)]);
         }
         self
     }
 
+    /// The values of these samples, in SI.
+    pub fn values(&self, of: Range<usize>) -> Vec<f64> {
+        let samples = self.samples[of].iter();
+        samples.map(|sample| self.scaling.value(*sample)).collect()
+    }
+
     /// Its samples in the window, with what a filter to `rate` looks at beside it.
-    pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even<'_>, InputError> {
+    pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even, InputError> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;
-        let margin = margin.min(self.values.len() as f64) as usize;
-        Even::new(&self.values, &self.base, self.rate, span.ends(), margin).map_err(|broken| {
+        let margin = margin.min(self.samples.len() as f64) as usize;
+        let even = Even::new(&self.samples, &self.base, self.rate, span.ends(), margin).map_err(|broken| {
             let place = Place::Channel(self.signal.full_name(), broken.at);
-            Problem::new(file, place, broken.found, broken.expected, broken.remedy).into()
-        })
+            Problem::new(file, place, broken.found, broken.expected, broken.remedy)
+        })?;
+        let mut scaled = self.samples[even.samples.clone()]
+            .iter()
+            .map(|sample| self.scaling.value(*sample));
+        if scaled.all(f64::is_finite) {
+            return Ok(even);
+        }
+        let (expected, remedy) = (
+            "values that a number can hold",
+            "correct the `scale` or `unit` of the channel",
+        );
+        Err(Problem::new(
+            file,
+            self.place(),
+            "values without bounds once they are scaled",
+            expected,
+            remedy,
+        )
+        .into())
     }
 
     /// To be named in errors.

@@ -6,6 +6,7 @@ use qcar_signals::resample::Grid;
 use qcar_signals::signal::TimeBase;
 
 use super::super::steps;
+use super::uneven::Pace;
 
 /// Relative distance from whole hertz within which a clock is meant to have them.
 const WHOLE: f64 = 1e-6;
@@ -13,12 +14,12 @@ const WHOLE: f64 = 1e-6;
 const SLACK: f64 = 1e-3;
 
 /// A part of a channel without any gap.
-pub(super) struct Even<'a> {
-    /// What lies in the window, and beside it what the filter may look at.
-    pub samples: &'a [f64],
+pub(super) struct Even {
+    /// The samples that lie in the window, and beside it those that the filter may look at.
+    pub samples: Range<usize>,
     /// Their instants.
     pub grid: Grid,
-    /// Those in the window.
+    /// Those of them in the window, counted from the first.
     pub inside: Range<usize>,
 }
 
@@ -45,10 +46,7 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
     let own = match base {
         TimeBase::Even { step, .. } => 1.0 / step,
         TimeBase::Times(times) if times.len() > 1 => {
-            let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
-            let typical = 1.0 / steps::median(&steps);
-            let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
-            ones.len() as f64 / ones.iter().sum::<f64>()
+            Pace::of(times).map_or_else(|| usual_rate(times), |pace| pace.rate)
         }
         TimeBase::Times(_) | TimeBase::Unknown => return declared,
     };
@@ -60,15 +58,23 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
         .filter(|rate| rate.is_finite() && *rate > 0.0)
 }
 
-impl<'a> Even<'a> {
+/// Of the steps that are one sample long.
+fn usual_rate(times: &[f64]) -> f64 {
+    let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
+    let typical = 1.0 / steps::median(&steps);
+    let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
+    ones.len() as f64 / ones.iter().sum::<f64>()
+}
+
+impl Even {
     /// The samples from `from` to `to` (s; the whole channel without), with up to `margin` more at each side.
     pub fn new(
-        samples: &'a [f64],
+        samples: &[f64],
         base: &TimeBase,
         rate: f64,
         (from, to): (Option<f64>, Option<f64>),
         margin: usize,
-    ) -> Result<Even<'a>, Broken> {
+    ) -> Result<Even, Broken> {
         let range = inside(samples.len(), base, rate, (from, to))?;
         let broken = |at: usize| is_gap(base, at, rate) || !samples[at].is_finite();
         if let Some(at) = range
@@ -91,7 +97,7 @@ impl<'a> Even<'a> {
             count: before + range.len() + after,
         };
         Ok(Even {
-            samples: &samples[first - before..=last + after],
+            samples: first - before..last + after + 1,
             grid,
             inside: before..before + range.len(),
         })
@@ -107,14 +113,13 @@ impl<'a> Even<'a> {
         self.grid.time(self.inside.end - 1)
     }
 
-    /// The samples in the window and their instants.
-    pub fn in_window(&self) -> (&[f64], Grid) {
-        let grid = Grid {
+    /// The instants in the window.
+    pub fn in_window(&self) -> Grid {
+        Grid {
             start: self.start(),
             rate: self.grid.rate,
             count: self.inside.len(),
-        };
-        (&self.samples[self.inside.clone()], grid)
+        }
     }
 
     /// The index of the sample that is taken at an instant, if one is.

@@ -1,12 +1,10 @@
-//! Measured files of any format, each read once for all the runs that are parts of it.
+//! Measured files of any format, each read once for all the runs that are parts of it, unless they are very large.
 
 use std::cell::RefCell;
 use std::collections::HashMap;
-use std::io::{self, Read};
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-use flate2::read::MultiGzDecoder;
 use qcar_signals::error::{Fault, Place as Within};
 use qcar_signals::read::recognise;
 use qcar_signals::signal::Recording;
@@ -14,8 +12,8 @@ use qcar_signals::signal::Recording;
 use crate::bounded;
 use crate::error::{InputError, Place, Problem};
 
-/// What gzip packed begins with this.
-const GZIP: &[u8] = b"\x1f\x8b";
+/// Samples that are kept for further runs, half a gigabyte of them; a file with more is forgotten when the next is read.
+const KEPT: usize = 1 << 26;
 
 /// The files of a campaign.
 #[derive(Default)]
@@ -28,19 +26,34 @@ impl Files {
     pub fn get(&self, file: &Path) -> Result<Rc<Recording>, InputError> {
         let known = self.read.borrow().get(file).cloned();
         known.unwrap_or_else(|| {
-            let recording = read(file).map(Rc::new);
+            self.forget_what_is_too_much();
+            let recording = recording(file).map(Rc::new);
             self.read.borrow_mut().insert(file.into(), recording.clone());
             recording
         })
     }
+
+    fn forget_what_is_too_much(&self) {
+        let mut read = self.read.borrow_mut();
+        let samples: usize = read.values().flatten().map(|recording| samples(recording)).sum();
+        if samples > KEPT {
+            read.clear();
+        }
+    }
 }
 
-fn read(file: &Path) -> Result<Recording, InputError> {
-    let bytes = unpacked(file).map_err(|error| {
-        let remedy = match error.kind() {
-            io::ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
-            _ => "correct the path (it is relative to the folder of campaign.toml) or put the file there",
-        };
+fn samples(recording: &Recording) -> usize {
+    recording.signals.iter().map(|signal| signal.samples.len()).sum()
+}
+
+/// The recording in a file.
+///
+/// # Errors
+/// A file that cannot be read.
+pub(in crate::campaign) fn recording(file: &Path) -> Result<Recording, InputError> {
+    let bytes = bounded::measured(file).map_err(|error| {
+        let wrong_path = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+        let remedy = bounded::remedy(&error, wrong_path);
         InputError::from(Problem::new(
             file,
             Place::File,
@@ -52,18 +65,8 @@ fn read(file: &Path) -> Result<Recording, InputError> {
     recognise(&bytes).map_err(|fault| problem(file, &fault).into())
 }
 
-fn unpacked(file: &Path) -> io::Result<Vec<u8>> {
-    let (mut bytes, mut whole) = (Vec::new(), Vec::new());
-    bounded::limited(bounded::open(file)?).read_to_end(&mut bytes)?;
-    if !bytes.starts_with(GZIP) {
-        return Ok(bytes);
-    }
-    bounded::limited(MultiGzDecoder::new(bytes.as_slice())).read_to_end(&mut whole)?;
-    Ok(whole)
-}
-
 /// A fault of a file as the workbench reports it.
-pub(super) fn problem(file: &Path, fault: &Fault) -> Problem {
+pub(in crate::campaign) fn problem(file: &Path, fault: &Fault) -> Problem {
     let place = match (&fault.place, &fault.channel) {
         (Within::File, None) => Place::File,
         (Within::File, Some(channel)) => Place::Channel(channel.clone(), None),

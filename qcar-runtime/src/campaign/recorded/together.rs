@@ -18,7 +18,7 @@ const MOST: f64 = 10.0;
 /// The channels of a run, and the instants that they are brought to.
 pub(super) struct Together<'a> {
     channels: &'a [Channel<'a>],
-    even: Vec<Even<'a>>,
+    even: Vec<Even>,
     pub grid: Grid,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Together<'a> {
     /// Names and samples, all of one length.
     pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
         let both = self.channels.iter().zip(&self.even);
-        both.map(|(channel, even)| (channel.tap.name.clone(), taken(even, self.grid)))
+        both.map(|(channel, even)| (channel.tap.name.clone(), taken(channel, even, self.grid)))
             .collect()
     }
 
@@ -58,17 +58,30 @@ impl<'a> Together<'a> {
         }
         let both = self.channels.iter().zip(&self.even);
         let of = |(channel, even): (&Channel, &Even)| {
-            let (samples, grid) = even.in_window();
-            of_samples(run, (&channel.tap.name, channel.tap.si), samples, grid)
+            let (values, grid) = (channel.values(even.samples.clone()), even.in_window());
+            let values = &values[even.inside.clone()];
+            let mut found = of_samples(run, (&channel.tap.name, channel.tap.si), values, grid);
+            found.extend(channel.uneven.map(|(least, most)| Finding {
+                run: run.name.clone(),
+                channel: channel.tap.name.clone(),
+                span: (grid.start, grid.end()),
+                what: format!(
+                    "samples come unevenly, {:.3} to {:.3} ms apart: between them values are taken on straight lines",
+                    1e3 * least,
+                    1e3 * most
+                ),
+                fatal: false,
+            }));
+            found
         };
         both.flat_map(of).collect()
     }
 }
 
 /// The instants that all channels cover, on samples of the first one that has the rate.
-fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even<'_>], rate: f64) -> Result<Grid, InputError> {
-    let latest = |of: fn(&Even<'_>) -> f64| even.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
-    let earliest = |of: fn(&Even<'_>) -> f64| even.iter().map(of).fold(f64::INFINITY, f64::min);
+fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even], rate: f64) -> Result<Grid, InputError> {
+    let latest = |of: fn(&Even) -> f64| even.iter().map(of).fold(f64::NEG_INFINITY, f64::max);
+    let earliest = |of: fn(&Even) -> f64| even.iter().map(of).fold(f64::INFINITY, f64::min);
     let (start, end) = (latest(|even| even.start()), earliest(|even| even.end()));
     let (first, last) = (earliest(|even| even.start()), latest(|even| even.end()));
     // Channels of several rates begin and end within a sample or two of each other.
@@ -93,11 +106,12 @@ fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even<'_>], rate: f64) -> 
     Ok(Grid { start, rate, count })
 }
 
-/// The samples at the instants of the grid: as they are where they were taken then, else through the filter.
-fn taken(even: &Even<'_>, grid: Grid) -> Vec<f64> {
+/// The values at the instants of the grid: as they are where they were taken then, else through the filter.
+fn taken(channel: &Channel<'_>, even: &Even, grid: Grid) -> Vec<f64> {
+    let values = channel.values(even.samples.clone());
     let as_they_are = even.sample_at(grid.start).filter(|_| even.grid.rate == grid.rate);
-    match as_they_are.and_then(|first| even.samples.get(first..first + grid.count)) {
-        Some(samples) => samples.to_vec(),
-        None => resample(even.samples, even.grid, grid),
+    match as_they_are.and_then(|first| values.get(first..first + grid.count)) {
+        Some(values) => values.to_vec(),
+        None => resample(&values, even.grid, grid),
     }
 }

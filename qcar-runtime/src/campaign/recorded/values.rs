@@ -11,17 +11,61 @@ use super::super::unit::examples;
 use super::even::time;
 use crate::error::{InputError, Place, Problem};
 
-/// The samples that a tap makes of a channel, in SI; what is missing stays not a number.
-pub(super) fn values(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Vec<f64>, InputError> {
-    let si = unit(file, signal, tap)?;
-    let scale = tap.scale.unwrap_or(1.0);
-    let value = |sample: &f64| tap.sign * ((sample * scale + tap.offset) * si.multiply / si.divide);
-    let mut values: Vec<f64> = signal.samples.iter().map(value).collect();
-    if let Some(span) = tap.zero {
-        let zero = mean_of_start(file, signal, base, &values, span)?;
-        values.iter_mut().for_each(|value| *value -= zero);
+/// How the samples of a channel become the values of a tap, in SI; what is missing stays not a number.
+#[derive(Clone, Copy)]
+pub(super) struct Scaling {
+    scale: f64,
+    offset: f64,
+    sign: f64,
+    si: Si,
+    /// What is taken off at last, in SI.
+    zero: f64,
+}
+
+impl Scaling {
+    /// What a tap says, and the file where that says nothing.
+    pub fn of(file: &Path, signal: &Signal, base: &TimeBase, tap: &Tap) -> Result<Self, InputError> {
+        let mut scaling = Scaling {
+            scale: tap.scale.unwrap_or(1.0),
+            offset: tap.offset,
+            sign: tap.sign,
+            si: unit(file, signal, tap)?,
+            zero: 0.0,
+        };
+        if let Some(span) = tap.zero {
+            scaling.zero = scaling.mean_of_start(file, signal, base, span)?;
+        }
+        Ok(scaling)
     }
-    Ok(values)
+
+    /// The value of a sample.
+    pub fn value(&self, sample: f64) -> f64 {
+        let Scaling {
+            scale,
+            offset,
+            sign,
+            si,
+            zero,
+        } = self;
+        sign * ((sample * scale + offset) * si.multiply / si.divide) - zero
+    }
+
+    fn mean_of_start(&self, file: &Path, signal: &Signal, base: &TimeBase, span: f64) -> Result<f64, InputError> {
+        let inside = |k: &usize| time(base, *k) < time(base, 0) + span;
+        let count = (0..signal.samples.len()).take_while(inside).count();
+        let values = signal.samples[..count].iter().map(|sample| self.value(*sample));
+        let valid: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+        if count == signal.samples.len() || valid.is_empty() {
+            let found = format!("{} values in the first {span} s", valid.len());
+            let (expected, remedy) = (
+                "a recording that goes on longer than its zero",
+                "shorten `zero_span`, or leave `zero` out",
+            );
+            let place = Place::Channel(signal.name.clone(), None);
+            return Err(Problem::new(file, place, found, expected, remedy).into());
+        }
+        Ok(valid.iter().sum::<f64>() / valid.len() as f64)
+    }
 }
 
 /// The unit of the scaled values: the declared one, else the file's. Where both are known and differ, somebody is wrong, unless
@@ -58,24 +102,4 @@ fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, InputError> {
 
 fn same_size(a: Si, b: Si) -> bool {
     (a.multiply * b.divide / (a.divide * b.multiply) - 1.0).abs() < 1e-9
-}
-
-fn mean_of_start(file: &Path, signal: &Signal, base: &TimeBase, values: &[f64], span: f64) -> Result<f64, InputError> {
-    let inside = |k: &usize| time(base, *k) < time(base, 0) + span;
-    let count = (0..values.len()).take_while(inside).count();
-    let valid: Vec<f64> = values[..count]
-        .iter()
-        .copied()
-        .filter(|value| value.is_finite())
-        .collect();
-    if count == values.len() || valid.is_empty() {
-        let found = format!("{} values in the first {span} s", valid.len());
-        let (expected, remedy) = (
-            "a recording that goes on longer than its zero",
-            "shorten `zero_span`, or leave `zero` out",
-        );
-        let place = Place::Channel(signal.name.clone(), None);
-        return Err(Problem::new(file, place, found, expected, remedy).into());
-    }
-    Ok(valid.iter().sum::<f64>() / valid.len() as f64)
 }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::Nonlinear;
 use crate::json::{self, Ordered};
 use crate::left;
-use crate::table::{Table, number};
+use crate::table::{Table, noted, number};
 use crate::verbs::fit::render;
 
 /// Residuals of more standard deviations than this are not chance: three of a normal distribution.
@@ -136,7 +136,7 @@ impl Nonlinear {
             out += "note: the residuals are far above their uncertainty, which the standard errors do not account for: the model \
                     lacks something (`qcar discover` looks for it)\n";
         }
-        out.extend(self.campaign.notices.iter().map(|notice| format!("note: {notice}\n")));
+        out += &noted(&self.campaign.notices);
         let mut table = Table::new(["channel", "run", "left_%_of_signal"]);
         for left in self.left() {
             table.row(vec![left.channel, left.kind.into(), number(left.percent, 3)]);

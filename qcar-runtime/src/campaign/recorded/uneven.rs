@@ -1,0 +1,84 @@
+//! Samples that come unevenly, as messages of a bus do, laid on even instants by straight lines.
+
+use qcar_signals::signal::TimeBase;
+
+use super::super::steps;
+
+/// The share of steps of another length than the usual one above which a channel is uneven by its nature, and not a record
+/// with gaps.
+const SHARE: f64 = 0.05;
+/// So many usual steps without a sample are a gap, across which no line is drawn.
+const GAP: f64 = 10.0;
+
+/// The steps of a channel that is uneven by its nature, gaps aside.
+pub(super) struct Pace {
+    /// Steps a second.
+    pub rate: f64,
+    /// The shortest and the longest, s.
+    pub steps: (f64, f64),
+    /// What is longer is a gap, s.
+    gap: f64,
+}
+
+impl Pace {
+    /// Of these times; `None` where they come evenly.
+    pub fn of(times: &[f64]) -> Option<Pace> {
+        let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
+        let usual = steps::median(steps.get(..).filter(|steps| !steps.is_empty())?);
+        let others = steps.iter().filter(|step| !steps::is_one(**step, 1.0 / usual)).count();
+        let inner: Vec<f64> = steps.iter().copied().filter(|step| *step <= GAP * usual).collect();
+        let rate = inner.len() as f64 / inner.iter().sum::<f64>();
+        (rate.is_finite() && others as f64 > SHARE * steps.len() as f64).then(|| Pace {
+            rate,
+            steps: (
+                inner.iter().copied().fold(f64::INFINITY, f64::min),
+                inner.iter().copied().fold(0.0, f64::max),
+            ),
+            gap: GAP * usual,
+        })
+    }
+}
+
+/// Even samples of an uneven channel.
+pub(super) struct Laid {
+    pub base: TimeBase,
+    /// In the unit of the file; not a number within a gap.
+    pub values: Vec<f64>,
+    /// The shortest and the longest step, s, gaps aside.
+    pub steps: (f64, f64),
+}
+
+/// The values of an uneven channel at `rate`, Hz; `None` of a channel that is even or that does not say its times.
+pub(super) fn laid(base: &TimeBase, values: &[f64], rate: f64) -> Option<Laid> {
+    let TimeBase::Times(times) = base else { return None };
+    let pace = Pace::of(times)?;
+    let (&start, &end) = (times.first()?, times.last()?);
+    let count = ((end - start) * rate + 1e-3).floor() as usize + 1;
+    // Far more instants than samples are mostly gaps, and would fill the memory.
+    (count as f64 <= GAP * times.len() as f64).then_some(())?;
+    let mut after = 1;
+    let at = |k: usize| {
+        let instant = start + k as f64 / rate;
+        while after + 1 < times.len() && times[after] < instant {
+            after += 1;
+        }
+        let (from, to) = (times[after - 1], times[after]);
+        let share = if to > from {
+            ((instant - from) / (to - from)).clamp(0.0, 1.0)
+        } else {
+            1.0
+        };
+        match to - from > pace.gap {
+            true => f64::NAN,
+            false => values[after - 1] + share * (values[after] - values[after - 1]),
+        }
+    };
+    Some(Laid {
+        values: (0..count).map(at).collect(),
+        base: TimeBase::Even {
+            start,
+            step: 1.0 / rate,
+        },
+        steps: pace.steps,
+    })
+}

@@ -1,0 +1,211 @@
+//! The text above the data.
+
+use std::collections::HashMap;
+
+use crate::bytes::text;
+use crate::error::{Fault, Place, Read};
+
+/// Of a line of the header; what stands behind is a comment.
+pub(super) const RECORD: usize = 72;
+/// How far rounded numbers of the header may be from each other, as a share of an increment.
+pub(super) const ROUNDED: f64 = 1e-2;
+
+/// The keyword of a section, in capitals; empty where one ends.
+pub(super) fn section(line: &str) -> Option<String> {
+    let word = line.strip_prefix('$')?.split([' ', '\t', '\r', '\n', '!']).next()?;
+    Some(word.to_ascii_uppercase())
+}
+
+/// Parameters of the road, and what the data are.
+pub(super) struct Header {
+    /// Values and lines of parameters, by section and name in capitals.
+    parameters: HashMap<(String, String), (f64, u64)>,
+    /// Lines of the definition of the data, with their numbers.
+    definition: Vec<(u64, String)>,
+    /// The line of each section.
+    sections: HashMap<String, u64>,
+    /// Where the data begin.
+    pub end: usize,
+    /// The line before that.
+    pub lines: u64,
+}
+
+/// Distances of the rows along the reference line, m.
+pub(super) struct Distances {
+    pub start: f64,
+    pub step: f64,
+}
+
+impl Header {
+    pub fn read(bytes: &[u8]) -> Read<Header> {
+        let mut header = Header {
+            parameters: HashMap::new(),
+            definition: Vec::new(),
+            sections: HashMap::new(),
+            end: 0,
+            lines: 0,
+        };
+        let mut current = String::new();
+        for line in bytes.split_inclusive(|&byte| byte == b'\n') {
+            header.end += line.len();
+            header.lines += 1;
+            let line = text(&line[..line.len().min(RECORD)]);
+            if line.starts_with("$$") {
+                return Ok(header);
+            }
+            if let Some(word) = section(&line) {
+                header.sections.entry(word.clone()).or_insert(header.lines);
+                current = word;
+            } else {
+                header.take(&current, &line)?;
+            }
+        }
+        let found = "a header without the line of `$$` that ends it";
+        Err(Fault::cut_off(
+            Place::Line(header.lines),
+            found,
+            "data behind such a line",
+        ))
+    }
+
+    fn take(&mut self, section: &str, line: &str) -> Read<()> {
+        let line = line.split('!').next().unwrap_or_default().trim();
+        if line.is_empty() || line.starts_with('*') {
+            return Ok(());
+        }
+        match section {
+            "KD_DEFINITION" => self.definition.push((self.lines, line.into())),
+            "ROAD_CRG" | "ROAD_CRG_MODS" => {
+                let parsed = line.split_once('=').and_then(|(name, value)| {
+                    Some((name, value.trim().parse::<f64>().ok().filter(|v| v.is_finite())?))
+                });
+                let Some((name, value)) = parsed else {
+                    let found = format!("`{line}`");
+                    return Err(Fault::damaged(
+                        Place::Line(self.lines),
+                        found,
+                        "a name, `=` and a number",
+                    ));
+                };
+                let key = (section.into(), name.trim().to_ascii_uppercase());
+                self.parameters.insert(key, (value, self.lines));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// A parameter of the road with its line.
+    pub fn stated(&self, name: &str) -> Option<(f64, u64)> {
+        self.parameters.get(&("ROAD_CRG".into(), name.into())).copied()
+    }
+
+    /// A parameter of the road.
+    pub fn road(&self, name: &str) -> Option<f64> {
+        Some(self.stated(name)?.0)
+    }
+
+    pub fn road_or_zero(&self, name: &str) -> f64 {
+        self.road(name).unwrap_or(0.0)
+    }
+
+    /// Data of another file, and modifiers that change the profile.
+    pub fn refuse_what_is_elsewhere(&self) -> Read<()> {
+        if let Some(&line) = self.sections.get("ROAD_CRG_FILE") {
+            let remedy = "give that file";
+            return Err(Fault::new(
+                Place::Line(line),
+                "a reference to another file",
+                "a road",
+                remedy,
+            ));
+        }
+        let scales = self.parameters.iter().filter(|((section, name), (value, _))| {
+            section == "ROAD_CRG_MODS" && name.starts_with("SCALE_") && *value != 1.0
+        });
+        match scales.min_by_key(|(_, (_, line))| *line) {
+            None => Ok(()),
+            Some(((_, name), (value, line))) => {
+                let remedy = "save the road with its modifiers applied";
+                Err(Fault::new(
+                    Place::Line(*line),
+                    format!("{name} = {value}"),
+                    "heights as they are",
+                    remedy,
+                ))
+            }
+        }
+    }
+
+    /// Lines of the definition of the data that begin with this, with their numbers, without it.
+    pub fn defined<'a>(&'a self, prefix: &'a str) -> impl Iterator<Item = (u64, &'a str)> {
+        let lines = self.definition.iter();
+        lines.filter_map(move |(line, text)| Some((*line, after(text, prefix)?)))
+    }
+
+    /// Rows that the length of the reference line promises.
+    pub fn promised(&self) -> Read<Option<f64>> {
+        let Distances { start, step } = self.distances()?;
+        let end = self.road("REFERENCE_LINE_END_U").filter(|end| *end > start);
+        Ok(end.map(|end| ((end - start) / step).round() + 1.0))
+    }
+
+    /// What the parameters or the virtual channel `U:reference line u` say, or both of them.
+    pub fn distances(&self) -> Read<Distances> {
+        let (start, step) = ("REFERENCE_LINE_START_U", "REFERENCE_LINE_INCREMENT");
+        let mut shown = self.defined("U:").filter(|(_, text)| is_distance(text));
+        let (line, [first, increment]) = shown
+            .next()
+            .map_or((0, [None; 2]), |(line, text)| (line, last_two(text)));
+        let found = self.road(step).or(increment);
+        let Some(increment_found) = found.filter(|step| *step > 0.0) else {
+            let found = found.map_or("none".into(), |step| step.to_string());
+            return Err(Fault::damaged(
+                Place::Item(step.into()),
+                found,
+                "a positive number of metres",
+            ));
+        };
+        for (name, shown) in [(start, first), (step, increment)] {
+            if let (Some(stated), Some(shown)) = (self.road(name), shown)
+                && (stated - shown).abs() > ROUNDED * increment_found
+            {
+                let expected = format!("{stated} m, as {name} says");
+                return Err(Fault::damaged(Place::Line(line), format!("{shown} m"), expected));
+            }
+        }
+        Ok(Distances {
+            start: self.road(start).or(first).unwrap_or(0.0),
+            step: increment_found,
+        })
+    }
+}
+
+/// Whether this defines the distance along the reference line.
+fn is_distance(text: &str) -> bool {
+    let mut parts = text.split(',').map(str::trim);
+    parts
+        .next()
+        .is_some_and(|name| name.eq_ignore_ascii_case("reference line u"))
+        && parts.next() == Some("m")
+}
+
+/// The third and the fourth part of a definition, where they are numbers.
+fn last_two(text: &str) -> [Option<f64>; 2] {
+    let mut parts = text.split(',').skip(2);
+    let mut number = || {
+        parts
+            .next()?
+            .trim()
+            .parse()
+            .ok()
+            .filter(|value: &f64| value.is_finite())
+    };
+    [number(), number()]
+}
+
+/// What follows a prefix, whose letters may be small.
+fn after<'a>(text: &'a str, prefix: &str) -> Option<&'a str> {
+    let own = text.get(..prefix.len())?;
+    own.eq_ignore_ascii_case(prefix).then(|| text[prefix.len()..].trim())
+}

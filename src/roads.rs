@@ -1,0 +1,195 @@
+//! Roads as a user names them, with the speed at which they are driven over: `C@60km/h`, `belgian.crg#v=0.5@50km/h:20s`.
+
+use std::path::{Path, PathBuf};
+use std::str::FromStr;
+
+use qcar_runtime::campaign::{Declared, RoadSamples};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::metric::{Course, DURATION, SEED};
+use qcar_runtime::road::{Class, Road, RoadError};
+
+/// A random road of ISO 8608 or a measured profile, and how it is driven over.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Asked {
+    ground: Ground,
+    /// m/s.
+    speed: f64,
+    /// s.
+    duration: Option<f64>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+enum Ground {
+    /// A class and the seed of its random numbers.
+    Random(Class, u64),
+    /// A file and the channel of it that holds the heights.
+    Measured(PathBuf, Option<String>),
+}
+
+/// What is expected.
+pub const EXPECTED: &str = "a road and a speed: C@60km/h (class of ISO 8608), C#7@60km/h (its seed), road.crg#v=0.5@50km/h (file and channel), \
+                            each perhaps with a duration such as :20s";
+
+/// The classes, in their order.
+const CLASSES: [(&str, Class); 8] = [
+    ("A", Class::A),
+    ("B", Class::B),
+    ("C", Class::C),
+    ("D", Class::D),
+    ("E", Class::E),
+    ("F", Class::F),
+    ("G", Class::G),
+    ("H", Class::H),
+];
+
+/// m/s: slower than a walk, faster than any car.
+const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
+/// The longest ride, s: a road of ISO 8608 is a sum of sines, and a record has its place in memory.
+const LONGEST: f64 = 600.0;
+
+impl FromStr for Asked {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let expected = || format!("expected {EXPECTED}; found `{text}`");
+        let (ground, driven) = text.rsplit_once('@').ok_or_else(expected)?;
+        let (speed, duration) = match driven.split_once(':') {
+            Some((speed, duration)) => (speed, Some(duration)),
+            None => (driven, None),
+        };
+        let quantity = |text: &str, unit: &str| Declared::quantity(text).filter(|(_, own)| own.is_like(unit));
+        let speed = quantity(speed, "m/s").ok_or_else(expected)?.0;
+        let duration = duration
+            .map(|text| quantity(text, "s").ok_or_else(expected))
+            .transpose()?;
+        let duration = duration.map(|(duration, _)| duration);
+        if !SPEEDS.contains(&speed) {
+            let (least, most) = (SPEEDS.start(), SPEEDS.end());
+            return Err(format!(
+                "expected a speed of at least {least} and at most {most} m/s, found `{text}`"
+            ));
+        }
+        if duration.is_some_and(|duration| !(duration > 0.0 && duration <= LONGEST)) {
+            return Err(format!("expected a duration of at most {LONGEST} s, found `{text}`"));
+        }
+        Ok(Self {
+            ground: Ground::of(ground.trim()).ok_or_else(expected)?,
+            speed,
+            duration,
+        })
+    }
+}
+
+impl Ground {
+    fn of(text: &str) -> Option<Self> {
+        let (name, choice) = match text.rsplit_once('#') {
+            Some((name, choice)) => (name, Some(choice)),
+            None => (text, None),
+        };
+        match CLASSES.iter().find(|(class, _)| *class == name) {
+            Some((_, class)) => Some(Ground::Random(
+                *class,
+                choice.map_or(Some(SEED), |seed| seed.parse().ok())?,
+            )),
+            // A single letter is meant for a class.
+            None => (name.len() > 1).then(|| Ground::Measured(name.into(), choice.map(String::from))),
+        }
+    }
+}
+
+impl Asked {
+    /// The same with the path of its file relative to a folder.
+    #[must_use]
+    pub fn beside(mut self, folder: &Path) -> Self {
+        if let Ground::Measured(file, _) = &mut self.ground {
+            *file = folder.join(&*file);
+        }
+        self
+    }
+
+    /// The road itself.
+    ///
+    /// # Errors
+    /// A file that cannot be read or makes no road, a road that is shorter or longer than a ride may be.
+    pub fn course(&self) -> Result<Course, InputError> {
+        match &self.ground {
+            Ground::Random(class, seed) => {
+                let course = Course::random(*class, *seed, self.speed, self.duration.unwrap_or(DURATION));
+                course.map_err(|error| no_road(Path::new("command line"), &error))
+            }
+            Ground::Measured(file, source) => self.along(file, source.as_deref()),
+        }
+    }
+
+    fn along(&self, file: &Path, source: Option<&str>) -> Result<Course, InputError> {
+        let samples = RoadSamples::measured(file, source)?;
+        let road = Road::from_samples(&samples.x, &samples.z, &samples.slope).map_err(|error| no_road(file, &error))?;
+        let [first, last] = road.extent();
+        let whole = (last - first) / self.speed;
+        if self.duration.unwrap_or(whole) > LONGEST {
+            let found = format!("a road that takes {whole:.0} s");
+            let remedy = format!("drive over a part of it: write `:{LONGEST}s` behind the speed");
+            return Err(Problem::new(file, Place::File, found, "a ride of at most ten minutes", remedy).into());
+        }
+        let stem = file.file_stem().unwrap_or_default().to_string_lossy();
+        let chosen = source.map_or_else(String::new, |source| format!("_{}", plain(source)));
+        Course::along(&format!("{}{chosen}", plain(&stem)), road, self.speed, self.duration)
+            .map_err(|error| no_road(file, &error))
+    }
+}
+
+fn no_road(file: &Path, error: &RoadError) -> InputError {
+    let remedy = "give a road that is sampled finely enough and long enough";
+    Problem::new(file, Place::File, error.to_string(), "a road to drive over", remedy).into()
+}
+
+/// A name that may be part of that of a file.
+fn plain(name: &str) -> String {
+    let is_plain = |c: &char| c.is_alphanumeric() || "-_=.+".contains(*c);
+    name.chars().map(|c| if is_plain(&c) { c } else { '_' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use qcar_runtime::road::Class;
+
+    use super::{Asked, Ground};
+
+    #[test]
+    fn a_road_is_named_in_one_word() {
+        let of = |text: &str| text.parse::<Asked>();
+        let measured = |file: &str, channel: Option<&str>| Ground::Measured(file.into(), channel.map(String::from));
+        for (text, ground, speed, duration) in [
+            ("C@36km/h", Ground::Random(Class::C, 1), 10.0, None),
+            ("H#7@10 m/s:30s", Ground::Random(Class::H, 7), 10.0, Some(30.0)),
+            ("a/b@c.crg@36km/h", measured("a/b@c.crg", None), 10.0, None),
+            (
+                "b.crg#v=-0.5@36km/h:2s",
+                measured("b.crg", Some("v=-0.5")),
+                10.0,
+                Some(2.0),
+            ),
+        ] {
+            let asked = of(text).unwrap();
+            assert_eq!(
+                (asked.ground, asked.speed, asked.duration),
+                (ground, speed, duration),
+                "{text}"
+            );
+        }
+        for text in [
+            "",
+            "C",
+            "C@60",
+            "C#x@60km/h",
+            "@60km/h",
+            "C@0km/h",
+            "C@1000km/h",
+            "C@60km/h:0s",
+            "C@60km/h:1h",
+            "C@20mm",
+        ] {
+            assert!(of(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,312 @@
+//! Rides over roads that nobody has measured: what they do to the masses and to the tyre.
+
+use std::path::Path;
+
+use qcar_runtime::campaign::Campaign;
+use qcar_runtime::compare::{Weighting, rms, vibration_dose};
+use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::mean::deviation;
+use qcar_runtime::metric::Course;
+use qcar_runtime::model::{About, Quantity, Signal, SignalKind};
+use qcar_runtime::progress::Told;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::{Car, Drive, Ride, Settings, Variant, rides, tyre};
+use qcar_signals::mdf::write::Channel;
+use serde::Serialize;
+
+use super::render;
+use super::spectra::Spectra;
+use crate::catalogue::Loaded;
+use crate::failure::flag;
+use crate::files::put;
+use crate::histories::{History, Kind};
+use crate::json;
+use crate::progress::while_counting;
+use crate::roads::Asked;
+use crate::table::{Table, number};
+use crate::units;
+
+const ACCELERATION: &str = "m/s^2";
+
+/// Roads, ridden over.
+pub(super) struct Rolled {
+    campaign: String,
+    model: String,
+    felt: Vec<Felt>,
+    loads: Vec<Load>,
+    /// Of each ride its record, and Hz.
+    histories: Vec<(History, f64)>,
+}
+
+/// The same as `docs/json.md` describes it.
+#[derive(Serialize)]
+struct Json<'a> {
+    campaign: &'a str,
+    model: &'a str,
+    felt: &'a [Felt],
+    loads: &'a [Load],
+}
+
+/// What a mass does along an axis.
+#[derive(Serialize)]
+struct Felt {
+    road: String,
+    mass: String,
+    axis: String,
+    /// Of ISO 2631-1.
+    weighting: &'static str,
+    /// Root mean square, m/s².
+    rms: f64,
+    /// The same of the weighted acceleration.
+    weighted_rms: f64,
+    /// Largest magnitude of the weighted acceleration over its root mean square: above 9 the standard wants the dose too.
+    crest_factor: f64,
+    /// Vibration dose value, m/s^1.75.
+    vdv: f64,
+}
+
+/// What the tyre carries.
+#[derive(Serialize)]
+struct Load {
+    road: String,
+    /// m/s.
+    speed: f64,
+    /// s.
+    duration: f64,
+    /// Root mean square of the height of the road about its mean, m.
+    road_rms: f64,
+    /// N.
+    static_load: f64,
+    /// Root mean square about the mean, N.
+    dynamic_load: f64,
+    /// N.
+    lowest_load: f64,
+    /// How often the tyre lost the ground.
+    lift_offs: usize,
+}
+
+/// Rolls over each road, from rest on level ground before it.
+///
+/// # Errors
+/// Roads and rides that cannot be.
+pub(super) fn roll(
+    campaign: &Campaign,
+    model: &Loaded,
+    values: &Values,
+    roads: &[Asked],
+    variant: Variant,
+) -> Result<Rolled, InputError> {
+    model.check_inertias(values.as_slice())?;
+    let (tyre, load) = tyre(campaign)?;
+    let courses = courses(roads)?;
+    let car = Car {
+        model: &**model,
+        parameters: values.as_slice(),
+        tyre,
+        load,
+        variant,
+    };
+    let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
+    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let ridden = while_counting(format!("{}: road", campaign.name), simulate);
+    let mut rolled = Rolled {
+        campaign: campaign.name.clone(),
+        model: model.about().name.to_string(),
+        felt: Vec::new(),
+        loads: Vec::new(),
+        histories: Vec::new(),
+    };
+    for (course, ride) in courses.iter().zip(ridden) {
+        let ride = ride.map_err(|error| no_ride(campaign, course, &error.to_string()))?;
+        rolled.add(model.about(), course, &ride, load);
+    }
+    Ok(rolled)
+}
+
+/// The roads, each of which has a name of its own.
+fn courses(roads: &[Asked]) -> Result<Vec<Course>, InputError> {
+    let mut courses: Vec<Course> = Vec::new();
+    for road in roads {
+        let course = road.course()?;
+        if courses.iter().any(|own| own.name == course.name) {
+            let found = format!("two rides called {}", course.name);
+            let remedy = "leave one out; another seed, channel or speed makes another ride";
+            return Err(flag("--road", found, "each ride once", remedy).into());
+        }
+        courses.push(course);
+    }
+    Ok(courses)
+}
+
+fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
+    let place = Place::Name(format!("road {}", course.name));
+    let remedy = "correct the vehicle or the parameters, or choose another road or speed";
+    Problem::new(
+        campaign.manifest(),
+        place,
+        error,
+        "a ride that can be simulated",
+        remedy,
+    )
+}
+
+impl Rolled {
+    fn add(&mut self, about: &About, course: &Course, ride: &Ride, static_load: f64) {
+        let accelerations = about.outputs.iter().zip(&ride.outputs).filter(|(output, _)| {
+            let kind = SignalKind::Motion(Quantity::Acceleration);
+            output.signal.kind == kind && output.unit == ACCELERATION
+        });
+        for (output, samples) in accelerations {
+            self.felt.push(Felt::of(course, &output.signal, samples));
+        }
+        let height: Vec<f64> = ride
+            .time
+            .iter()
+            .map(|time| course.road.height(course.speed * time))
+            .collect();
+        self.loads.push(Load {
+            road: course.name.clone(),
+            speed: course.speed,
+            duration: course.samples as f64 / course.sample_rate,
+            road_rms: deviation(&height),
+            static_load,
+            dynamic_load: deviation(&ride.force[0]),
+            lowest_load: ride.force[0].iter().copied().fold(f64::INFINITY, f64::min),
+            lift_offs: ride.lift_offs.len(),
+        });
+        let mut history = render::history(about, &course.name, ride);
+        history.channels.insert(
+            0,
+            Channel {
+                name: "road".into(),
+                unit: "m".into(),
+                samples: height,
+            },
+        );
+        self.histories.push((history, course.sample_rate));
+    }
+
+    /// Writes the record of each ride, its spectra and a figure of these.
+    ///
+    /// # Errors
+    /// A folder that cannot be written to.
+    pub fn put(&self, folder: &Path, kind: Kind) -> Result<(), InputError> {
+        for (history, rate) in &self.histories {
+            history.put(folder, kind)?;
+            let spectra = Spectra::of(&history.channels, *rate);
+            let name = &history.name;
+            put(folder, &format!("{name}_spectra.csv"), &spectra.csv())?;
+            put(folder, &format!("{name}_spectra.svg"), &spectra.figure(name).svg())?;
+        }
+        Ok(())
+    }
+
+    pub fn json(&self) -> String {
+        json::line(&Json {
+            campaign: &self.campaign,
+            model: &self.model,
+            felt: &self.felt,
+            loads: &self.loads,
+        })
+    }
+
+    pub fn text(&self) -> String {
+        let acceleration = |value: f64| number(units::value(value, ACCELERATION), 4);
+        let mut felt = Table::new([
+            "road",
+            "mass",
+            "axis",
+            "unit",
+            "rms",
+            "weighting",
+            "weighted_rms",
+            "crest_factor",
+            "vdv_m/s^1.75",
+        ]);
+        for own in &self.felt {
+            felt.row(vec![
+                own.road.clone(),
+                own.mass.clone(),
+                own.axis.clone(),
+                units::name(ACCELERATION).into(),
+                acceleration(own.rms),
+                own.weighting.into(),
+                acceleration(own.weighted_rms),
+                number(own.crest_factor, 3),
+                number(own.vdv, 4),
+            ]);
+        }
+        let mut loads = Table::new([
+            "road",
+            "duration_s",
+            "road_rms",
+            "unit",
+            "dynamic_load",
+            "static_load",
+            "lowest_load",
+            "load_unit",
+            "lift_offs",
+        ]);
+        let force = |value: f64| number(units::value(value, "N"), 4);
+        for own in &self.loads {
+            loads.row(vec![
+                own.road.clone(),
+                number(own.duration, 4),
+                number(units::value(own.road_rms, "m"), 4),
+                units::name("m").into(),
+                force(own.dynamic_load),
+                force(own.static_load),
+                force(own.lowest_load),
+                units::name("N").into(),
+                own.lift_offs.to_string(),
+            ]);
+        }
+        format!("{}\n{}", felt.text(), loads.text())
+    }
+
+    /// A row for each road, mass and axis.
+    pub fn csv(&self) -> String {
+        let [rms, weighted] = ["rms", "weighted_rms"].map(|what| units::heading(what, ACCELERATION));
+        let row = |own: &Felt| {
+            let [rms, weighted] = [own.rms, own.weighted_rms].map(|value| units::value(value, ACCELERATION));
+            let Felt {
+                road,
+                mass,
+                axis,
+                weighting,
+                crest_factor,
+                vdv,
+                ..
+            } = own;
+            format!("{road},{mass},{axis},{rms},{weighting},{weighted},{crest_factor},{vdv}\n")
+        };
+        let head = format!("road,mass,axis,{rms},weighting,{weighted},crest_factor,vdv [m/s^1.75]\n");
+        head + &self.felt.iter().map(row).collect::<String>()
+    }
+}
+
+impl Felt {
+    fn of(course: &Course, signal: &Signal, samples: &[f64]) -> Self {
+        let (weighting, called) = match &*signal.axis {
+            "z" => (Weighting::Wk, "Wk"),
+            _ => (Weighting::Wd, "Wd"),
+        };
+        let weighted = weighting.apply(samples, course.sample_rate);
+        let weighted_rms = rms(&weighted);
+        let largest = weighted.iter().fold(0.0, |most: f64, a| most.max(a.abs()));
+        Self {
+            road: course.name.clone(),
+            mass: signal.location.to_string(),
+            axis: signal.axis.to_string(),
+            weighting: called,
+            rms: rms(samples),
+            weighted_rms,
+            crest_factor: if weighted_rms > 0.0 {
+                largest / weighted_rms
+            } else {
+                0.0
+            },
+            vdv: vibration_dose(&weighted, course.sample_rate),
+        }
+    }
+}
