@@ -3,11 +3,11 @@
 
 #![allow(missing_docs, reason = "a program, of which nothing is public")]
 
+#[path = "chains/campaign.rs"]
+mod campaign;
 #[path = "../qcar-dsl/examples/chain.rs"]
 #[allow(dead_code, reason = "the example measures times")]
 mod chain;
-#[path = "chains/campaign.rs"]
-mod campaign;
 
 use std::fs;
 use std::path::Path;
