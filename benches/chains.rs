@@ -26,7 +26,7 @@ const ASKED: [&str; 11] = [
     "matrices CHAIN --format json",
     "frf CHAIN",
     "frf CHAIN --format json",
-    "simulate CAMPAIGN/history",
+    "simulate CAMPAIGN/sweep",
     "simulate CAMPAIGN/cleat",
 ];
 
@@ -51,8 +51,21 @@ fn main() {
 fn write(folder: &Path, masses: usize, own: bool) {
     let folder = folder.join(masses.to_string());
     fs::create_dir_all(&folder).expect("the folder is writable");
-    fs::write(folder.join("chain.axle"), chain::chain(masses, own)).expect("the folder is writable");
+    fs::write(
+        folder.join("chain.axle"),
+        with_channels(&chain::chain(masses, own), masses),
+    )
+    .expect("the folder is writable");
     campaign::write(&folder, masses);
+}
+
+/// A channel from the road to each mass.
+fn with_channels(chain: &str, masses: usize) -> String {
+    let channel =
+        |place: usize| format!("        channel to_q{place} = q{place}.acceleration / road_below.acceleration;\n");
+    let channels: String = (1..=masses).map(channel).collect();
+    let end = "    }\n}\n";
+    chain.strip_suffix(end).expect("a chain ends its direction").to_string() + &channels + end
 }
 
 fn measure(folder: &Path, asked: &str) {

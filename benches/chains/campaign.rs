@@ -8,13 +8,13 @@ use std::path::Path;
 const SAMPLES: usize = 1000;
 const RATE: f64 = 500.0;
 
-/// Writes the campaigns `history` and `cleat` for the chain in a folder.
+/// Writes the campaigns `sweep` and `cleat` for the chain in a folder.
 pub fn write(folder: &Path, masses: usize) {
-    history(&folder.join("history"), masses);
+    sweep(&folder.join("sweep"), masses);
     cleat(&folder.join("cleat"), masses);
 }
 
-fn history(folder: &Path, masses: usize) {
+fn sweep(folder: &Path, masses: usize) {
     let mut record = "time,road,top\n".to_string();
     for sample in 0..SAMPLES {
         let time = sample as f64 / RATE;
@@ -24,7 +24,8 @@ fn history(folder: &Path, masses: usize) {
     put(folder, "record.csv", &record);
     let channels = [channel("road", "road_below"), channel("top", &format!("q{masses}"))].concat();
     let run = format!(
-        "[[run]]\nkind = \"time_history\"\nfile = \"record.csv\"\nrole = \"fit\"\nsample_rate = {RATE}\nband_limited = true\n"
+        "[[run]]\nkind = \"sweep\"\nfile = \"record.csv\"\nrole = \"fit\"\nsample_rate = {RATE}\npeak_velocity = 0.1\nstart_frequency = 0.5\n\
+         end_frequency = 19.0\nspacing = \"linear\"\n"
     );
     put(folder, "campaign.toml", &format!("{}{channels}{run}", head("")));
 }
