@@ -1,5 +1,7 @@
 //! Tables and numbers as text for people.
 
+use std::iter::repeat_n;
+
 use crate::terminal;
 
 // Tables that are wider than the terminal.
@@ -74,16 +76,26 @@ fn lines(rows: &[Vec<String>], shapes: &[Shape], head: usize) -> String {
 }
 
 fn line(row: &[String], shapes: &[Shape]) -> String {
-    let cells = row.iter().zip(shapes).map(|(cell, &(width, numeric))| match numeric {
-        true => format!("{cell:>width$}"),
-        false => format!("{cell:<width$}"),
-    });
-    cells.collect::<Vec<_>>().join(SPACE).trim_end().into()
+    let mut line = String::new();
+    for (at, (cell, &(width, numeric))) in row.iter().zip(shapes).enumerate() {
+        let space = if at > 0 { SPACE } else { "" };
+        let blanks = width.saturating_sub(cell.chars().count());
+        let (before, behind) = if numeric { (blanks, 0) } else { (0, blanks) };
+        line += space;
+        line.extend(repeat_n(' ', before));
+        line += cell;
+        line.extend(repeat_n(' ', behind));
+    }
+    line.truncate(line.trim_end().len());
+    line
 }
 
 /// A number with so many significant digits, plain where that is short, and without trailing zeros.
 pub fn number(value: f64, digits: usize) -> String {
-    if value == 0.0 || !value.is_finite() {
+    if value == 0.0 {
+        return "0".into();
+    }
+    if !value.is_finite() {
         return format!("{}", value.abs());
     }
     let scientific = format!("{value:.*e}", digits - 1);

@@ -6,10 +6,11 @@
 mod chain;
 
 use qcar_dsl::check::check_text;
-use qcar_dsl::compile::derive_wanted;
+use qcar_dsl::compile::{check, derive_wanted};
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::show::{Stage, show};
+use qcar_dsl::source::Source;
 
 fn compiled(masses: usize, own: bool, wanted: Wanted) -> Compiled {
     let checked = check_text(chain::source(masses, own), &|_, _| Err(String::new()));
@@ -77,5 +78,36 @@ fn values_do_not_depend_on_what_else_is_wanted() {
             all.about.responses[0].jacobian.len(),
             masses * all.model.parameters.len()
         );
+    }
+}
+
+/// Groups of parameters of a model that its outputs tell apart in combinations only, and how many of these.
+fn unseen(text: String) -> Vec<(Vec<String>, usize)> {
+    let name = "chain.axle".to_string();
+    let checked = check(Source { name, text }, &|_, _| Err(String::new())).unwrap_or_else(|report| panic!("{report}"));
+    let groups = checked.unseen().iter();
+    groups.map(|group| (group.parameters.clone(), group.seen)).collect()
+}
+
+/// Whatever is found out from few responses: a product in any link, however far away, and a scale that is common to all forces.
+#[test]
+fn what_a_chain_does_not_show_is_found_at_any_length() {
+    for masses in [2, 10, 40] {
+        let known = chain::chain(masses, true);
+        assert_eq!(unseen(known.clone()), []);
+        for place in [1, masses / 2, masses] {
+            let (spring, product) = (format!("spring k{place};"), format!("spring k{place}*share;"));
+            let shared = known.replace("    direction z", "    param share: 1 = 1;\n    direction z");
+            let found = unseen(shared.replace(&spring, &product));
+            assert_eq!(
+                found,
+                [(vec![format!("k{place}"), "share".to_string()], 1)],
+                "{masses} masses"
+            );
+        }
+        let all = 3 * masses;
+        let found = unseen(known.replace("known param", "param"));
+        assert_eq!(found.len(), 1, "{masses} masses: {found:?}");
+        assert_eq!((found[0].0.len(), found[0].1), (all, all - 1));
     }
 }

@@ -14,49 +14,64 @@ pub fn null_space(rows: Vec<Vec<f64>>, columns: usize) -> Vec<Vec<f64>> {
 
 /// The same for a matrix whose entries are small against a scale that the caller knows.
 pub fn null_space_of_scale(mut rows: Vec<Vec<f64>>, columns: usize, largest: f64) -> Vec<Vec<f64>> {
-    let mut order: Vec<usize> = (0..columns).collect();
-    let mut rank = 0;
-    while let Some((row, place)) = pivot(&rows, &order, rank) {
-        if rows[row][order[place]].abs() <= NEGLIGIBLE * largest {
+    let mut free: Vec<usize> = (0..columns).collect();
+    let mut bound = Vec::new();
+    let mut foremost: Vec<Option<usize>> = rows.iter().map(|row| largest_of(row, &free)).collect();
+    while let Some((row, column)) = pivot(&rows, &foremost, bound.len()) {
+        if rows[row][column].abs() <= NEGLIGIBLE * largest {
             break;
         }
-        rows.swap(rank, row);
-        order.swap(rank, place);
-        eliminate(&mut rows, rank, order[rank]);
-        rank += 1;
+        let at = bound.len();
+        rows.swap(at, row);
+        foremost.swap(at, row);
+        free.retain(|&other| other != column);
+        bound.push(column);
+        for changed in eliminate(&mut rows, at, column) {
+            foremost[changed] = largest_of(&rows[changed], &free);
+        }
     }
-    let (bound, free) = order.split_at(rank);
     free.iter()
-        .map(|&column| null_vector(&rows, bound, column, columns))
+        .map(|&column| null_vector(&rows, &bound, column, columns))
         .collect()
 }
 
-/// The largest entry of what is left.
-fn pivot(rows: &[Vec<f64>], order: &[usize], rank: usize) -> Option<(usize, usize)> {
-    let left = (rank..rows.len()).flat_map(|row| (rank..order.len()).map(move |place| (row, place)));
-    left.max_by(|a, b| rows[a.0][order[a.1]].abs().total_cmp(&rows[b.0][order[b.1]].abs()))
+/// The column in which a row is largest.
+fn largest_of(row: &[f64], columns: &[usize]) -> Option<usize> {
+    let columns = columns.iter().copied();
+    columns.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs()))
 }
 
-/// Makes a column zero in every row but that of its pivot, and the pivot one.
-fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) {
-    let pivot = rows[at][column];
-    rows[at].iter_mut().for_each(|entry| *entry /= pivot);
-    let pivot_row = rows[at].clone();
-    for (index, row) in rows.iter_mut().enumerate() {
-        let factor = row[column];
-        if index != at && factor != 0.0 {
+/// The largest entry of the rows from a place on, each of which knows where it is largest.
+fn pivot(rows: &[Vec<f64>], foremost: &[Option<usize>], from: usize) -> Option<(usize, usize)> {
+    let left = (from..rows.len()).filter_map(|row| Some((row, foremost[row]?)));
+    left.max_by(|a, b| rows[a.0][a.1].abs().total_cmp(&rows[b.0][b.1].abs()))
+}
+
+/// Makes a column zero in the rows below that of its pivot; gives the rows that have changed.
+fn eliminate(rows: &mut [Vec<f64>], at: usize, column: usize) -> Vec<usize> {
+    let (above, below) = rows.split_at_mut(at + 1);
+    let pivot_row = &above[at];
+    let mut changed = Vec::new();
+    for (index, row) in below.iter_mut().enumerate() {
+        let factor = row[column] / pivot_row[column];
+        if factor != 0.0 {
             row.iter_mut()
-                .zip(&pivot_row)
+                .zip(pivot_row)
                 .for_each(|(entry, own)| *entry -= factor * own);
+            changed.push(at + 1 + index);
         }
     }
+    changed
 }
 
+/// The change with the entry 1 at a free column that all rows leave, from the last pivot back to the first.
 fn null_vector(rows: &[Vec<f64>], bound: &[usize], column: usize, columns: usize) -> Vec<f64> {
     let mut vector = vec![0.0; columns];
     vector[column] = 1.0;
-    for (row, &own) in rows.iter().zip(bound) {
-        vector[own] = -row[column];
+    for (at, &own) in bound.iter().enumerate().rev() {
+        let others = bound[at + 1..].iter().chain([&column]);
+        let known: f64 = others.map(|&other| rows[at][other] * vector[other]).sum();
+        vector[own] = -known / rows[at][own];
     }
     vector
 }

@@ -7,7 +7,7 @@ use num_complex::Complex64;
 pub fn solve(mut matrix: Vec<Vec<Complex64>>, mut columns: Vec<Vec<Complex64>>) -> Vec<Vec<Complex64>> {
     let size = matrix.len();
     for at in 0..size {
-        let pivot = (at..size).max_by(|&a, &b| matrix[a][at].norm().total_cmp(&matrix[b][at].norm()));
+        let pivot = (at..size).max_by(|&a, &b| magnitude(matrix[a][at]).total_cmp(&magnitude(matrix[b][at])));
         let pivot = pivot.unwrap_or(at);
         matrix.swap(at, pivot);
         columns.iter_mut().for_each(|column| column.swap(at, pivot));
@@ -34,6 +34,11 @@ pub fn solve(mut matrix: Vec<Vec<Complex64>>, mut columns: Vec<Vec<Complex64>>) 
         }
     }
     columns
+}
+
+/// How large a pivot is, without the root of its norm, as LAPACK measures it.
+fn magnitude(x: Complex64) -> f64 {
+    x.re.abs() + x.im.abs()
 }
 
 fn is_zero(x: Complex64) -> bool {

@@ -30,6 +30,10 @@ use seen::Seen;
 const FEW_MOTIONS: u64 = 4;
 const MANY_MOTIONS: u64 = 64;
 
+/// How much larger pivots must be than what counts as zero, where some of the rows speak for all: the largest entry of all is not
+/// known then.
+const CLEARLY: f64 = 1e3;
+
 /// A parameter set, and the derivatives there: a row for each response, relative to the response and the parameter.
 struct Set {
     parameters: Vec<f64>,
@@ -75,14 +79,17 @@ fn parameters_are_seen(
         forces,
         estimated: &estimated,
     };
-    let set = |kind, seed, motions| set(&derived, Point::new(model, kind, seed), motions);
-    let first = set(Kind::Plain, 1, FEW_MOTIONS);
+    let set = |kind, seed, motions, enough| set(&derived, Point::new(model, kind, seed), motions, enough);
+    if sees_all(&set(Kind::Plain, 1, FEW_MOTIONS, estimated.len()), estimated.len()) {
+        return vec![];
+    }
+    let first = set(Kind::Plain, 1, FEW_MOTIONS, usize::MAX);
     let hidden = null_space_of_scale(first.rows.clone(), estimated.len(), first.scale);
     if hidden.is_empty() || first.rows.is_empty() {
         return vec![];
     }
     // What one set does not see, the others must not see either: a law may be out of its range there.
-    let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS));
+    let others = [(Kind::Plain, 2), (Kind::Declared, 3)].map(|(kind, seed)| set(kind, seed, MANY_MOTIONS, usize::MAX));
     let sets: Vec<Set> = [first].into_iter().chain(others).collect();
     let groups = hidden.iter().map(|change| support(std::slice::from_ref(change)));
     let groups = groups.filter(|group| sets.iter().all(|set| hidden_changes(set, group) > 0));
@@ -129,14 +136,20 @@ fn constant_forces(model: &Model) -> BTreeSet<Symbol> {
     contents.filter(is_constant).flatten().collect()
 }
 
-fn set(derived: &Derived, point: Point, motions: u64) -> Set {
+/// Whether rows tell all parameters apart by far. Further rows would not hide what these see.
+fn sees_all(some: &Set, parameters: usize) -> bool {
+    null_space_of_scale(some.rows.clone(), parameters, CLEARLY * some.scale).is_empty()
+}
+
+/// The rows of so many motions; of no more than need be where `enough` responses will do.
+fn set(derived: &Derived, point: Point, motions: u64, enough: usize) -> Set {
     let parameters: Vec<f64> = derived
         .estimated
         .iter()
         .map(|&index| point.leaf(Symbol::Parameter(index)))
         .collect();
     let rows: Vec<Vec<f64>> = derived
-        .seen(point, motions)
+        .seen(point, motions, enough)
         .into_iter()
         .flat_map(|Seen { value, gradient }| {
             let size = value.norm().max(f64::MIN_POSITIVE);

@@ -45,8 +45,8 @@ pub struct Derived<'a> {
 
 impl Derived<'_> {
     /// Everything that can be seen at one parameter set: responses of outputs and channels to each input, and for laws that
-    /// are not linear the change of the force itself, in so many motions.
-    pub fn seen(&self, point: Point, motions: u64) -> Vec<Seen> {
+    /// are not linear the change of the force itself, in so many motions or until there are `enough`.
+    pub fn seen(&self, point: Point, motions: u64, enough: usize) -> Vec<Seen> {
         let has_clock = self.model.parameters.iter().any(|parameter| parameter.clock);
         let motions = if self.forces.bends || has_clock { motions } else { 1 };
         let frequencies = if point.kind == Kind::Plain { PLAIN } else { DECLARED };
@@ -63,6 +63,9 @@ impl Derived<'_> {
             let matrices = Matrices::of(self, &values);
             for frequency in frequencies {
                 matrices.look(frequency, &mut seen);
+                if seen.len() >= enough {
+                    return seen;
+                }
             }
             seen.extend(self.forces.seen(self.graph, &point, self.estimated.len()));
         }
