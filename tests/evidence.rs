@@ -2,7 +2,7 @@
 
 use qcar::catalogue::load;
 use qcar_runtime::campaign::{Campaign, Role};
-use qcar_runtime::discover::observe::{Prediction, predict};
+use qcar_runtime::discover::observe::{Prediction, Stimulus, predict};
 use qcar_runtime::discover::{Evidence, Free, Gap, Refit, refit};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -97,6 +97,67 @@ fn slopes_do_not_depend_on_what_else_is_moved() {
         for (alone, together) in slopes(&[*own]).iter().zip(&together) {
             let name = &about.parameters[place].name;
             assert!(together.slopes[place] == alone.slopes[0], "{name}");
+        }
+    }
+}
+
+/// Slopes of a record that repeats are those of differences between predictions, whether the motion settles within the
+/// periods that are replayed or keeps so much of its first one that it does not.
+#[test]
+fn slopes_of_a_record_that_repeats_are_those_of_differences() {
+    let campaign = campaign("silverbox");
+    let model = load("one_mass").expect("shipped");
+    let mut evidence = Evidence::from_campaign(&campaign, model.about()).expect("the runs can be read");
+    evidence = evidence.only(|run| run == 0);
+    let Stimulus::History {
+        periodic,
+        restarts,
+        inputs,
+        rate,
+        ..
+    } = &mut evidence.runs[0].stimulus
+    else {
+        panic!("it is a record");
+    };
+    *periodic = true;
+    restarts.clear();
+    let period = inputs.samples as f64 / *rate;
+    // Of the amplitude of a free motion so much is left after a period.
+    for left in [0.5_f64, 0.97] {
+        let (m, k) = (1e-6, 5e-6);
+        let p = [m, -2.0 * m * left.ln() / period, k, 0.0];
+        let values = |p: [f64; 4]| {
+            let names = ["m_body", "c_body", "k_body", "f_offset"].map(String::from);
+            let given = names.into_iter().zip(p).collect();
+            Values::resolve(model.about(), &given, &Default::default()).expect("all are given")
+        };
+        let seen = |p: [f64; 4], free: &[Free]| -> Prediction {
+            let mut seen = predict(&*model, &values(p), free, &evidence, Role::Fit).expect("the model has the sensors");
+            seen.remove(0)
+        };
+        let free = [0, 1, 2].map(|parameter| Free {
+            parameter,
+            lower: 0.0,
+            upper: 2.0 * p[parameter],
+        });
+        let slopes = seen(p, &free).slopes;
+        for (parameter, slope) in slopes.iter().enumerate() {
+            let moved = |by: f64| {
+                let mut moved = p;
+                moved[parameter] *= 1.0 + by;
+                seen(moved, &[]).value
+            };
+            let (more, less) = (moved(1e-5), moved(-1e-5));
+            let expected = more.iter().zip(&less).map(|(a, b)| (a - b) / (2e-5 * p[parameter]));
+            let (mut error, mut size) = (0.0_f64, 0.0_f64);
+            for (slope, expected) in slope.iter().zip(expected) {
+                error = error.max((slope - expected).norm());
+                size = size.max(expected.norm());
+            }
+            assert!(
+                error < 0.02 * size,
+                "{left} left, parameter {parameter}: {error} of {size}"
+            );
         }
     }
 }

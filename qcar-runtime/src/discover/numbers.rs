@@ -41,6 +41,10 @@ pub const MOST_EFFECTS: usize = 3;
 /// more probable.
 pub const GREATER_PART: f64 = 0.5;
 
+/// Probability of the base model below which a law is learned though no effect is certain: something is missing more probably
+/// than not.
+pub const EVEN: f64 = 0.5;
+
 impl Default for Numbers {
     fn default() -> Self {
         Self {

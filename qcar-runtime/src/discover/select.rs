@@ -45,7 +45,7 @@ pub use alone::{Alone, Minimum, alone};
 
 use super::answer::{Discovery, Learned, News, Progress, Rival, Verdict, told};
 use super::candidate::{Candidate, Workshop};
-use super::numbers::{GREATER_PART, MOST_EFFECTS, Numbers};
+use super::numbers::{EVEN, GREATER_PART, MOST_EFFECTS, Numbers};
 use super::observe::{Evidence, PredictError, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
@@ -118,7 +118,7 @@ fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
 /// True where something is missing, more probably than not, that no effect of the catalogue explains, be it less than models
 /// of this kind leave.
 fn is_unexplained(discovery: &Discovery) -> bool {
-    let is_improbable = |probability: f64| probability < 0.5;
+    let is_improbable = |probability: f64| probability < EVEN;
     match discovery.verdict {
         Verdict::Unknown => true,
         Verdict::None => discovery.probability.is_some_and(is_improbable),
@@ -268,7 +268,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let steady = evidence.less(&refit.unsteady).hurried();
     let looks = looks(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
-    // How far the parameters of a model that leaves much are off, and so what an effect would gain, is not known to first order.
+    // A model that leaves much has poor parameters: what an effect gains there to first order says little.
     let far_off = is_missing(set, evidence);
     if far_off {
         let given = Place::given(&looks.coarse);
@@ -278,7 +278,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     let worth = |own: &screen::Prospect| own.gain() > least;
-    if !prospects.iter().any(worth) {
+    if !far_off && !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
     let entering = entrants(&candidates, &prospects, (!far_off).then_some(least));

@@ -5,8 +5,8 @@
 
 // Recorded inputs at the nodes of an integration.
 mod input;
-// One parameter set at work, or several side by side.
-mod side;
+// A model with one set of parameters, or with several.
+mod sets;
 // From one node to the next.
 mod stepper;
 
@@ -20,7 +20,7 @@ use rayon::prelude::*;
 use crate::model::{About, LANES, Model, Quantity, SignalKind, StateKind};
 use crate::response::signal::{SignalError, missing, output_of};
 use input::rows;
-use side::{Alone, Several, Side};
+use sets::{Alone, Sets, Several};
 use stepper::Stepper;
 
 /// Where a sensor's signal is found while time goes on.
@@ -44,7 +44,7 @@ pub struct Replay<'a> {
     nodes: OnceLock<Vec<Vec<f64>>>,
 }
 
-/// What a replay gives, of each set that took part: a set is a lane of the rows.
+/// What a replay gives: a row for each set of parameters that took part.
 pub struct Replayed {
     /// For each reading its samples; not finite from where the model runs away even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
@@ -54,11 +54,13 @@ pub struct Replayed {
     end: Vec<f64>,
     /// How often each step was halved.
     halvings: Vec<u8>,
+    /// How often the record was replayed until the motion repeated.
+    periods: usize,
 }
 
-/// A parameter set, and where states begin elsewhere than they were seen: by so much.
+/// A set of parameters, and by how much initial states differ from what was seen.
 #[derive(Clone, Debug)]
-pub struct Moved {
+pub struct Perturbed {
     /// The values of the parameters.
     pub p: Vec<f64>,
     /// States and by how much.
@@ -72,7 +74,7 @@ enum Steps<'r> {
     Found,
     /// As those of another replay.
     Like(&'r Replayed),
-    /// The same, as long as the two differ.
+    /// As those of another replay, until the states agree with its own.
     Beside(&'r Replayed),
 }
 
@@ -101,62 +103,58 @@ impl<'a> Replay<'a> {
     }
 
     /// What follows from the parameters.
-    pub fn run(&self, moved: &Moved) -> Replayed {
-        let mut alone = Alone::new(self.model, &moved.p);
-        let rest = vec![0.0; self.model.about().states.len()];
-        self.repeated(&mut alone, rest, &moved.begin, Steps::Found)
+    pub fn run(&self, perturbed: &Perturbed) -> Replayed {
+        let mut alone = Alone::new(self.model, &perturbed.p);
+        let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), &perturbed.begin), Steps::Found);
+        let most = if self.how.periodic { PERIODS } else { 0 };
+        while replayed.periods <= most && !replayed.repeats() {
+            let periods = replayed.periods + 1;
+            replayed = self.advance(&mut alone, (replayed.end, &[]), Steps::Found);
+            replayed.periods = periods;
+        }
+        replayed
     }
 
-    /// The signals of other parameters in the steps of a replay: their difference is that of parameters alone.
-    pub fn like(&self, other: &Replayed, moved: &[Moved]) -> Vec<Vec<Vec<f64>>> {
-        self.together(moved, Steps::Like(other))
+    /// The signals of other parameters, in the steps of a replay and for as many periods: what has not settled is the same in
+    /// both, so that their difference is that of the parameters alone.
+    pub fn like(&self, other: &Replayed, perturbed: &[Perturbed]) -> Vec<Vec<Vec<f64>>> {
+        self.together(perturbed, Steps::Like(other))
     }
 
-    /// The signals of other beginnings beside a replay, and no longer than they differ from it: from there on they are its own.
-    pub fn beside(&self, other: &Replayed, moved: &[Moved]) -> Vec<Vec<Vec<f64>>> {
-        self.together(moved, Steps::Beside(other))
+    /// The signals of other initial states. Once all states agree with those of the replay, its samples are copied.
+    pub fn beside(&self, other: &Replayed, perturbed: &[Perturbed]) -> Vec<Vec<Vec<f64>>> {
+        self.together(perturbed, Steps::Beside(other))
     }
 
     /// As many sets at once as there are lanes.
-    fn together(&self, moved: &[Moved], steps: Steps<'_>) -> Vec<Vec<Vec<f64>>> {
-        let some = |moved: &[Moved]| match moved {
+    fn together(&self, perturbed: &[Perturbed], steps: Steps<'_>) -> Vec<Vec<Vec<f64>>> {
+        let some = |perturbed: &[Perturbed]| match perturbed {
             [one] => {
                 let mut alone = Alone::new(self.model, &one.p);
-                vec![self.other(&mut alone, &one.begin, steps).signals]
+                vec![self.again(&mut alone, &one.begin, steps).signals]
             }
             several => {
                 let mut lanes = Several::new(self.model, several);
-                let replayed = self.other(&mut lanes, &side::begin(several), steps);
-                side::apart(replayed.signals, several.len())
+                let replayed = self.again(&mut lanes, &sets::begin(several), steps);
+                sets::apart(replayed.signals, several.len())
             }
         };
-        moved.par_chunks(LANES).flat_map_iter(some).collect()
+        perturbed.par_chunks(LANES).flat_map_iter(some).collect()
     }
 
-    /// In the steps of another replay: from its beginning, which is near the one of a motion that repeats.
-    fn other<S: Side>(&self, side: &mut S, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
-        let first = match steps {
-            Steps::Like(other) if self.how.periodic => other.states[0].clone(),
-            _ => vec![0.0; self.model.about().states.len()],
-        };
-        let first = first.iter().flat_map(|&x| std::iter::repeat_n(x, S::LANES)).collect();
-        match steps {
-            Steps::Beside(_) => self.advance(side, (first, begin), steps),
-            _ => self.repeated(side, first, begin, steps),
-        }
-    }
-
-    /// From a state, or of a motion that repeats a period of it.
-    fn repeated<S: Side>(&self, side: &mut S, from: Vec<f64>, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
-        let mut replayed = self.advance(side, (from, begin), steps);
-        let periods = if self.how.periodic { PERIODS } else { 0 };
-        for _ in 0..periods {
-            if replayed.repeats() {
-                break;
+    /// In the steps of another replay.
+    fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
+        let mut replayed = self.advance(sets, (self.rest::<S>(), begin), steps);
+        if let Steps::Like(other) = steps {
+            for _ in 1..other.periods {
+                replayed = self.advance(sets, (replayed.end, &[]), steps);
             }
-            replayed = self.advance(side, (replayed.end, &[]), steps);
         }
         replayed
+    }
+
+    fn rest<S: Sets>(&self) -> Vec<f64> {
+        vec![0.0; self.model.about().states.len() * S::LANES]
     }
 
     /// For each node the inputs of the model.
@@ -171,7 +169,7 @@ impl<'a> Replay<'a> {
     }
 
     /// From a state with some of it elsewhere.
-    fn advance<S: Side>(
+    fn advance<S: Sets>(
         &self,
         side: &mut S,
         (mut x, begin): (Vec<f64>, &[(usize, f64)]),
@@ -208,7 +206,7 @@ impl<'a> Replay<'a> {
                     .for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
                 break;
             }
-            stepper.side.outputs(&x, &inputs[first], &mut y);
+            stepper.sets.outputs(&x, &inputs[first], &mut y);
             for (signals, reading) in signals.chunks_exact_mut(S::LANES).zip(&self.readings) {
                 let read = match *reading {
                     Reading::Output(output) => lanes_of::<S>(&mut y, output),
@@ -238,6 +236,7 @@ impl<'a> Replay<'a> {
             states,
             end: x,
             halvings,
+            periods: 1,
         }
     }
 
@@ -266,7 +265,7 @@ impl Replayed {
 }
 
 /// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
-fn has_joined<S: Side>(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
+fn has_joined<S: Sets>(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     const TRACE: f64 = 1e-4;
     let mut joined = true;
     for (place, (x, apart)) in x.iter().zip(apart).enumerate() {
@@ -278,7 +277,7 @@ fn has_joined<S: Side>(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
 }
 
 /// The values of one state or output of all sets.
-fn lanes_of<S: Side>(of: &mut [f64], place: usize) -> &mut [f64] {
+fn lanes_of<S: Sets>(of: &mut [f64], place: usize) -> &mut [f64] {
     &mut of[place * S::LANES..][..S::LANES]
 }
 

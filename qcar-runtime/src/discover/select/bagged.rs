@@ -6,7 +6,7 @@
 //! replacement, a bagged posterior (Huggins and Miller, Bayesian Analysis 18, 2023), which is as uncertain as the data
 //! scatter. It keeps each fit: only the weights of the data are drawn, not the parameters.
 
-use super::set::{Set, excess};
+use super::set::{Set, leaves_more_than_noise};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
@@ -20,7 +20,7 @@ pub fn probabilities(sets: &[Set], evidence: &Evidence) -> Vec<f64> {
     let most_probable = sets
         .iter()
         .max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
-    if most_probable.is_none_or(|set| excess(&set.explanation, evidence) == 0.0) {
+    if !most_probable.is_some_and(|set| leaves_more_than_noise(set, evidence)) {
         return posterior(&whole);
     }
     let parts: Vec<Vec<f64>> = sets

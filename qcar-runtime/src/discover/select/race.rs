@@ -161,7 +161,7 @@ pub fn race(
 }
 
 /// The prospects that gain most, and the best of each place that gains more than `least`. Where that is `None`, the screening
-/// says little, and the best of each place and of each effect enters.
+/// says little, and the best of each place and of each effect enters if it gains anything.
 pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: Option<f64>) -> Vec<&'p Prospect> {
     let (mut places, mut effects) = (HashSet::new(), HashSet::new());
     let enters = |(rank, prospect): &(usize, &Prospect)| {

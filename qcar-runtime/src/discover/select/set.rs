@@ -6,7 +6,7 @@ use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
 use crate::discover::numbers::Numbers;
-use crate::discover::observe::Evidence;
+use crate::discover::observe::{Evidence, Series};
 use crate::discover::posterior::Explanation;
 
 /// A set of effects with its fit.
@@ -148,6 +148,19 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     is_large && excess(&set.explanation, evidence) > 0.0
 }
 
+/// True where the residuals of the runs that were fitted are larger than noise alone would leave: their mean square is 1 for
+/// a model that is right, and of `n` values exceeds 1 by `sqrt(2/n)` as its standard deviation.
+pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
+    let parts = |series: &Series| series.at.len() * if series.kind.complex() { 2 } else { 1 };
+    let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| parts(series)).sum();
+    let scatter = (2.0 / values.max(1) as f64).sqrt();
+    let square = set.explanation.gap.fit.powi(2);
+    square.is_nan() || square > 1.0 + ONE_SIDED * scatter
+}
+
+/// The quantile of the normal distribution that one draw in twenty exceeds, the usual level of significance.
+const ONE_SIDED: f64 = 1.645;
+
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.
 pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
     1.0 - excess(after, evidence) / excess(before, evidence).max(f64::MIN_POSITIVE)
@@ -155,7 +168,7 @@ pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) ->
 
 /// The squared gap over its uncertainty on the runs that judge (those that were fitted, where none do) beyond what noise
 /// alone leaves, which is 1.
-pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
+fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let gap = if held_out { own.gap.held_out } else { own.gap.fit };
     (gap.powi(2) - 1.0).max(0.0)

@@ -87,6 +87,11 @@ fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Ve
     (findings, alike)
 }
 
+/// A part of all, and nothing of nothing.
+fn share(part: f64, all: f64) -> f64 {
+    if all > 0.0 { (part / all).max(0.0) } else { 0.0 }
+}
+
 /// How many candidates are told of.
 const CANDIDATES: usize = 3;
 
@@ -117,10 +122,7 @@ fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: 
             effect: name.0.to_owned(),
             at: name.1.to_owned(),
             form,
-            probability: answers
-                .iter()
-                .filter(holds)
-                .fold(0.0, |sum, own| sum + own.probability / all),
+            probability: share(answers.iter().filter(holds).map(|own| own.probability).sum(), all),
             explained: closed(before, &best.explanation, evidence),
             log_evidence: best.explanation.refit.log_evidence - before.refit.log_evidence,
         })

@@ -4,7 +4,7 @@
 //! difference of both is the error that is held down (Hairer, Norsett, Wanner: Solving ordinary differential equations I,
 //! section II.4). How often each step was halved is kept: where parameters move by a difference, the steps stay.
 
-use super::side::Side;
+use super::sets::Sets;
 use crate::solver::rk4;
 
 /// Error of a step that is allowed, over the largest value that a state had.
@@ -17,7 +17,7 @@ const ROOM: f64 = 1.0 / 32.0;
 /// Goes from step to step.
 pub struct Stepper<'a, S> {
     /// The model.
-    pub side: &'a mut S,
+    pub sets: &'a mut S,
     /// Of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
@@ -34,11 +34,11 @@ pub struct Stepper<'a, S> {
     halvings: u8,
 }
 
-impl<'a, S: Side> Stepper<'a, S> {
+impl<'a, S: Sets> Stepper<'a, S> {
     /// Of so many states, those of all sets, and inputs, in steps of a length in s.
-    pub fn new(side: &'a mut S, (states, inputs): (usize, usize), length: f64) -> Self {
+    pub fn new(sets: &'a mut S, (states, inputs): (usize, usize), length: f64) -> Self {
         Self {
-            side,
+            sets,
             length,
             k: std::array::from_fn(|_| vec![0.0; states]),
             x: vec![0.0; states],
@@ -85,7 +85,7 @@ impl<'a, S: Side> Stepper<'a, S> {
         self.parts(inputs, halvings, x, |_, _, _| 0.0);
     }
 
-    /// All parts of a step; the largest error of one, as it is counted of their length and end.
+    /// All parts of a step. Returns the largest value of `error`, which is called after each part with its length.
     fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64], error: fn(&Self, f64, &[f64]) -> f64) -> f64 {
         // What is held jumps from one sample to the next.
         self.knows_slope &= self.last == inputs[0];
@@ -122,14 +122,14 @@ impl<'a, S: Side> Stepper<'a, S> {
 
     /// A part of a step.
     fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
-        let Self { side, k, .. } = self;
+        let Self { sets, k, .. } = self;
         if self.knows_slope {
             k.swap(0, 4);
         } else {
-            side.derivative(x, inputs[0], &mut k[0]);
+            sets.derivative(x, inputs[0], &mut k[0]);
         }
         let derivative = |part: f64, x: &[f64], k: &mut [f64]| {
-            side.derivative(x, inputs[(2.0 * part) as usize], k);
+            sets.derivative(x, inputs[(2.0 * part) as usize], k);
         };
         rk4::step(derivative, h, x, k, &mut self.x);
         x.copy_from_slice(&self.x);

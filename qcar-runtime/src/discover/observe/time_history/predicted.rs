@@ -2,7 +2,7 @@
 
 use nalgebra::Complex;
 
-use crate::discover::observe::replay::{Between, Moved, Reading, Recorded, Replay, reading};
+use crate::discover::observe::replay::{Between, Perturbed, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{
     Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
     order_of, signal_of,
@@ -49,7 +49,7 @@ pub fn history(
     )?;
     let start = inputs.start;
     let (p, begin) = (values.as_slice(), begin(model.about(), misread.begun(run)));
-    let moved = |p: &[f64], begin: Vec<(usize, f64)>| Moved { p: p.to_vec(), begin };
+    let moved = |p: &[f64], begin: Vec<(usize, f64)>| Perturbed { p: p.to_vec(), begin };
     let base = &replay.run(&moved(p, begin.clone()));
     let differences = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
     let steps: Vec<f64> = free.iter().map(differences).collect();
@@ -58,7 +58,7 @@ pub fn history(
         values.set(free.parameter, p[free.parameter] + step);
         moved(values.as_slice(), begin.clone())
     };
-    let others: Vec<Moved> = free.iter().zip(&steps).map(with_step).collect();
+    let others: Vec<Perturbed> = free.iter().zip(&steps).map(with_step).collect();
     let others = replay.like(base, &others);
     let states = if begun {
         unknown(model.about(), spread)
@@ -119,7 +119,7 @@ pub fn replayed(
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     let sensors = evidence.sensors(run);
     let replay = prepare(model, evidence, run, &sensors)?;
-    let moved = Moved {
+    let moved = Perturbed {
         p: values.as_slice().to_vec(),
         begin: begin(model.about(), misread.begun(run)),
     };

@@ -1,10 +1,10 @@
-//! A model at work with one parameter set, or with several side by side: what a replay does with each is the same.
+//! A model with one set of parameters, or with several that are computed at once.
 
-use super::Moved;
+use super::Perturbed;
 use crate::model::{LANES, Lanes, Model};
 
 /// A model with its parameters. States and outputs are rows of a value for each set.
-pub trait Side {
+pub trait Sets {
     /// How many sets there are.
     const LANES: usize;
 
@@ -30,7 +30,7 @@ impl<'a> Alone<'a> {
     }
 }
 
-impl Side for Alone<'_> {
+impl Sets for Alone<'_> {
     const LANES: usize = 1;
 
     fn derivative(&mut self, x: &[f64], u: &[f64], dx: &mut [f64]) {
@@ -52,8 +52,8 @@ pub struct Several<'a> {
 
 impl<'a> Several<'a> {
     /// Of these sets, at least one.
-    pub fn new(model: &'a dyn Model, moved: &[Moved]) -> Self {
-        let of_lane = |lane: usize| &moved[lane.min(moved.len() - 1)].p;
+    pub fn new(model: &'a dyn Model, perturbed: &[Perturbed]) -> Self {
+        let of_lane = |lane: usize| &perturbed[lane.min(perturbed.len() - 1)].p;
         let p: Vec<Lanes> = (0..model.about().parameters.len())
             .map(|parameter| std::array::from_fn(|lane| of_lane(lane)[parameter]))
             .collect();
@@ -71,7 +71,7 @@ impl<'a> Several<'a> {
     }
 }
 
-impl Side for Several<'_> {
+impl Sets for Several<'_> {
     const LANES: usize = LANES;
 
     fn derivative(&mut self, x: &[f64], u: &[f64], dx: &mut [f64]) {
@@ -87,13 +87,13 @@ impl Side for Several<'_> {
     }
 }
 
-/// Where each of the sets begins elsewhere, by the places of the values in the rows.
-pub fn begin(moved: &[Moved]) -> Vec<(usize, f64)> {
-    let of_set = |(lane, moved): (usize, &Moved)| {
-        let place = move |&(state, by): &(usize, f64)| (state * LANES + lane, by);
-        moved.begin.iter().map(place).collect::<Vec<_>>()
+/// By how much the initial states of each lane differ, by their places in the rows.
+pub fn begin(perturbed: &[Perturbed]) -> Vec<(usize, f64)> {
+    let of_lane = |lane: usize| {
+        let own = &perturbed[lane.min(perturbed.len() - 1)].begin;
+        own.iter().map(move |&(state, by)| (state * LANES + lane, by))
     };
-    moved.iter().enumerate().flat_map(of_set).collect()
+    (0..LANES).flat_map(of_lane).collect()
 }
 
 /// The rows of a number of sets, set by set.
