@@ -278,7 +278,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
     let worth = |own: &screen::Prospect| own.gain() > least;
-    if !far_off && !prospects.iter().any(worth) {
+    if !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
     let entering = entrants(&candidates, &prospects, (!far_off).then_some(least));

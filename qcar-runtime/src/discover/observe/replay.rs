@@ -126,7 +126,7 @@ impl<'a> Replay<'a> {
         self.together(perturbed, Steps::Beside(other))
     }
 
-    /// As many sets at once as there are lanes.
+    /// As many sets at once as there are lanes; each for itself where it is followed only until it agrees with the replay.
     fn together(&self, perturbed: &[Perturbed], steps: Steps<'_>) -> Vec<Vec<Vec<f64>>> {
         let some = |perturbed: &[Perturbed]| match perturbed {
             [one] => {
@@ -139,7 +139,11 @@ impl<'a> Replay<'a> {
                 sets::apart(replayed.signals, several.len())
             }
         };
-        perturbed.par_chunks(LANES).flat_map_iter(some).collect()
+        let at_once = match steps {
+            Steps::Beside(_) => 1,
+            Steps::Found | Steps::Like(_) => LANES,
+        };
+        perturbed.par_chunks(at_once).flat_map_iter(some).collect()
     }
 
     /// In the steps of another replay.
