@@ -83,7 +83,8 @@ impl History {
             ("X".into(), Array::Structs(fields(), time)),
             ("Y".into(), Array::Structs(fields(), channels)),
         ]);
-        v5("a run simulated by qcar", &[(variable(&self.name), capture)])
+        v5("a run simulated by qcar", &[(self.name.clone(), capture)])
+            .expect("one variable, and fields of different names")
     }
 
     fn mdf(&self) -> Vec<u8> {
@@ -93,17 +94,5 @@ impl History {
             channels: self.channels.clone(),
         };
         v4("qcar", &[group])
-    }
-}
-
-/// A name as MATLAB takes it for a variable.
-fn variable(name: &str) -> String {
-    let plain: String = name
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' })
-        .collect();
-    match plain.starts_with(|c: char| c.is_ascii_alphabetic()) {
-        true => plain,
-        false => format!("run_{plain}"),
     }
 }

@@ -5,8 +5,10 @@ use std::str::FromStr;
 
 use qcar_runtime::campaign::{Declared, RoadSamples};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::metric::{Course, DURATION, SEED};
+use qcar_runtime::metric::{Course, SEED};
 use qcar_runtime::road::{Class, Road, RoadError};
+
+use crate::failure::flag;
 
 /// A random road of ISO 8608 or a measured profile, and how it is driven over.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,6 +46,8 @@ const CLASSES: [(&str, Class); 8] = [
 
 /// m/s: slower than a walk, faster than any car.
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
+/// The shortest ride, s, of which a body swings about once; its spectrum has a line at each hertz.
+const SHORTEST: f64 = 1.0;
 /// The longest ride, s: a road of ISO 8608 is a sum of sines, and a record has its place in memory.
 const LONGEST: f64 = 600.0;
 
@@ -69,8 +73,10 @@ impl FromStr for Asked {
                 "expected a speed of at least {least} and at most {most} m/s, found `{text}`"
             ));
         }
-        if duration.is_some_and(|duration| !(duration > 0.0 && duration <= LONGEST)) {
-            return Err(format!("expected a duration of at most {LONGEST} s, found `{text}`"));
+        if duration.is_some_and(|duration| !(SHORTEST..=LONGEST).contains(&duration)) {
+            return Err(format!(
+                "expected a duration of at least {SHORTEST} and at most {LONGEST} s, found `{text}`"
+            ));
         }
         Ok(Self {
             ground: Ground::of(ground.trim()).ok_or_else(expected)?,
@@ -114,7 +120,7 @@ impl Asked {
     pub fn course(&self) -> Result<Course, InputError> {
         match &self.ground {
             Ground::Random(class, seed) => {
-                let course = Course::random(*class, *seed, self.speed, self.duration.unwrap_or(DURATION));
+                let course = Course::random(*class, *seed, self.speed, self.duration);
                 course.map_err(|error| no_road(Path::new("command line"), &error))
             }
             Ground::Measured(file, source) => self.along(file, source.as_deref()),
@@ -131,11 +137,35 @@ impl Asked {
             let remedy = format!("drive over a part of it: write `:{LONGEST}s` behind the speed");
             return Err(Problem::new(file, Place::File, found, "a ride of at most ten minutes", remedy).into());
         }
+        if whole < SHORTEST {
+            let found = format!("a road that takes {whole:.3} s");
+            let remedy = "drive over it more slowly, or give a longer road";
+            let expected = format!("a ride of at least {SHORTEST} s");
+            return Err(Problem::new(file, Place::File, found, expected, remedy).into());
+        }
         let stem = file.file_stem().unwrap_or_default().to_string_lossy();
         let chosen = source.map_or_else(String::new, |source| format!("_{}", plain(source)));
         Course::along(&format!("{}{chosen}", plain(&stem)), road, self.speed, self.duration)
             .map_err(|error| no_road(file, &error))
     }
+}
+
+/// The roads, each of which has a name that no other has, nor anything that is driven over `beside` them.
+///
+/// # Errors
+/// As [`Asked::course`], and two of one name.
+pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputError> {
+    let mut courses: Vec<Course> = Vec::new();
+    for road in roads {
+        let course = road.course()?;
+        if courses.iter().chain(beside).any(|own| own.name == course.name) {
+            let found = format!("two rides called {}", course.name);
+            let remedy = "leave one out; another seed, channel, speed or duration makes another ride";
+            return Err(flag("road", found, "each ride once", remedy).into());
+        }
+        courses.push(course);
+    }
+    Ok(courses)
 }
 
 fn no_road(file: &Path, error: &RoadError) -> InputError {
@@ -186,6 +216,7 @@ mod tests {
             "C@0km/h",
             "C@1000km/h",
             "C@60km/h:0s",
+            "C@60km/h:0.9s",
             "C@60km/h:1h",
             "C@20mm",
         ] {

@@ -4,7 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use flate2::read::MultiGzDecoder;
+use qcar_signals::read::packed;
 
 /// Bytes of a text or of an unpacked file that are read, unless [`VARIABLE`] says otherwise.
 const MOST: u64 = 256 << 20;
@@ -14,9 +14,6 @@ const MOST_PLAIN: u64 = 4 << 30;
 
 /// The environment variable with another limit, in MiB.
 const VARIABLE: &str = "QCAR_MAX_MIB";
-
-/// What gzip packed begins with this.
-const GZIP: &[u8] = b"\x1f\x8b";
 
 /// Opens a file that is neither a folder nor a device nor a pipe, which might never end.
 ///
@@ -48,7 +45,7 @@ fn limit() -> Option<u64> {
 /// The content of a measured file, which gzip may have packed.
 ///
 /// # Errors
-/// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set.
+/// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set; too little memory.
 pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let size = file.metadata()?.len();
@@ -57,16 +54,17 @@ pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
         return Err(too_large());
     }
     // All of its place at once: a vector that grows takes up to twice as much.
-    let mut bytes = Vec::with_capacity(size as usize);
+    let mut bytes = Vec::new();
+    bytes.try_reserve_exact(size as usize)?;
     file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > left {
         return Err(too_large());
     }
-    if !bytes.starts_with(GZIP) {
+    let Some(content) = packed(&bytes) else {
         return Ok(bytes);
-    }
+    };
     let mut whole = Vec::new();
-    limited(MultiGzDecoder::new(bytes.as_slice())).read_to_end(&mut whole)?;
+    limited(content).read_to_end(&mut whole)?;
     Ok(whole)
 }
 
@@ -74,6 +72,7 @@ pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
 pub fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
     match error.kind() {
         ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
+        ErrorKind::OutOfMemory => "close other programs, or split the file",
         _ => else_do,
     }
 }

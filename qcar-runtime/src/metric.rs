@@ -16,6 +16,6 @@ mod course;
 // All metrics of a model.
 mod ground;
 
-pub use course::{Course, DURATION, SEED};
+pub use course::{Course, SEED};
 pub use ground::{Ground, MetricError, Reading, Slopes, Trace};
 pub use name::{Measure, Metric, What, metrics};

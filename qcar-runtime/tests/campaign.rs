@@ -7,7 +7,7 @@ use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use qcar_runtime::campaign::{Axis, Campaign, Quantity, Role, Side, Spacing, Test, Truth};
+use qcar_runtime::campaign::{Axis, Campaign, Quantity, RoadSamples, Role, Side, Spacing, Test, Truth};
 use qcar_runtime::error::InputError;
 use tempfile::TempDir;
 
@@ -188,6 +188,40 @@ fn numbers_come_back_as_written() {
         [0.0, -0.07, -0.075]
     );
     assert_eq!(campaign.road(&campaign.roads[0]).unwrap().slope, [0.0, 0.1, 0.0]);
+}
+
+#[test]
+fn a_road_without_slopes_goes_straight_from_sample_to_sample() {
+    let folder = campaign(&[("road.csv", ROAD, "x,z\n0,0\n0.5,0.1\n1.0,0.05\n")]);
+    let campaign = Campaign::open(folder.path()).unwrap();
+    let road = campaign.road(&campaign.roads[0]).unwrap();
+    assert_eq!(
+        (&road.z[..], &road.slope[..]),
+        (&[0.0, 0.1, 0.05][..], &[0.2, -0.1, 0.0][..])
+    );
+}
+
+#[test]
+fn slopes_of_a_measured_road_have_their_unit_and_their_heights() {
+    let folder = tempfile::tempdir().unwrap();
+    let slopes = |head: &str, chosen: Option<&str>| {
+        let file = folder.path().join("road.txt");
+        fs::write(&file, format!("{head}\n0;0;0;30\n0.5;0.1;0.2;10\n1.0;0.05;0.1;0\n")).unwrap();
+        RoadSamples::measured(&file, chosen).map(|road| road.slope)
+    };
+    let near = |found: Vec<f64>, expected: [f64; 3]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs());
+        assert!(
+            found.len() == 3 && off.fold(0.0, f64::max) < 1e-12,
+            "{found:?}, not {expected:?}"
+        );
+    };
+    near(slopes("x;z;other;slope [%]", None).unwrap(), [0.3, 0.1, 0.0]);
+    near(slopes("x;z;other;slope [m/m]", Some("z")).unwrap(), [30.0, 10.0, 0.0]);
+    // Of other heights the slope says nothing.
+    near(slopes("x;z;other;slope [%]", Some("other")).unwrap(), [0.4, -0.2, 0.0]);
+    let said = slopes("x;z;other;slope [rad]", None).unwrap_err().to_string();
+    assert!(said.contains("`slope`") && said.contains("the unit `rad`"), "{said}");
 }
 
 #[test]

@@ -104,8 +104,8 @@ struct Records<'a> {
     count: usize,
 }
 
-/// Bytes of records that are gone through channel by channel while they are at hand.
-const AT_HAND: usize = 1 << 18;
+/// Bytes of the records that are read channel by channel: block size, so that records stay in the cache.
+const BLOCK: usize = 1 << 18;
 
 impl<'a> Records<'a> {
     /// The records that a group promises, if they are there.
@@ -128,7 +128,7 @@ impl<'a> Records<'a> {
 
     /// The same in parts, one behind the other.
     fn parts(&self) -> impl Iterator<Item = Records<'a>> {
-        let most = (AT_HAND / self.stride.max(1)).max(1);
+        let most = (BLOCK / self.stride.max(1)).max(1);
         let firsts = (0..self.count).step_by(most);
         firsts.map(move |first| {
             let count = most.min(self.count - first);

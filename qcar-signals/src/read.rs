@@ -1,7 +1,7 @@
 //! The door: which format a file is, by its content, and its channels.
 
 use std::fs;
-use std::io::Read as _;
+use std::io;
 use std::path::Path;
 
 use flate2::read::MultiGzDecoder;
@@ -13,44 +13,60 @@ use crate::{crg, csv, excel, mat, mdf, rpc, tdms, uff};
 /// What a file begins with that gzip packed.
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// Reads a file of any format that this crate knows. The content decides which it is, not the file's ending.
+/// Reads a file of any format that this crate knows, which gzip may have packed. The content decides which it is, not the
+/// file's ending.
 ///
 /// Memory: the file, and eight bytes for each sample; of a packed file also what it unpacks to, which is at most about a
 /// thousand times what is packed. Claimed sizes are checked against the bytes that are there before memory is taken for them.
 ///
 /// # Errors
-/// A file that cannot be opened, is of no known format, was cut off or is damaged, with the place in it.
+/// A file that cannot be opened, is of no known format, was cut off, is damaged or packed twice, with the place in it.
 pub fn read(file: &Path) -> Result<Recording, ReadError> {
     let outcome = fs::read(file).map_err(|error| {
         let remedy = "correct the path, or put the file there";
         Fault::new(Place::File, error.to_string(), "a readable file", remedy)
     });
-    outcome.and_then(|bytes| recognise(&bytes)).map_err(|fault| ReadError {
+    let recognised = outcome.and_then(|bytes| match packed(&bytes) {
+        None => recognise(&bytes),
+        Some(content) => recognise(&whole(content, bytes.len())?),
+    });
+    recognised.map_err(|fault| ReadError {
         file: file.into(),
         fault,
     })
 }
 
-/// The same for the content of a file, which gzip may have packed.
-///
-/// # Errors
-/// As [`read`], without the file.
-pub fn recognise(bytes: &[u8]) -> Read<Recording> {
-    if !bytes.starts_with(GZIP) {
-        return unpacked(bytes);
-    }
+/// What gzip packed into these bytes, to be unpacked as it is read; `None` of bytes that it did not pack.
+pub fn packed(bytes: &[u8]) -> Option<impl io::Read> {
+    bytes.starts_with(GZIP).then(|| MultiGzDecoder::new(bytes))
+}
+
+fn whole(mut content: impl io::Read, packed: usize) -> Read<Vec<u8>> {
     let mut whole = Vec::new();
-    match MultiGzDecoder::new(bytes).read_to_end(&mut whole) {
-        Ok(_) => unpacked(&whole),
+    match content.read_to_end(&mut whole) {
+        Ok(_) => Ok(whole),
         Err(error) => Err(Fault::cut_off(
-            Place::Byte(bytes.len() as u64),
+            Place::Byte(packed as u64),
             format!("packed data that end with: {error}"),
             "a whole .gz file",
         )),
     }
 }
 
-fn unpacked(bytes: &[u8]) -> Read<Recording> {
+/// The same for the content of a file, unpacked.
+///
+/// # Errors
+/// As [`read`], without the file.
+pub fn recognise(bytes: &[u8]) -> Read<Recording> {
+    if bytes.starts_with(GZIP) {
+        let remedy = "unpack the file once with gzip";
+        return Err(Fault::new(
+            Place::File,
+            "packed data within packed data",
+            "a measured file, packed once at most",
+            remedy,
+        ));
+    }
     if bytes.is_empty() {
         let remedy = "copy it again from where it was recorded";
         return Err(Fault::new(Place::File, "an empty file", "a measured file", remedy));

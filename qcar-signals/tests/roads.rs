@@ -36,6 +36,20 @@ fn texts_that_are_no_road_are_refused_with_their_line() {
         ("= 22.0", "= 23.0", ["23 rows of data", "24 rows", "cut off"]),
         ("= 22.0", "= 21.0", ["23 rows of data", "22 rows", "damaged"]),
         (
+            "= 22.0",
+            "= 0.0",
+            ["line 30", "REFERENCE_LINE_END_U = 0", "an end above the start, 0 m"],
+        ),
+        (
+            "= 22.0",
+            "= 22.0\nreference_line_end_u = 22.0",
+            [
+                "line 31",
+                "`reference_line_end_u` again, after line 30",
+                "each parameter once",
+            ],
+        ),
+        (
             "INCREMENT = 1.0",
             "INCREMENT = 0.0",
             ["`REFERENCE_LINE_INCREMENT`", "found 0", "positive"],

@@ -1,8 +1,11 @@
 //! What is written is read again: names, units, times and every bit of the samples.
 
 use std::fs;
+use std::io::Write as _;
 
-use qcar_signals::mat::write::{Array, v5};
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use qcar_signals::mat::write::{Array, v5, v73};
 use qcar_signals::mdf::write::{Channel, Group, v4};
 use qcar_signals::read::read;
 use qcar_signals::signal::{Recording, Signal, TimeBase, Value};
@@ -96,7 +99,7 @@ fn arrays_texts_and_structures_come_back_from_mat() {
         ("none".to_string(), Array::rows(&[], 3)),
         ("ride".to_string(), capture),
     ];
-    let recording = read_back("ride.mat", &v5("a test", &variables));
+    let recording = read_back("ride.mat", &v5("a test", &variables).unwrap());
     let signal = |name: &str| recording.signals.iter().find(|own| own.name == name).unwrap();
     assert_eq!(
         (signal("f").unit.as_str(), &signal("f").samples[..]),
@@ -118,5 +121,56 @@ fn arrays_texts_and_structures_come_back_from_mat() {
         1,
         "the empty array: {:?}",
         recording.passed_over
+    );
+}
+
+#[test]
+fn both_versions_of_mat_name_variables_alike() {
+    let number = |name: &str| (name.to_string(), Array::number(1.0));
+    let long = "a".repeat(70);
+    let given = ["größe", "30kmh", "end", &long, "z.body"].map(number);
+    let fields = Array::fields(["1st", "a b"].map(number).to_vec());
+    let variables = [&given[..], &[("s".into(), fields)]].concat();
+    let cut = "a".repeat(63);
+    let names = ["gr__e", "x30kmh", "end_", &cut, "z_body", "x1st", "a_b"];
+    // The names of version 7.3 stand as they are in the links of HDF5, those of version 5 in its elements.
+    for file in [v5("a test", &variables).unwrap(), v73(&variables).unwrap()] {
+        let holds = |name: &str| file.windows(name.len()).any(|own| own == name.as_bytes());
+        for name in names {
+            assert!(holds(name), "{name} is missing");
+        }
+        for name in ["größe", "z.body", "a b", &"a".repeat(64)] {
+            assert!(!holds(name), "{name} is there");
+        }
+    }
+    let twins = ["a b", "a.b"].map(number);
+    let inside = [("s".to_string(), Array::fields(twins.to_vec()))];
+    for variables in [&twins[..], &inside] {
+        for refused in [v5("a test", variables), v73(variables)] {
+            let said = refused.unwrap_err();
+            assert!(
+                said.contains("`a b` and `a.b`, which would both be called `a_b`"),
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
+fn packed_once_is_read_and_packed_twice_is_refused() {
+    let packed = |bytes: &[u8]| {
+        let mut packer = GzEncoder::new(Vec::new(), Compression::fast());
+        packer.write_all(bytes).unwrap();
+        packer.finish().unwrap()
+    };
+    let once = packed(b"time,z [m]\n0,1\n0.1,2\n");
+    assert_eq!(read_back("once.csv.gz", &once).signals.len(), 1);
+    let folder = tempfile::tempdir().unwrap();
+    let twice = folder.path().join("twice.gz");
+    fs::write(&twice, packed(&once)).unwrap();
+    let said = read(&twice).unwrap_err().to_string();
+    assert!(
+        said.contains("packed data within packed data") && said.contains("unpack the file once"),
+        "{said}"
     );
 }

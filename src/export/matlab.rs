@@ -25,14 +25,17 @@ pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
 }
 
 /// What [`variables`] gives as a MAT-file of version 5.
-pub fn data(subject: Subject, of: &StateSpace) -> Vec<u8> {
+///
+/// # Errors
+/// Parameters whose names would be the same in MATLAB.
+pub fn data(subject: Subject, of: &StateSpace) -> Result<Vec<u8>, String> {
     v5(&format!("{} by qcar", of.model), &variables(subject, of))
 }
 
 /// The same of version 7.3.
 ///
 /// # Errors
-/// What the writer of HDF5 says.
+/// As [`data`], and what the writer of HDF5 says.
 pub fn data_in_hdf5(subject: Subject, of: &StateSpace) -> Result<Vec<u8>, String> {
     v73(&variables(subject, of))
 }

@@ -187,13 +187,20 @@ fn files(
             (vec![own(unit.archive)], library(&unit.library))
         }
         Kind::Matlab => (vec![matlab::program(subject, stem)?], String::new()),
-        Kind::Mat => (
-            vec![own(matlab::data(subject, &matrices(model, values)?))],
-            String::new(),
-        ),
-        Kind::Mat73 => {
-            let file = matlab::data_in_hdf5(subject, &matrices(model, values)?);
-            let refused = |said| flag("--as", said, "variables that HDF5 can hold", "write --as mat");
+        Kind::Mat | Kind::Mat73 => {
+            let matrices = matrices(model, values)?;
+            let file = match kind {
+                Kind::Mat => matlab::data(subject, &matrices),
+                _ => matlab::data_in_hdf5(subject, &matrices),
+            };
+            let refused = |said| {
+                flag(
+                    "--as",
+                    said,
+                    "variables that MATLAB can hold",
+                    "rename one of both in the model",
+                )
+            };
             (vec![own(file.map_err(refused)?)], String::new())
         }
         Kind::Modelica => text(modelica::model(subject.compiled, subject.values)),

@@ -28,7 +28,7 @@ mod kind;
 /// Look into measured files and begin a campaign with them
 ///
 /// Lists the channels of each file, proposes which sensor of the model each is, by its name and unit, and which kind of run the file
-/// is: of a sweep the frequencies and the velocity of the pad. Several sweeps in one recording, with two seconds of rest between, become
+/// is: of a sweep the frequencies and the velocity of the pad. Several sweeps in one recording, with 1.5 s of rest between, become
 /// runs of their own. The new folder holds a campaign.toml that says what is still to be filled in. The files stay where they are.
 #[derive(Args)]
 #[command(

@@ -31,7 +31,7 @@ mod figure;
 pub(crate) mod render;
 // Power spectral densities of what roads do.
 mod spectra;
-// Rides over roads that nobody has measured.
+// Rides over roads without a measured run.
 mod ground;
 
 use compared::Compared;
@@ -42,7 +42,7 @@ use records::Record;
 /// Sweeps and time histories are replayed: what was recorded of the inputs drives the model, from a state at the beginning
 /// that is estimated where a time history is. Their error is the root mean square of the difference over that of the
 /// measured signal without its mean (NRMS).
-/// With `--road` the model rolls over roads instead that nobody has measured it on, on the tyre of the campaign: what a class of ISO
+/// With `--road` the model rolls over roads without a measured run instead, on the tyre of the campaign: what a class of ISO
 /// 8608 or a measured profile does to each mass, weighted as ISO 2631-1 has it, and to the load of the tyre.
 /// Of cleat runs the errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
 /// square, after both records are aligned at the peak of the wheel.

@@ -1,4 +1,4 @@
-//! Rides over roads that nobody has measured, and what they do.
+//! Rides over roads without a measured run, and what they do.
 
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
@@ -67,10 +67,10 @@ fn magnitude(vertical: bool, frequency: f64) -> f64 {
 fn weighted_vibration_is_that_of_the_standard() {
     let folder = tempfile::tempdir().unwrap();
     let result = rolled(&["C@80km/h:12s"], folder.path());
-    let record = columns(&folder.path().join("iso_C_80kmh.csv"));
+    let record = columns(&folder.path().join("iso_C_80kmh_12s.csv"));
     for (mass, axis, vertical) in [("body", "z", true), ("wheel", "z", true), ("body", "x", false)] {
-        let felt = result["felt"].as_array().unwrap().iter();
-        let own = felt
+        let vibration = result["vibration"].as_array().unwrap().iter();
+        let own = vibration
             .clone()
             .find(|own| own["mass"] == mass && own["axis"] == axis)
             .unwrap();
@@ -92,7 +92,7 @@ fn weighted_vibration_is_that_of_the_standard() {
 fn spectra_of_a_linear_axle_are_those_of_the_road_times_its_response() {
     let folder = tempfile::tempdir().unwrap();
     rolled(&["B@100km/h:60s"], folder.path());
-    let spectra = columns(&folder.path().join("iso_B_100kmh_spectra.csv"));
+    let spectra = columns(&folder.path().join("iso_B_100kmh_60s_spectra.csv"));
     let response = succeeds(&[
         "frf",
         "axle_a",
@@ -167,7 +167,7 @@ fn a_road_is_the_same_from_whichever_file() {
         [
             "slope_banking_krbi_v=0.3_20kmh",
             "metres_20kmh",
-            "millimetres_right__20kmh"
+            "millimetres_right__20kmh_1s"
         ]
     );
     let [crg, metres, millimetres] = [0, 1, 2].map(|at| columns(&out.join(format!("{}.csv", names[at]))));
@@ -193,6 +193,9 @@ fn what_is_no_road_is_refused_with_its_place() {
     write("back.csv", "x,z\n0,0\n0.1,0.001\n0.1,0.002\n0.2,0\n");
     write("times.csv", "time,z\n0,0\n0.1,0.001\n0.2,0.002\n");
     write("volts.csv", "x,z [V]\n0,0\n0.1,0.001\n0.2,0.002\n");
+    write("two.csv", "x,position,z\n0,0,0\n0.1,0.1,0.001\n0.2,0.2,0.002\n");
+    write("degrees.csv", "x,z,slope [deg]\n0,0,0\n0.1,0.001,0\n0.2,0.002,0\n");
+    write("dash.csv", "x,z\n0,0\n0.1,0.001\n0.2,0.002\n");
     write("rough.csv", "x,z\n0,0\n0.1,0.01\n0.2,-0.01\n0.3,0.01\n0.4,-0.01\n");
     let border = "qcar-signals/tests/samples/crg/missing_border_kdbi.crg";
     let own = |file: &str| folder.path().join(file).display().to_string();
@@ -215,11 +218,32 @@ fn what_is_no_road_is_refused_with_its_place() {
         ),
         (
             format!("{}@20km/h", own("volts.csv")),
-            &["volts.csv", "no heights over it", "in m or mm"],
+            &["volts.csv", "no channel of heights in this file", "in m or mm"],
         ),
         (
             format!("{}#z@20km/h", own("volts.csv")),
             &["volts.csv", "`z`", "the unit `V`"],
+        ),
+        (
+            format!("{}@20km/h", own("two.csv")),
+            &["two.csv", "several channels of distances: `x`, `position`"],
+        ),
+        (
+            format!("{}@20km/h", own("degrees.csv")),
+            &["degrees.csv", "`slope`", "the unit `deg`", "1, m/m or %"],
+        ),
+        (
+            format!("{}#x@20km/h", own("dash.csv")),
+            &[
+                "dash.csv",
+                "`x`",
+                "the distances along the road",
+                "choose the channel of heights",
+            ],
+        ),
+        (
+            format!("{}@20km/h", own("dash.csv")),
+            &["dash.csv", "a road that takes 0.036 s", "at least 1 s"],
         ),
         (
             format!("{}@20km/h", own("rough.csv")),
@@ -244,11 +268,63 @@ fn what_is_no_road_is_refused_with_its_place() {
             assert!(said.contains(part), "{road}: `{part}` is not in: {said}");
         }
     }
-    let twice = qcar(&["simulate", AXLE, "--road", "C@20km/h", "--road", "C@20km/h:9s"]);
+    let short = qcar(&["simulate", AXLE, "--road", "C@20km/h:0.1s"]);
     assert!(
-        twice.status == 2 && twice.stderr.contains("two rides called iso_C_20kmh"),
+        short.status == 2 && short.stderr.contains("at least 1 and at most 600 s"),
         "{}",
-        twice.stderr
+        short.stderr
+    );
+}
+
+#[test]
+fn a_ride_is_asked_for_once_by_every_verb() {
+    let folder = tempfile::tempdir().unwrap();
+    let targets = folder.path().join("targets.toml");
+    let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE);
+    let text = format!(
+        "subject = \"axle_a\"\ncampaign = \"{}\"\nroads = [\"C@36km/h\", \"C@10m/s\"]\n\n\
+         [[target]]\nmetric = \"mode.1.damping\"\nmin = 0.1\n\n[[parameter]]\nname = \"k_susp\"\nrange = [\"80 %\", \"120 %\"]\n",
+        campaign.display()
+    );
+    fs::write(&targets, text).unwrap();
+    let twins = ["--road", "C@36km/h", "--road", "C@10m/s"];
+    for arguments in [
+        &[&["simulate", AXLE][..], &twins].concat(),
+        &[&["sensitivity", "axle_a", "--campaign", AXLE][..], &twins].concat(),
+        &vec!["target", targets.to_str().unwrap()],
+    ] {
+        let ran = qcar(arguments);
+        let said = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(
+            ran.status == 2 && said.contains("two rides called iso_C_36kmh"),
+            "{arguments:?}: {said}"
+        );
+    }
+}
+
+#[test]
+fn roads_carry_the_notes_of_their_campaign() {
+    let text = succeeds(&["simulate", AXLE, "--road", "C@80km/h:1s", "--road", "C@80km/h:1.5s"]);
+    let result: Value = serde_json::from_str(&succeeds(&[
+        "simulate",
+        AXLE,
+        "--road",
+        "C@80km/h:1s",
+        "--format",
+        "json",
+    ]))
+    .unwrap();
+    let guessed: Vec<&str> = result["at_start"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|own| own.as_str().unwrap())
+        .collect();
+    assert!(!guessed.is_empty() && result["notices"].is_array());
+    let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    assert!(
+        text.contains(&format!("at the campaign's start values: {}", guessed.join(", "))),
+        "{text}"
     );
 }
 

@@ -205,7 +205,7 @@ fn slow(t: f64) -> f64 {
 }
 
 #[test]
-fn messages_of_a_bus_are_laid_on_even_instants() {
+fn messages_of_a_bus_are_interpolated_linearly() {
     let sections =
         channel("pad", "source = \"Pad_FL\"") + &channel("body", "source = \"Body_FL\"") + &history("can.txt", "");
     let whole = folder(&sections, ("can.txt", &messages(0..0)));

@@ -50,7 +50,7 @@ impl Campaign {
                 file,
             });
         }
-        let mut table = read(&file, CURVE)?;
+        let mut table = read(&file, CURVE, &[])?;
         Ok(Curve {
             displacement: table.take("displacement"),
             force: table.take("force"),
@@ -76,7 +76,7 @@ impl Campaign {
                 file,
             });
         }
-        let mut table = read(&file, DYNAMIC_CURVE)?;
+        let mut table = read(&file, DYNAMIC_CURVE, &[])?;
         let time = increasing(&mut table, "time")?;
         let (displacement, velocity, force) = (table.take("displacement"), table.take("velocity"), table.take("force"));
         Ok(DynamicCurve {
@@ -100,9 +100,9 @@ fn other_kind(file: &Path, expected: &str) -> InputError {
     .into()
 }
 
-pub(super) fn read(file: &Path, names: &[&str]) -> Result<Table, InputError> {
+pub(super) fn read(file: &Path, required: &[&str], allowed: &[&str]) -> Result<Table, InputError> {
     let table = table::read(file)?;
-    InputError::unless_empty(table::check_names(file, &table.names, names, &[]), Some(table))
+    InputError::unless_empty(table::check_names(file, &table.names, required, allowed), Some(table))
 }
 
 pub(super) fn increasing(table: &mut Table, name: &str) -> Result<Vec<f64>, InputError> {

@@ -24,7 +24,9 @@ pub(super) const CURVE: &[&str] = &["displacement", "force"];
 /// The columns of a dynamic bounce, s, m, m/s and N.
 pub(super) const DYNAMIC_CURVE: &[&str] = &["time", "displacement", "velocity", "force"];
 /// The columns of a road, m, m and 1.
-pub(super) const ROAD: &[&str] = &["x", "z", "slope"];
+pub(super) const ROAD: &[&str] = &["x", "z"];
+/// What a road may have beside them.
+pub(super) const SLOPE: &[&str] = &["slope"];
 
 impl Campaign {
     /// Opens a campaign: reads `campaign.toml` of `folder`, the header line of every plain table that it lists, and the
@@ -283,7 +285,7 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
     let roads = campaign.roads.iter().filter(|road| road.profile == Profile::Table);
-    runs.chain(roads.map(|road| (road.file.as_str(), ROAD, &[][..])))
+    runs.chain(roads.map(|road| (road.file.as_str(), ROAD, SLOPE)))
         .collect()
 }
 

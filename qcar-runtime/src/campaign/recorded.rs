@@ -24,7 +24,7 @@ mod channel;
 // All channels of a run at one rate.
 mod together;
 
-pub(super) use files::{Files, problem, recording};
+pub(super) use files::{BESIDE_MANIFEST, Files, problem, recording};
 
 impl Campaign {
     /// What was read of a run, `None` where its file is a plain table.

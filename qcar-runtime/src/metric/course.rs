@@ -21,7 +21,7 @@ pub struct Course {
 }
 
 /// Of the random road, s, where nobody says how long: enough for ten periods of a body on its springs.
-pub const DURATION: f64 = 8.0;
+const DURATION: f64 = 8.0;
 const SAMPLE_RATE: f64 = 1000.0;
 /// Of the random road, m: it is level until the tyre is on it.
 const SPACING: f64 = 0.03;
@@ -29,11 +29,14 @@ const SPACING: f64 = 0.03;
 pub const SEED: u64 = 1;
 
 impl Course {
-    /// A random road of ISO 8608 at a speed (m/s) for a duration (s); with a name such as `iso_C_60kmh`, or `iso_C7_60kmh` of seed 7.
+    /// A random road of ISO 8608 at a speed (m/s), for a duration (s) or eight seconds; with a name such as `iso_C_60kmh`,
+    /// `iso_C7_60kmh` of seed 7, or `iso_C_60kmh_20s` where the duration is given.
     ///
     /// # Errors
     /// A speed that is too low for the road to rise from level.
-    pub fn random(class: Class, seed: u64, speed: f64, duration: f64) -> Result<Self, RoadError> {
+    pub fn random(class: Class, seed: u64, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
+        let stated = driven(speed, duration);
+        let duration = duration.unwrap_or(DURATION);
         let random = Random {
             class,
             seed,
@@ -42,7 +45,7 @@ impl Course {
         };
         let number = if seed == SEED { String::new() } else { seed.to_string() };
         Ok(Self {
-            name: format!("iso_{class:?}{number}_{:.0}kmh", 3.6 * speed),
+            name: format!("iso_{class:?}{number}_{stated}"),
             road: Road::from_random(&random)?,
             speed,
             sample_rate: SAMPLE_RATE,
@@ -51,12 +54,13 @@ impl Course {
         })
     }
 
-    /// All of a road from its first point on at a speed (m/s), or for a duration (s) that ends no later; the speed joins the name,
-    /// as in `belgian_50kmh`.
+    /// All of a road from its first point on at a speed (m/s), or for a duration (s) that ends no later; both join the name, as in
+    /// `belgian_50kmh` and `belgian_50kmh_20s`.
     ///
     /// # Errors
     /// A road that ends before the duration does.
     pub fn along(name: &str, road: Road, speed: f64, duration: Option<f64>) -> Result<Self, RoadError> {
+        let stated = driven(speed, duration);
         let [first, last] = road.extent();
         let whole = (last - first) / speed;
         let duration = duration.unwrap_or(whole);
@@ -65,7 +69,7 @@ impl Course {
             return Err(RoadError::TooShort { end: last, needed });
         }
         Ok(Self {
-            name: format!("{name}_{:.0}kmh", 3.6 * speed),
+            name: format!("{name}_{stated}"),
             road: road.beginning_at_zero(),
             speed,
             sample_rate: SAMPLE_RATE,
@@ -116,4 +120,11 @@ impl Course {
             samples: self.samples,
         }
     }
+}
+
+/// How a road is driven over, for a name: the speed to a thousandth of a km/h, and the duration where it is given.
+fn driven(speed: f64, duration: Option<f64>) -> String {
+    let speed = (3600.0 * speed).round() / 1e3;
+    let duration = duration.map_or_else(String::new, |duration| format!("_{duration}s"));
+    format!("{speed}kmh{duration}")
 }

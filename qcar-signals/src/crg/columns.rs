@@ -25,9 +25,11 @@ pub(super) enum Kind {
 /// The columns in their order.
 pub(super) fn columns(header: &Header) -> Read<Vec<Column>> {
     let mut columns: Vec<Column> = Vec::new();
+    let mut next = 1;
     for (line, text) in header.defined("D:") {
-        let sections = columns.iter().filter(|column| column.kind == Kind::Numbered).count();
-        columns.push(Column::of(line, text, sections + 1)?);
+        let column = Column::of(line, text, next)?;
+        next += usize::from(column.kind == Kind::Numbered);
+        columns.push(column);
     }
     let [stated, numbered] = [true, false].map(|stated| {
         columns.iter().find(|column| match column.kind {

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use crate::bytes::text;
 use crate::error::{Fault, Place, Read};
 
-/// Of a line of the header; what stands behind is a comment.
+/// Characters of a line of the header; characters after column 72 are a comment.
 pub(super) const RECORD: usize = 72;
 /// How far rounded numbers of the header may be from each other, as a share of an increment.
 pub(super) const ROUNDED: f64 = 1e-2;
@@ -88,7 +88,16 @@ impl Header {
                     ));
                 };
                 let key = (section.into(), name.trim().to_ascii_uppercase());
-                self.parameters.insert(key, (value, self.lines));
+                if let Some((_, before)) = self.parameters.insert(key, (value, self.lines)) {
+                    let found = format!("`{}` again, after line {before}", name.trim());
+                    let remedy = "remove one of both";
+                    return Err(Fault::new(
+                        Place::Line(self.lines),
+                        found,
+                        "each parameter once",
+                        remedy,
+                    ));
+                }
             }
             _ => {}
         }
@@ -146,8 +155,18 @@ impl Header {
     /// Rows that the length of the reference line promises.
     pub fn promised(&self) -> Read<Option<f64>> {
         let Distances { start, step } = self.distances()?;
-        let end = self.road("REFERENCE_LINE_END_U").filter(|end| *end > start);
-        Ok(end.map(|end| ((end - start) / step).round() + 1.0))
+        let Some((end, line)) = self.stated("REFERENCE_LINE_END_U") else {
+            return Ok(None);
+        };
+        if end <= start {
+            let found = format!("REFERENCE_LINE_END_U = {end}");
+            return Err(Fault::damaged(
+                Place::Line(line),
+                found,
+                format!("an end above the start, {start} m"),
+            ));
+        }
+        Ok(Some(((end - start) / step).round() + 1.0))
     }
 
     /// What the parameters or the virtual channel `U:reference line u` say, or both of them.

@@ -3,11 +3,13 @@
 //!
 //! Source of version 5: "MAT-File Format" of The MathWorks.
 
+mod names;
 mod v73;
 
 pub use v73::v73;
 
 use super::{HEADER, VERSION};
+use names::names;
 
 const INT8: u32 = 1;
 const UINT16: u32 = 4;
@@ -73,8 +75,13 @@ impl Array {
 
 /// A file with these variables; `description` is what it says of itself in a line of 116 letters at most.
 ///
-/// A name that is longer than [`LONGEST_NAME`] is cut off there.
-pub fn v5(description: &str, variables: &[(String, Array)]) -> Vec<u8> {
+/// A name of a variable or field that MATLAB does not take is changed into one that it does: other characters than letters of ASCII,
+/// digits and `_` become `_`, `x` stands before what begins with no letter and `_` behind a keyword; what is longer than
+/// [`LONGEST_NAME`] is cut off there.
+///
+/// # Errors
+/// Two variables, or two fields of a structure, whose names would then be the same.
+pub fn v5(description: &str, variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
     let mut file = vec![b' '; VERSION];
     for (to, from) in file
         .iter_mut()
@@ -86,44 +93,51 @@ pub fn v5(description: &str, variables: &[(String, Array)]) -> Vec<u8> {
     file[116..].fill(0);
     file.extend([0x00, 0x01, b'I', b'M']);
     debug_assert_eq!(file.len(), HEADER);
-    for (name, array) in variables {
-        file.extend(matrix(name, array));
+    let names = names(variables.iter().map(|(name, _)| &**name))?;
+    for (name, (_, array)) in names.iter().zip(variables) {
+        file.extend(matrix(name, array)?);
     }
-    file
+    Ok(file)
 }
 
-fn matrix(name: &str, array: &Array) -> Vec<u8> {
+fn matrix(name: &str, array: &Array) -> Result<Vec<u8>, String> {
     let (class, dimensions) = array.shape();
     let mut content = element(UINT32, &bytes(&[class, 0], |number| number.to_le_bytes()));
     content.extend(element(INT32, &bytes(&dimensions, |&size| (size as i32).to_le_bytes())));
-    content.extend(element(INT8, &name.as_bytes()[..name.len().min(LONGEST_NAME)]));
+    content.extend(element(INT8, name.as_bytes()));
     match array {
         Array::Numbers(_, numbers) => content.extend(element(DOUBLE, &bytes(numbers, |number| number.to_le_bytes()))),
         Array::Text(text) => {
             let letters: Vec<u16> = text.encode_utf16().collect();
             content.extend(element(UINT16, &bytes(&letters, |letter| letter.to_le_bytes())));
         }
-        Array::Cells(cells) => content.extend(cells.iter().flat_map(|cell| matrix("", cell))),
+        Array::Cells(cells) => content.extend(unnamed(cells)?),
         Array::Structs(names, elements) => {
             content.extend(element(INT32, &(LONGEST_NAME as i32 + 1).to_le_bytes()));
-            content.extend(element(INT8, &field_names(names)));
-            content.extend(elements.iter().flatten().flat_map(|field| matrix("", field)));
+            content.extend(element(INT8, &field_names(names)?));
+            content.extend(unnamed(elements.iter().flatten())?);
         }
     }
     let mut all = bytes(&[MATRIX, content.len() as u32], |number| number.to_le_bytes());
     all.extend(content);
-    all
+    Ok(all)
+}
+
+/// Elements of a cell array or structure, one behind the other.
+fn unnamed<'a>(arrays: impl IntoIterator<Item = &'a Array>) -> Result<Vec<u8>, String> {
+    let matrices = arrays.into_iter().map(|array| matrix("", array));
+    Ok(matrices.collect::<Result<Vec<_>, _>>()?.concat())
 }
 
 /// Each name filled up with zeros, one of which ends it.
-fn field_names(names: &[String]) -> Vec<u8> {
+fn field_names(fields: &[String]) -> Result<Vec<u8>, String> {
     let fixed = |name: &String| {
         let mut fixed = [0; LONGEST_NAME + 1];
-        let length = name.len().min(LONGEST_NAME);
-        fixed[..length].copy_from_slice(&name.as_bytes()[..length]);
+        fixed[..name.len()].copy_from_slice(name.as_bytes());
         fixed
     };
-    names.iter().flat_map(fixed).collect()
+    let names = names(fields.iter().map(|name| &**name))?;
+    Ok(names.iter().flat_map(fixed).collect())
 }
 
 /// A tag and data that fill up eight bytes; up to four bytes stand in the tag.

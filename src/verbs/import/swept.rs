@@ -43,7 +43,8 @@ struct Half {
 const BLOCK: f64 = 0.5;
 /// A pad rests where its velocity is below this share of its largest.
 const REST: f64 = 0.1;
-/// Blocks that a rest between two parts of a record has at least.
+/// Whole blocks that a rest between two parts of a record has at least: a rest of 1.5 s has them wherever it begins, one of less than
+/// 1 s nowhere.
 const REST_BLOCKS: usize = 2;
 
 /// The parts of a record in which the pad moves, each with the rest around it up to a block, or all of it where there is no rest.
@@ -255,6 +256,27 @@ mod tests {
             .map(|part| swept(&all[part], 1000.0, Quantity::Acceleration).unwrap().peak_velocity)
             .collect();
         assert_eq!(levels, [0.025, 0.1]);
+    }
+
+    #[test]
+    fn a_shorter_rest_is_no_end_of_a_sweep() {
+        let one = sweep(true);
+        let parts_with = |rest: usize, shift: usize| {
+            let still = |samples: usize| std::iter::repeat_n(0.0, samples);
+            let all: Vec<f64> = still(shift)
+                .chain(one.clone())
+                .chain(still(rest))
+                .chain(one.clone())
+                .collect();
+            parts(&all, 1000.0, Quantity::Velocity).len()
+        };
+        for shift in [0, 100, 250, 499] {
+            assert_eq!(
+                (parts_with(900, shift), parts_with(1500, shift)),
+                (1, 2),
+                "{shift} samples before"
+            );
+        }
     }
 
     #[test]

@@ -12,7 +12,7 @@ use qcar_runtime::tyre::Tyre;
 use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, Beside, Setting, out_of_range};
-use crate::roads::Asked;
+use crate::roads::{Asked, courses};
 use crate::verbs::fit::{self, Choices};
 
 /// A model with values on its tyre.
@@ -72,9 +72,8 @@ impl Subject {
             let remedy = "give a campaign, or parameter values with [vehicle], or leave the road out";
             return Err(flag(&subject.name, found, expected, remedy).into());
         }
-        for road in beneath.roads {
-            subject.courses.push(road.course()?);
-        }
+        let roads = courses(beneath.roads, &subject.courses)?;
+        subject.courses.extend(roads);
         Ok(subject)
     }
 
@@ -246,7 +245,7 @@ fn finish(
         _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),
     };
     let courses = match &tyre {
-        Some(_) => courses(campaign.as_ref())?,
+        Some(_) => cleats(campaign.as_ref())?,
         None => Vec::new(),
     };
     Ok(Subject {
@@ -264,7 +263,7 @@ fn finish(
 }
 
 /// The cleat runs of a campaign, else those of the thesis.
-fn courses(campaign: Option<&Campaign>) -> Result<Vec<Course>, Failure> {
+fn cleats(campaign: Option<&Campaign>) -> Result<Vec<Course>, Failure> {
     let mut courses = Vec::new();
     if let Some(campaign) = campaign {
         for run in &campaign.runs {

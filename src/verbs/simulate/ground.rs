@@ -1,4 +1,4 @@
-//! Rides over roads that nobody has measured: what they do to the masses and to the tyre.
+//! Rides over roads without a measured run: what they do to the masses and to the tyre.
 
 use std::path::Path;
 
@@ -14,15 +14,14 @@ use qcar_runtime::simulate::{Car, Drive, Ride, Settings, Variant, rides, tyre};
 use qcar_signals::mdf::write::Channel;
 use serde::Serialize;
 
-use super::render;
 use super::spectra::Spectra;
+use super::{guessed, render};
 use crate::catalogue::Loaded;
-use crate::failure::flag;
 use crate::files::put;
 use crate::histories::{History, Kind};
 use crate::json;
 use crate::progress::while_counting;
-use crate::roads::Asked;
+use crate::roads::{Asked, courses};
 use crate::table::{Table, number};
 use crate::units;
 
@@ -32,8 +31,12 @@ const ACCELERATION: &str = "m/s^2";
 pub(super) struct Rolled {
     campaign: String,
     model: String,
-    felt: Vec<Felt>,
+    vibration: Vec<Vibration>,
     loads: Vec<Load>,
+    /// What is odd about the campaign, as sentences.
+    notices: Vec<String>,
+    /// Parameters that still have their start values.
+    at_start: Vec<String>,
     /// Of each ride its record, and Hz.
     histories: Vec<(History, f64)>,
 }
@@ -43,13 +46,15 @@ pub(super) struct Rolled {
 struct Json<'a> {
     campaign: &'a str,
     model: &'a str,
-    felt: &'a [Felt],
+    vibration: &'a [Vibration],
     loads: &'a [Load],
+    notices: &'a [String],
+    at_start: &'a [String],
 }
 
 /// What a mass does along an axis.
 #[derive(Serialize)]
-struct Felt {
+struct Vibration {
     road: String,
     mass: String,
     axis: String,
@@ -98,7 +103,7 @@ pub(super) fn roll(
 ) -> Result<Rolled, InputError> {
     model.check_inertias(values.as_slice())?;
     let (tyre, load) = tyre(campaign)?;
-    let courses = courses(roads)?;
+    let courses = courses(roads, &[])?;
     let car = Car {
         model: &**model,
         parameters: values.as_slice(),
@@ -112,8 +117,10 @@ pub(super) fn roll(
     let mut rolled = Rolled {
         campaign: campaign.name.clone(),
         model: model.about().name.to_string(),
-        felt: Vec::new(),
+        vibration: Vec::new(),
         loads: Vec::new(),
+        notices: campaign.notices.clone(),
+        at_start: guessed(campaign, model, values),
         histories: Vec::new(),
     };
     for (course, ride) in courses.iter().zip(ridden) {
@@ -121,21 +128,6 @@ pub(super) fn roll(
         rolled.add(model.about(), course, &ride, load);
     }
     Ok(rolled)
-}
-
-/// The roads, each of which has a name of its own.
-fn courses(roads: &[Asked]) -> Result<Vec<Course>, InputError> {
-    let mut courses: Vec<Course> = Vec::new();
-    for road in roads {
-        let course = road.course()?;
-        if courses.iter().any(|own| own.name == course.name) {
-            let found = format!("two rides called {}", course.name);
-            let remedy = "leave one out; another seed, channel or speed makes another ride";
-            return Err(flag("--road", found, "each ride once", remedy).into());
-        }
-        courses.push(course);
-    }
-    Ok(courses)
 }
 
 fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
@@ -157,7 +149,7 @@ impl Rolled {
             output.signal.kind == kind && output.unit == ACCELERATION
         });
         for (output, samples) in accelerations {
-            self.felt.push(Felt::of(course, &output.signal, samples));
+            self.vibration.push(Vibration::of(course, &output.signal, samples));
         }
         let height: Vec<f64> = ride
             .time
@@ -205,14 +197,16 @@ impl Rolled {
         json::line(&Json {
             campaign: &self.campaign,
             model: &self.model,
-            felt: &self.felt,
+            vibration: &self.vibration,
             loads: &self.loads,
+            notices: &self.notices,
+            at_start: &self.at_start,
         })
     }
 
     pub fn text(&self) -> String {
         let acceleration = |value: f64| number(units::value(value, ACCELERATION), 4);
-        let mut felt = Table::new([
+        let mut vibration = Table::new([
             "road",
             "mass",
             "axis",
@@ -223,8 +217,8 @@ impl Rolled {
             "crest_factor",
             "vdv_m/s^1.75",
         ]);
-        for own in &self.felt {
-            felt.row(vec![
+        for own in &self.vibration {
+            vibration.row(vec![
                 own.road.clone(),
                 own.mass.clone(),
                 own.axis.clone(),
@@ -261,15 +255,16 @@ impl Rolled {
                 own.lift_offs.to_string(),
             ]);
         }
-        format!("{}\n{}", felt.text(), loads.text())
+        let notes = render::notes(&self.notices, &self.at_start);
+        format!("{}\n{}{notes}", vibration.text(), loads.text())
     }
 
     /// A row for each road, mass and axis.
     pub fn csv(&self) -> String {
         let [rms, weighted] = ["rms", "weighted_rms"].map(|what| units::heading(what, ACCELERATION));
-        let row = |own: &Felt| {
+        let row = |own: &Vibration| {
             let [rms, weighted] = [own.rms, own.weighted_rms].map(|value| units::value(value, ACCELERATION));
-            let Felt {
+            let Vibration {
                 road,
                 mass,
                 axis,
@@ -281,11 +276,11 @@ impl Rolled {
             format!("{road},{mass},{axis},{rms},{weighting},{weighted},{crest_factor},{vdv}\n")
         };
         let head = format!("road,mass,axis,{rms},weighting,{weighted},crest_factor,vdv [m/s^1.75]\n");
-        head + &self.felt.iter().map(row).collect::<String>()
+        head + &self.vibration.iter().map(row).collect::<String>()
     }
 }
 
-impl Felt {
+impl Vibration {
     fn of(course: &Course, signal: &Signal, samples: &[f64]) -> Self {
         let (weighting, called) = match &*signal.axis {
             "z" => (Weighting::Wk, "Wk"),

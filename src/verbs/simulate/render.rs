@@ -72,11 +72,7 @@ impl Result<'_> {
         let cleats = self.cleats.map(text);
         let records = (!self.records.is_empty()).then(|| self.records_text());
         let parts: Vec<String> = cleats.into_iter().chain(records).collect();
-        let noted = match noted(self.notices) {
-            none if none.is_empty() => none,
-            notes => format!("\n{notes}"),
-        };
-        format!("{}{noted}{}", parts.join("\n"), note(&self.at_start))
+        format!("{}{}", parts.join("\n"), notes(self.notices, &self.at_start))
     }
 
     /// A table of the cleats, one of the records, and an empty line between them.
@@ -184,8 +180,17 @@ note: {notice}
     )
 }
 
-fn note(guessed: &[String]) -> String {
-    match guessed {
+/// What is odd, and which parameters still have their start values; begins with an empty line, unless there is nothing.
+pub(super) fn notes(notices: &[String], at_start: &[String]) -> String {
+    let noted = match noted(notices) {
+        none if none.is_empty() => none,
+        notes => format!("\n{notes}"),
+    };
+    format!("{noted}{}", guess(at_start))
+}
+
+fn guess(at_start: &[String]) -> String {
+    match at_start {
         [] => String::new(),
         names => format!(
             "\nnote: at the campaign's start values: {}; what depends on them is as good as these. `qcar discover --out` \

@@ -10,7 +10,7 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::super::contents::Tap;
 use super::even::{self, Even};
 use super::files::problem;
-use super::uneven::laid;
+use super::uneven::resampled;
 use super::values::Scaling;
 use super::window::{Span, clock};
 use crate::error::{InputError, Place, Problem};
@@ -50,8 +50,8 @@ impl<'a> Channel<'a> {
             return Err(Problem::new(file, place, "no times", expected, remedy).into());
         };
         let scaling = Scaling::of(file, signal, &base, tap)?;
-        let (base, samples, uneven) = match laid(&base, &signal.samples, rate) {
-            Some(laid) => (laid.base, Cow::Owned(laid.values), Some(laid.steps)),
+        let (base, samples, uneven) = match resampled(&base, &signal.samples, rate) {
+            Some(even) => (even.base, Cow::Owned(even.values), Some(even.steps)),
             None => (base, Cow::Borrowed(signal.samples.as_slice()), None),
         };
         Ok(Channel {

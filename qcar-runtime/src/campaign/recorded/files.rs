@@ -27,7 +27,7 @@ impl Files {
         let known = self.read.borrow().get(file).cloned();
         known.unwrap_or_else(|| {
             self.forget_what_is_too_much();
-            let recording = recording(file).map(Rc::new);
+            let recording = recording(file, BESIDE_MANIFEST).map(Rc::new);
             self.read.borrow_mut().insert(file.into(), recording.clone());
             recording
         })
@@ -46,13 +46,16 @@ fn samples(recording: &Recording) -> usize {
     recording.signals.iter().map(|signal| signal.samples.len()).sum()
 }
 
-/// The recording in a file.
+/// What to do about a file of a campaign that is not there.
+pub(in crate::campaign) const BESIDE_MANIFEST: &str =
+    "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+
+/// The recording in a file; `wrong_path` is what to do where it is not there.
 ///
 /// # Errors
 /// A file that cannot be read.
-pub(in crate::campaign) fn recording(file: &Path) -> Result<Recording, InputError> {
+pub(in crate::campaign) fn recording(file: &Path, wrong_path: &str) -> Result<Recording, InputError> {
     let bytes = bounded::measured(file).map_err(|error| {
-        let wrong_path = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
         let remedy = bounded::remedy(&error, wrong_path);
         InputError::from(Problem::new(
             file,

@@ -1,4 +1,4 @@
-//! Samples that come unevenly, as messages of a bus do, laid on even instants by straight lines.
+//! Samples that come unevenly, as messages of a bus do, resampled by linear interpolation.
 
 use qcar_signals::signal::TimeBase;
 
@@ -40,7 +40,7 @@ impl Pace {
 }
 
 /// Even samples of an uneven channel.
-pub(super) struct Laid {
+pub(super) struct Resampled {
     pub base: TimeBase,
     /// In the unit of the file; not a number within a gap.
     pub values: Vec<f64>,
@@ -49,7 +49,7 @@ pub(super) struct Laid {
 }
 
 /// The values of an uneven channel at `rate`, Hz; `None` of a channel that is even or that does not say its times.
-pub(super) fn laid(base: &TimeBase, values: &[f64], rate: f64) -> Option<Laid> {
+pub(super) fn resampled(base: &TimeBase, values: &[f64], rate: f64) -> Option<Resampled> {
     let TimeBase::Times(times) = base else { return None };
     let pace = Pace::of(times)?;
     let (&start, &end) = (times.first()?, times.last()?);
@@ -73,7 +73,7 @@ pub(super) fn laid(base: &TimeBase, values: &[f64], rate: f64) -> Option<Laid> {
             false => values[after - 1] + share * (values[after] - values[after - 1]),
         }
     };
-    Some(Laid {
+    Some(Resampled {
         values: (0..count).map(at).collect(),
         base: TimeBase::Even {
             start,

@@ -1,22 +1,22 @@
 //! MAT-files of version 7.3, written: HDF5 as MATLAB reads it. Nothing is packed.
 
-use hdf5_pure::mat::{InvalidNamePolicy, MatBuilder, MatError, Options};
+use hdf5_pure::mat::{MatBuilder, MatError, Options};
 
 use super::Array;
+use super::names::names;
 
-/// A file with these variables. A structure array of another length than one becomes a cell array of structures.
-///
-/// A name that MATLAB cannot take for one of a variable or field is changed into one that it can.
+/// A file with these variables, named as in [`v5`](super::v5). A structure array of another length than one becomes a cell array of
+/// structures.
 ///
 /// # Errors
-/// What the writer of HDF5 says, which nothing that an [`Array`] may hold is known to bring about.
+/// As [`v5`](super::v5); what else the writer of HDF5 says, which nothing that an [`Array`] may hold is known to bring about.
 pub fn v73(variables: &[(String, Array)]) -> Result<Vec<u8>, String> {
-    let mut options = Options::default();
-    options.invalid_name_policy = InvalidNamePolicy::Sanitize;
-    let mut file = MatBuilder::new(options);
-    let written = variables
+    let names = names(variables.iter().map(|(name, _)| &**name))?;
+    let mut file = MatBuilder::new(Options::default());
+    let written = names
         .iter()
-        .try_for_each(|(name, array)| put(&mut file, name, array));
+        .zip(variables)
+        .try_for_each(|(name, (_, array))| put(&mut file, name, array));
     written.and_then(|()| file.finish()).map_err(|error| error.to_string())
 }
 
@@ -28,13 +28,16 @@ fn put(out: &mut MatBuilder, name: &str, array: &Array) -> Result<(), MatError> 
             let mut cells = cells.iter();
             cells.try_for_each(|cell| out.push_with(|out| put(out, "", cell)).map(drop))
         }),
-        Array::Structs(names, elements) => match &elements[..] {
-            [only] => out.struct_(name, |out| {
-                let mut fields = names.iter().zip(only);
-                fields.try_for_each(|(name, value)| put(out.builder(), name, value))
-            }),
+        Array::Structs(fields, elements) => match &elements[..] {
+            [only] => {
+                let names = names(fields.iter().map(|name| &**name)).map_err(MatError::Custom)?;
+                out.struct_(name, |out| {
+                    let mut fields = names.iter().zip(only);
+                    fields.try_for_each(|(name, value)| put(out.builder(), name, value))
+                })
+            }
             several => {
-                let structure = |own: &Vec<Array>| Array::Structs(names.clone(), vec![own.clone()]);
+                let structure = |own: &Vec<Array>| Array::Structs(fields.clone(), vec![own.clone()]);
                 return put(out, name, &Array::Cells(several.iter().map(structure).collect()));
             }
         },

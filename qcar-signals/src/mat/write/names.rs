@@ -1,0 +1,28 @@
+//! Names of variables and fields, as MATLAB takes them.
+
+use std::collections::HashMap;
+
+use hdf5_pure::mat::identifier::sanitize_name;
+
+/// The longest, in characters.
+const LONGEST: usize = super::LONGEST_NAME;
+
+/// The names in one scope as they are written: what is no letter of ASCII, digit or `_` becomes `_`, `x` stands before a name that does
+/// not begin with a letter, `_` behind a keyword, and a long name is cut off.
+///
+/// # Errors
+/// Two that would be written alike.
+pub(super) fn names<'a>(given: impl IntoIterator<Item = &'a str>) -> Result<Vec<String>, String> {
+    let mut known = HashMap::new();
+    let written = given.into_iter().map(|name| {
+        let mut written = sanitize_name(name);
+        written.truncate(LONGEST);
+        match known.insert(written.clone(), name) {
+            None => Ok(written),
+            Some(other) => Err(format!(
+                "`{other}` and `{name}`, which would both be called `{written}`"
+            )),
+        }
+    });
+    written.collect()
+}
