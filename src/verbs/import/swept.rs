@@ -41,7 +41,8 @@ struct Half {
 
 /// What of a record is looked at together for whether the pad rests, s.
 const BLOCK: f64 = 0.5;
-/// A pad rests where its velocity is below this share of its largest.
+/// A pad rests where its velocity swings by less than this share of its largest swing. Where it stands says nothing: an integrated
+/// acceleration takes seconds to return to zero.
 const REST: f64 = 0.1;
 /// Whole blocks that a rest between two parts of a record has at least: a rest of 1.5 s has them wherever it begins, one of less than
 /// 1 s nowhere.
@@ -51,11 +52,14 @@ const REST_BLOCKS: usize = 2;
 pub(super) fn parts(samples: &[f64], rate: f64, quantity: Quantity) -> Vec<Range<usize>> {
     let length = ((BLOCK * rate) as usize).min(samples.len()).max(1);
     let velocity = velocity(samples, rate, quantity);
-    let largest = |block: &[f64]| block.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let least = REST * largest(&velocity);
+    let swing = |block: &[f64]| {
+        let [low, high] = [f64::min, f64::max].map(|of| block.iter().copied().reduce(of).unwrap_or(0.0));
+        high - low
+    };
+    let least = REST * velocity.chunks(length).map(swing).fold(0.0, f64::max);
     let moving: Vec<usize> = (0..)
         .zip(velocity.chunks(length))
-        .filter(|(_, own)| largest(own) > least)
+        .filter(|(_, own)| swing(own) > least)
         .map(|(at, _)| at)
         .collect();
     let parts = moving.chunk_by(|one, next| next - one <= REST_BLOCKS);
@@ -260,7 +264,10 @@ mod tests {
 
     #[test]
     fn a_shorter_rest_is_no_end_of_a_sweep() {
-        let one = sweep(true);
+        // Velocities of a sweep from 0.5 to 30 Hz in 40 s.
+        let growth = 60f64.ln() / 40.0;
+        let value = |t: f64| 0.025 * (TAU * 0.5 * ((growth * t).exp() - 1.0) / growth).sin();
+        let one: Vec<f64> = (0..40_000).map(|k| value(f64::from(k) / 1000.0)).collect();
         let parts_with = |rest: usize, shift: usize| {
             let still = |samples: usize| std::iter::repeat_n(0.0, samples);
             let all: Vec<f64> = still(shift)
