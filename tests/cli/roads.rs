@@ -283,7 +283,7 @@ fn a_ride_is_asked_for_once_by_every_verb() {
     let campaign = Path::new(env!("CARGO_MANIFEST_DIR")).join(AXLE);
     let text = format!(
         "subject = \"axle_a\"\ncampaign = \"{}\"\nroads = [\"C@36km/h\", \"C@10m/s\"]\n\n\
-         [[target]]\nmetric = \"mode.1.damping\"\nmin = 0.1\n\n[[parameter]]\nname = \"k_susp\"\nrange = [\"80 %\", \"120 %\"]\n",
+         [[target]]\nmetric = \"mode.1.damping\"\nat_least = 0.1\n\n[[parameter]]\nname = \"k_susp\"\nrange = [\"80 %\", \"120 %\"]\n",
         campaign.display()
     );
     fs::write(&targets, text).unwrap();
