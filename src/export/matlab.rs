@@ -24,7 +24,7 @@ pub fn program(subject: Subject, stem: &str) -> Result<File, InputError> {
     })
 }
 
-/// What [`variables`] gives as a MAT-file of version 5.
+/// What `variables` gives as a MAT-file of version 5.
 ///
 /// # Errors
 /// Parameters whose names would be the same in MATLAB.
