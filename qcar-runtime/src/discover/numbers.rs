@@ -41,6 +41,10 @@ pub const MOST_EFFECTS: usize = 3;
 /// more probable.
 pub const GREATER_PART: f64 = 0.5;
 
+/// Standard deviations by which a mean square exceeds that of noise where it is more than noise: the normal distribution exceeds
+/// them once in twenty draws, the usual level of significance.
+pub const ONE_SIDED: f64 = 1.645;
+
 /// Probability of the base model below which a law is learned though no effect is certain: something is missing more probably
 /// than not.
 pub const EVEN: f64 = 0.5;

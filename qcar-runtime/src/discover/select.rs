@@ -37,7 +37,7 @@ use exchange::exchanges;
 use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use set::{Set, closed, is_missing, nameless};
+use set::{Set, closed, is_missing, most_probable, nameless};
 use verdict::judged;
 use visible::visible;
 
@@ -167,8 +167,7 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
 fn second(sets: &[Set]) -> Option<usize> {
     let single = |place: &usize| sets[*place].names().len() == 1;
     let (extended, open): (Vec<usize>, Vec<usize>) = (0..sets.len()).filter(single).partition(|&k| sets[k].extended);
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    open.into_iter().max_by(order).filter(|_| extended.len() < BEAM)
+    most_probable(sets, open).filter(|_| extended.len() < BEAM)
 }
 
 /// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects that were not
@@ -193,8 +192,7 @@ fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
 
 /// The most probable set.
 fn best(sets: &[Set]) -> usize {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    (0..sets.len()).max_by(order).unwrap_or(0)
+    most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
 
 fn tell(set: &Set, progress: Progress<'_>) {

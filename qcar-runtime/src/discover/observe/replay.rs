@@ -58,15 +58,6 @@ pub struct Replayed {
     periods: usize,
 }
 
-/// A set of parameters, and by how much initial states differ from what was seen.
-#[derive(Clone, Debug)]
-pub struct Perturbed {
-    /// The values of the parameters.
-    pub p: Vec<f64>,
-    /// States and by how much.
-    pub begin: Vec<(usize, f64)>,
-}
-
 /// How long the steps of a replay are.
 #[derive(Clone, Copy)]
 enum Steps<'r> {
@@ -74,7 +65,7 @@ enum Steps<'r> {
     Found,
     /// As those of another replay.
     Like(&'r Replayed),
-    /// As those of another replay, until the states agree with its own.
+    /// As those of another replay, until the states of the one set agree with its own.
     Beside(&'r Replayed),
 }
 
@@ -102,10 +93,10 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// What follows from the parameters.
-    pub fn run(&self, perturbed: &Perturbed) -> Replayed {
-        let mut alone = Alone::new(self.model, &perturbed.p);
-        let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), &perturbed.begin), Steps::Found);
+    /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
+    pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
+        let mut alone = Alone::new(self.model, p);
+        let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), begin), Steps::Found);
         let most = if self.how.periodic { PERIODS } else { 0 };
         while replayed.periods <= most && !replayed.repeats() {
             let periods = replayed.periods + 1;
@@ -115,44 +106,31 @@ impl<'a> Replay<'a> {
         replayed
     }
 
-    /// The signals of other parameters, in the steps of a replay and for as many periods: what has not settled is the same in
-    /// both, so that their difference is that of the parameters alone.
-    pub fn like(&self, other: &Replayed, perturbed: &[Perturbed]) -> Vec<Vec<Vec<f64>>> {
-        self.together(perturbed, Steps::Like(other))
-    }
-
-    /// The signals of other initial states. Once all states agree with those of the replay, its samples are copied.
-    pub fn beside(&self, other: &Replayed, perturbed: &[Perturbed]) -> Vec<Vec<Vec<f64>>> {
-        self.together(perturbed, Steps::Beside(other))
-    }
-
-    /// As many sets at once as there are lanes; each for itself where it is followed only until it agrees with the replay.
-    fn together(&self, perturbed: &[Perturbed], steps: Steps<'_>) -> Vec<Vec<Vec<f64>>> {
-        let some = |perturbed: &[Perturbed]| match perturbed {
-            [one] => {
-                let mut alone = Alone::new(self.model, &one.p);
-                vec![self.again(&mut alone, &one.begin, steps).signals]
-            }
+    /// The signals of each of several parameter sets, in the steps of a replay and for as many periods: what has not settled is
+    /// the same in both, so that their difference is that of the parameters alone.
+    pub fn like(&self, other: &Replayed, p: &[Vec<f64>], begin: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
+        let some = |p: &[Vec<f64>]| match p {
+            [one] => vec![self.again(&mut Alone::new(self.model, one), begin, other).signals],
             several => {
-                let mut lanes = Several::new(self.model, several);
-                let replayed = self.again(&mut lanes, &sets::begin(several), steps);
+                let replayed = self.again(&mut Several::new(self.model, several), begin, other);
                 sets::apart(replayed.signals, several.len())
             }
         };
-        let at_once = match steps {
-            Steps::Beside(_) => 1,
-            Steps::Found | Steps::Like(_) => LANES,
-        };
-        perturbed.par_chunks(at_once).flat_map_iter(some).collect()
+        p.par_chunks(LANES).flat_map_iter(some).collect()
+    }
+
+    /// The signals of other initial states. Once all states agree with those of the replay, its samples are copied.
+    pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Vec<Vec<f64>> {
+        let mut alone = Alone::new(self.model, p);
+        let from = (self.rest::<Alone<'_>>(), begin);
+        self.advance(&mut alone, from, Steps::Beside(other)).signals
     }
 
     /// In the steps of another replay.
-    fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], steps: Steps<'_>) -> Replayed {
-        let mut replayed = self.advance(sets, (self.rest::<S>(), begin), steps);
-        if let Steps::Like(other) = steps {
-            for _ in 1..other.periods {
-                replayed = self.advance(sets, (replayed.end, &[]), steps);
-            }
+    fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], other: &Replayed) -> Replayed {
+        let mut replayed = self.advance(sets, (self.rest::<S>(), begin), Steps::Like(other));
+        for _ in 1..other.periods {
+            replayed = self.advance(sets, (replayed.end, &[]), Steps::Like(other));
         }
         replayed
     }
@@ -200,14 +178,15 @@ impl<'a> Replay<'a> {
                 stepper.forget();
             }
             if sample == 0 {
-                begin.iter().for_each(|&(place, by)| x[place] += by);
+                for &(state, by) in begin {
+                    lanes_of::<S>(&mut x, state).iter_mut().for_each(|x| *x += by);
+                }
             }
             if let Steps::Beside(other) = taken
-                && has_joined::<S>(&x, &other.states[sample], &mut apart)
+                && has_joined(&x, &other.states[sample], &mut apart)
             {
-                let rest = signals.chunks_exact_mut(S::LANES).zip(&other.signals);
-                rest.flat_map(|(lanes, other)| lanes.iter_mut().map(move |signal| (signal, other)))
-                    .for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
+                let rest = signals.iter_mut().zip(&other.signals);
+                rest.for_each(|(signal, other)| signal.extend_from_slice(&other[sample..]));
                 break;
             }
             stepper.sets.outputs(&x, &inputs[first], &mut y);
@@ -269,11 +248,11 @@ impl Replayed {
 }
 
 /// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
-fn has_joined<S: Sets>(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
+fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     const TRACE: f64 = 1e-4;
     let mut joined = true;
-    for (place, (x, apart)) in x.iter().zip(apart).enumerate() {
-        let difference = (x - other[place / S::LANES]).abs();
+    for ((x, other), apart) in x.iter().zip(other).zip(apart) {
+        let difference = (x - other).abs();
         *apart = apart.max(difference);
         joined &= difference <= TRACE * *apart;
     }

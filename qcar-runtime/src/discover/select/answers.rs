@@ -2,7 +2,7 @@
 
 use super::bagged::probabilities;
 use super::judging::predictive;
-use super::set::{Set, is_part, nameless};
+use super::set::{Set, is_part, most_probable, nameless};
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 
@@ -54,8 +54,7 @@ fn standing(place: usize, sets: &[Set], left: &[usize]) -> usize {
     }
     let part = left[place];
     let speaks = |&other: &usize| left[other] == other && is_part(&sets[part], &sets[other]);
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
-    (0..sets.len()).filter(speaks).max_by(order).unwrap_or(part)
+    most_probable(sets, (0..sets.len()).filter(speaks)).unwrap_or(part)
 }
 
 /// The smallest list of sets that is certain, without those that only add to another one of it. It is the base model alone

@@ -1,6 +1,6 @@
 //! What the runs that judge leave of a set: no fit and no choice has seen them.
 
-use super::set::{Set, closed, is_part};
+use super::set::{Set, closed, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 
@@ -12,7 +12,6 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     loop {
         let count = sets[best].names().len();
         let is_less = |other: &usize| sets[*other].names().len() < count && is_part(&sets[*other], &sets[best]);
-        let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
         let is_answer = |other: &usize| is_less(other) && !sets[*other].stands_at_an_end();
         let withdrawn = |&part: &usize| {
             let closes = closed(&sets[part].explanation, &sets[best].explanation, evidence);
@@ -20,7 +19,7 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
             let fails = judges && (changes_little || !predicts(&sets[best], &sets[part], evidence));
             fails || sets[best].adds_a_substitute(&sets[part])
         };
-        match (0..sets.len()).filter(is_answer).filter(withdrawn).max_by(order) {
+        match most_probable(sets, (0..sets.len()).filter(is_answer).filter(withdrawn)) {
             Some(part) => best = part,
             None => return best,
         }

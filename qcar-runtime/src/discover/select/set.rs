@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 use super::assembly::{Assembly, Placed};
 use crate::campaign::Role;
 use crate::discover::answer::{Finding, Rival};
-use crate::discover::numbers::Numbers;
+use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::{Evidence, Series};
 use crate::discover::posterior::Explanation;
 
@@ -126,11 +126,16 @@ impl Set {
     }
 }
 
+/// The most probable of the sets at these places.
+pub fn most_probable(sets: &[Set], places: impl IntoIterator<Item = usize>) -> Option<usize> {
+    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
+    places.into_iter().max_by(order)
+}
+
 /// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
 pub fn nameless(sets: &[Set]) -> usize {
-    let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
     let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
-    nameless.max_by(order).unwrap_or(0)
+    most_probable(sets, nameless).unwrap_or(0)
 }
 
 /// True where every effect of one set is in the other.
@@ -157,9 +162,6 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     let square = set.explanation.gap.fit.powi(2);
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
-
-/// The quantile of the normal distribution that one draw in twenty exceeds, the usual level of significance.
-const ONE_SIDED: f64 = 1.645;
 
 /// Share of the excess of the squared gap over noise that is gone on the runs that judge.
 pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {

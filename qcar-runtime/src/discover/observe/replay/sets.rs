@@ -1,6 +1,5 @@
 //! A model with one set of parameters, or with several that are computed at once.
 
-use super::Perturbed;
 use crate::model::{LANES, Lanes, Model};
 
 /// A model with its parameters. States and outputs are rows of a value for each set.
@@ -52,8 +51,8 @@ pub struct Several<'a> {
 
 impl<'a> Several<'a> {
     /// Of these sets, at least one.
-    pub fn new(model: &'a dyn Model, perturbed: &[Perturbed]) -> Self {
-        let of_lane = |lane: usize| &perturbed[lane.min(perturbed.len() - 1)].p;
+    pub fn new(model: &'a dyn Model, sets: &[Vec<f64>]) -> Self {
+        let of_lane = |lane: usize| &sets[lane.min(sets.len() - 1)];
         let p: Vec<Lanes> = (0..model.about().parameters.len())
             .map(|parameter| std::array::from_fn(|lane| of_lane(lane)[parameter]))
             .collect();
@@ -85,15 +84,6 @@ impl Sets for Several<'_> {
         let (x, y) = (x.as_chunks().0, y.as_chunks_mut().0);
         self.model.outputs_sets(&self.constants, x, &self.u, y);
     }
-}
-
-/// By how much the initial states of each lane differ, by their places in the rows.
-pub fn begin(perturbed: &[Perturbed]) -> Vec<(usize, f64)> {
-    let of_lane = |lane: usize| {
-        let own = &perturbed[lane.min(perturbed.len() - 1)].begin;
-        own.iter().map(move |&(state, by)| (state * LANES + lane, by))
-    };
-    (0..LANES).flat_map(of_lane).collect()
 }
 
 /// The rows of a number of sets, set by set.

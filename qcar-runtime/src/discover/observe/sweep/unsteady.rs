@@ -14,7 +14,7 @@ use rayon::prelude::*;
 use super::measured::AROUND;
 use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
-use crate::discover::observe::replay::{Between, Perturbed, Reading, Recorded, Replay, reading};
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Series, Stimulus, order_of, signal_of};
 use crate::model::{Model, Signal};
 use crate::response::parameters::Values;
@@ -182,12 +182,8 @@ impl<'a> Driven<'a> {
         };
         let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
         let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;
-        let from_rest = Perturbed {
-            p: values.as_slice().to_vec(),
-            begin: Vec::new(),
-        };
         Ok(Replay::new(model, vec![recorded], how, Vec::new(), readings)
-            .run(&from_rest)
+            .run(values.as_slice(), &[])
             .signals)
     }
 

@@ -1,8 +1,9 @@
 //! Time histories: the model is driven by what was recorded, and its sensors are read at the same instants.
 
 use nalgebra::Complex;
+use rayon::prelude::*;
 
-use crate::discover::observe::replay::{Between, Perturbed, Reading, Recorded, Replay, reading};
+use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{
     Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
     order_of, signal_of,
@@ -49,27 +50,25 @@ pub fn history(
     )?;
     let start = inputs.start;
     let (p, begin) = (values.as_slice(), begin(model.about(), misread.begun(run)));
-    let moved = |p: &[f64], begin: Vec<(usize, f64)>| Perturbed { p: p.to_vec(), begin };
-    let base = &replay.run(&moved(p, begin.clone()));
-    let differences = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
-    let steps: Vec<f64> = free.iter().map(differences).collect();
-    let with_step = |(free, step): (&Free, &f64)| {
+    let base = &replay.run(p, &begin);
+    let difference = |free: &Free| DIFFERENCE * p[free.parameter].abs().max(PART_OF_RANGE * (free.upper - free.lower));
+    let steps: Vec<f64> = free.iter().map(difference).collect();
+    let moved = |(free, step): (&Free, &f64)| {
         let mut values = values.clone();
         values.set(free.parameter, p[free.parameter] + step);
-        moved(values.as_slice(), begin.clone())
+        values.as_slice().to_vec()
     };
-    let others: Vec<Perturbed> = free.iter().zip(&steps).map(with_step).collect();
-    let others = replay.like(base, &others);
+    let others = replay.like(base, &free.iter().zip(&steps).map(moved).collect::<Vec<_>>(), &begin);
     let states = if begun {
         unknown(model.about(), spread)
     } else {
         Vec::new()
     };
-    let from = |&(state, sigma): &(usize, f64)| {
-        let elsewhere = [(state, OF_SPREAD * sigma)];
-        moved(p, begin.iter().copied().chain(elsewhere).collect())
-    };
-    let elsewhere = replay.beside(base, &states.iter().map(from).collect::<Vec<_>>());
+    let elsewhere = states.par_iter().map(|&(state, sigma)| {
+        let begin: Vec<_> = begin.iter().copied().chain([(state, OF_SPREAD * sigma)]).collect();
+        replay.beside(base, p, &begin)
+    });
+    let elsewhere: Vec<Vec<Vec<f64>>> = elsewhere.collect();
     let shown = |signals: &[Vec<f64>], column: usize| stimulus.of_band(&signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
         let late = misread.late.get(*place).copied().unwrap_or(0.0);
@@ -119,11 +118,8 @@ pub fn replayed(
 ) -> Result<Vec<(Point, Vec<f64>)>, PredictError> {
     let sensors = evidence.sensors(run);
     let replay = prepare(model, evidence, run, &sensors)?;
-    let moved = Perturbed {
-        p: values.as_slice().to_vec(),
-        begin: begin(model.about(), misread.begun(run)),
-    };
-    let signals = replay.run(&moved).signals;
+    let begin = begin(model.about(), misread.begun(run));
+    let signals = replay.run(values.as_slice(), &begin).signals;
     let stimulus = &evidence.runs[run].stimulus;
     let shown = signals.iter().map(|signal| stimulus.of_band(signal));
     Ok(sensors.into_iter().cloned().zip(shown).collect())
