@@ -64,11 +64,11 @@ const ROUNDS: [Round; 4] = [
 
 /// The first of them enter with all their starts until so many run, the others with their best.
 const STARTED: usize = 9;
-/// Candidates that enter.
-const ENTRANTS: usize = 6;
 /// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
 /// thousand.
 const CLOSE: f64 = 10.0;
+/// Candidates that enter in any case.
+const ENTRANTS: usize = 6;
 /// How many times as many evaluations a linear model has: they cost little.
 const LINEAR: usize = 3;
 
@@ -160,26 +160,19 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// The prospects that gain most, and the best of each place that gains more than `least`. Where that is `None`, the screening
-/// says little, and the best of each place and of each effect enters if it gains anything.
-pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect], least: Option<f64>) -> Vec<&'p Prospect> {
-    let (mut places, mut effects) = (HashSet::new(), HashSet::new());
+/// The prospects that gain most, and the best of each place and of each form of each effect, as far as they gain anything. The
+/// screening tells whether something is missing. What it is, the race tells: a fit that has come to terms without an effect may
+/// have to move far before that effect gains much.
+pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<&'p Prospect> {
+    let (mut places, mut forms) = (HashSet::new(), HashSet::new());
     let enters = |(rank, prospect): &(usize, &Prospect)| {
         let own = &candidates[prospect.candidate];
         let is_first_there = places.insert(own.at.as_str());
-        let is_first_of_it = effects.insert(own.effect.as_str());
-        let is_open = match least {
-            Some(least) => is_first_there && prospect.gain() > least,
-            None => is_first_there || is_first_of_it,
-        };
-        prospect.gain() > 0.0 && (*rank < ENTRANTS || is_open)
+        let is_first_of_its_form = forms.insert((own.effect.as_str(), own.form.as_deref()));
+        prospect.gain() > 0.0 && (*rank < ENTRANTS || is_first_there || is_first_of_its_form)
     };
-    prospects
-        .iter()
-        .enumerate()
-        .filter(enters)
-        .map(|(_, prospect)| prospect)
-        .collect()
+    let entering = prospects.iter().enumerate().filter(enters);
+    entering.map(|(_, prospect)| prospect).collect()
 }
 
 fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option<Runner<'a>> {
@@ -275,31 +268,31 @@ mod tests {
         }
     }
 
-    /// Two places, at one of which as many effects gain much as enter anyway; two more effects come after them, one of which
-    /// gains nothing.
+    /// Friction gains little at first, behind as many as enter anyway; the stop gains nothing.
     #[test]
-    fn an_effect_that_gains_little_beside_a_model_that_is_far_off_is_fitted() {
-        let names = (0..ENTRANTS).map(|k| (format!("law {k}"), "damper", 100.0 - k as f64));
+    fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_has_one() {
+        let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);
+        let in_damper = Candidate {
+            form: Some("in_damper".into()),
+            ..candidate("friction", "damper")
+        };
         let later = [
-            ("friction", "damper", 5.0),
-            ("law 0", "spring", 4.0),
-            ("stop", "spring", 0.0),
+            (candidate("friction", "damper"), 5.0),
+            (candidate("law 0", "spring"), 4.0),
+            (candidate("friction", "spring"), 3.0),
+            (in_damper, 2.0),
+            (candidate("stop", "top_mount"), 0.0),
         ];
-        let later = later.map(|(effect, at, gain)| (effect.to_owned(), at, gain));
-        let all: Vec<(String, &str, f64)> = names.chain(later).collect();
-        let candidates: Vec<Candidate> = all.iter().map(|(effect, at, _)| candidate(effect, at)).collect();
-        let prospect = |(candidate, (_, _, gain)): (usize, &(String, &str, f64))| Prospect {
+        let all = (0..ENTRANTS).map(law).chain(later);
+        let (candidates, gains): (Vec<Candidate>, Vec<f64>) = all.unzip();
+        let prospect = |(candidate, gain)| Prospect {
             candidate,
-            starts: vec![(Place::default(), *gain)],
+            starts: vec![(Place::default(), gain)],
             afresh: None,
         };
-        let prospects: Vec<Prospect> = all.iter().enumerate().map(prospect).collect();
-        let entering = |least: Option<f64>| -> Vec<usize> {
-            let entering = entrants(&candidates, &prospects, least).into_iter();
-            entering.map(|own| own.candidate).skip(ENTRANTS).collect()
-        };
-        assert_eq!(entering(None), [ENTRANTS, ENTRANTS + 1]);
-        assert_eq!(entering(Some(3.0)), [ENTRANTS + 1]);
-        assert_eq!(entering(Some(6.0)), []);
+        let prospects: Vec<Prospect> = gains.into_iter().enumerate().map(prospect).collect();
+        let later = entrants(&candidates, &prospects).into_iter().skip(ENTRANTS);
+        let later: Vec<usize> = later.map(|own| own.candidate - ENTRANTS).collect();
+        assert_eq!(later, [0, 1, 3]);
     }
 }
