@@ -20,6 +20,8 @@ mod judging;
 mod answers;
 // and what is said of them,
 mod verdict;
+// which rivals explain better beside effects that were added later,
+mod exchange;
 // what law is missing where the catalogue has none,
 mod learn;
 // and which effects would have been seen.
@@ -31,6 +33,7 @@ use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
+use exchange::exchanges;
 use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
@@ -66,20 +69,23 @@ pub fn discover(
     let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
     progress(News::Known(&alone, &[], &base.explanation));
     let mut sets = vec![base];
-    // Until no effect that is added, left out or replaced makes a set more probable.
-    loop {
-        let others = if let Some(place) = next(&sets, evidence) {
-            extended(&mut sets[place], evidence, progress)?
-        } else if let Some(place) = unreduced(&sets) {
-            sets[place].reduced = true;
-            reductions(&sets[place], &sets[0], evidence, progress)
-        } else if let Some(place) = unreplaced(&sets, evidence) {
-            extended(&mut sets[place], evidence, progress)?
-        } else {
-            break;
-        };
-        sets.extend(others);
+    while let Some(place) = next(&sets, evidence) {
+        sets[place].extended = true;
+        let more = extensions(&sets[place], evidence, progress)?;
+        sets.extend(more);
         tell(&sets[best(&sets)], progress);
+    }
+    // What is not missed was only a step on the way.
+    while let Some(place) = unreduced(&sets) {
+        sets[place].reduced = true;
+        let less = reductions(&sets[place], &sets[0], evidence, progress);
+        sets.extend(less);
+    }
+    while let Some(place) = unexchanged(&sets, evidence) {
+        sets[place].exchanged = true;
+        progress(News::Doing("trying the rivals of each effect"));
+        let others = exchanges(&sets[place], &sets, evidence);
+        sets.extend(others);
     }
     let alone = &sets[nameless(&sets)];
     let (mut discovery, found) = judged(&sets, evidence);
@@ -164,14 +170,12 @@ fn second(sets: &[Set]) -> Option<usize> {
     most_probable(sets, open).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, or the part of it that the runs that judge leave, less one name beside which no others were tried.
-/// An effect that was chosen before later ones were added was chosen by a poorer model, which favours what makes up for these.
-fn unreplaced(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+/// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects that were not
+/// replaced by their rivals.
+fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
+    let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
     let best = best(sets);
-    let is_extended = |part: &usize| sets.iter().any(|set| set.extended && set.is_same(&sets[*part]));
-    let less = |whole: usize| (0..sets.len()).filter(move |&part| sets[part].lacks_one_name_of(&sets[whole]));
-    let wholes = [best, predictive(sets, best, evidence)].into_iter();
-    wholes.flat_map(less).find(|part| !is_extended(part))
+    [best, predictive(sets, best, evidence)].into_iter().find(open)
 }
 
 /// The most probable set, as long as it has several effects that were not tried without one of them.
@@ -248,12 +252,6 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
         Some((given.name.clone(), moved))
     };
     assembly.given().iter().enumerate().filter_map(moved).collect()
-}
-
-/// The set with one effect more each, and marked as extended.
-fn extended(set: &mut Set, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
-    set.extended = true;
-    extensions(set, evidence, progress)
 }
 
 /// A set with one effect more each, those that are worth it.

@@ -20,6 +20,8 @@ pub struct Set {
     pub log_prior: f64,
     /// Whether its extensions were looked for.
     pub extended: bool,
+    /// Whether its effects were replaced by their rivals.
+    pub exchanged: bool,
     /// Whether it was tried without each of its effects.
     pub reduced: bool,
     /// Others that were dropped on the way to it.
@@ -36,6 +38,7 @@ impl Set {
             explanation,
             log_prior,
             extended: false,
+            exchanged: false,
             reduced: false,
             rivals: Vec::new(),
             score: OnceLock::new(),
@@ -113,27 +116,6 @@ impl Set {
     /// Its effects that may be an answer.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
-    }
-
-    /// True where both have the same effects.
-    pub fn is_same(&self, other: &Set) -> bool {
-        self.lacks(other).is_empty() && other.lacks(self).is_empty()
-    }
-
-    /// True where the other set has all its effects, and one more that may be an answer.
-    pub fn lacks_one_name_of(&self, whole: &Set) -> bool {
-        let lacking = self.lacks(whole);
-        lacking.len() == 1 && !lacking[0].nuisance && whole.lacks(self).is_empty()
-    }
-
-    /// The effects of another set that it does not have.
-    fn lacks<'s>(&self, other: &'s Set) -> Vec<&'s Placed> {
-        let own = self.assembly.effects();
-        let lacks = |wanted: &&Placed| {
-            !own.iter()
-                .any(|own| own.name() == wanted.name() && own.form == wanted.form)
-        };
-        other.assembly.effects().iter().filter(lacks).collect()
     }
 
     /// Names and places of them, in one order.
