@@ -78,7 +78,7 @@ pub enum At {
 }
 
 impl fmt::Display for At {
-    /// As Rust and C write it behind the argument.
+    /// As Rust and C write it after the argument.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             At::Whole => Ok(()),

@@ -30,7 +30,7 @@ pub fn text(function: &Function, straight: &Straight) -> String {
     let stored = cut.stored(0).into_iter().map(|(place, value)| store(place, value));
     let computed = cut.pieces[0].iter().flat_map(|&value| {
         let computed = format!("const {} = {};", locals.name(value), written.operation(value));
-        let results = locals.results(value).map(move |place| store(place, value));
+        let results = cut.results(value).iter().map(move |&place| store(place, value));
         [computed].into_iter().chain(results)
     });
     let lines = leaves.chain(stored).chain(computed);
