@@ -40,7 +40,7 @@ impl Table {
 /// A column as the header line announces it: `time`, or `time [ms]`.
 pub(super) struct Heading {
     pub name: String,
-    /// What stands in brackets behind the name.
+    /// What stands in brackets after the name.
     pub unit: Option<String>,
 }
 
