@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::back::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written};
+use crate::back::straight::{
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written, usual_name,
+};
 use crate::expr;
 use crate::program::Value;
 use crate::program::schedule::Compiled;
@@ -232,14 +234,7 @@ impl Language for C {
         let name = match function {
             expr::Function::Abs => "fabs",
             expr::Function::Sign => SIGN,
-            expr::Function::Sqrt => "sqrt",
-            expr::Function::Exp => "exp",
-            expr::Function::Ln => "log",
-            expr::Function::Sin => "sin",
-            expr::Function::Cos => "cos",
-            expr::Function::Tan => "tan",
-            expr::Function::Atan => "atan",
-            expr::Function::Tanh => "tanh",
+            other => usual_name(other),
         };
         format!("{name}({a})")
     }
