@@ -32,8 +32,10 @@ const DOUBLE: usize = 500_000;
 /// As many bytes of short integers.
 const SHORT: usize = 2_000_000;
 
-/// Formats, and a file of each.
-const FORMATS: [(&str, fn() -> Vec<u8>); 5] = [
+/// A format, and what writes a file of it.
+type Format = (&'static str, fn() -> Vec<u8>);
+
+const FORMATS: [Format; 5] = [
     ("mdf_4", || writers::mdf4::file(&[group(DOUBLE)])),
     ("rpc_3", || writers::rpc::file(&group(SHORT))),
     ("uff_58_text", || writers::uff::file(&group(DOUBLE))),
