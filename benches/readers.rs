@@ -32,33 +32,22 @@ const DOUBLE: usize = 500_000;
 /// As many bytes of short integers.
 const SHORT: usize = 2_000_000;
 
-fn reads(bencher: Bencher<'_, '_>, file: &[u8]) {
+/// A format, and what writes a file of it.
+type Format = (&'static str, fn() -> Vec<u8>);
+
+const FORMATS: [Format; 5] = [
+    ("mdf_4", || writers::mdf4::file(&[group(DOUBLE)])),
+    ("rpc_3", || writers::rpc::file(&group(SHORT))),
+    ("uff_58_text", || writers::uff::file(&group(DOUBLE))),
+    ("tdms", || writers::tdms::file(&group(DOUBLE))),
+    ("mat_5", || writers::mat5::file(&group(DOUBLE))),
+];
+
+#[divan::bench(sample_count = 10, args = FORMATS.map(|(name, _)| name))]
+fn reads(bencher: Bencher<'_, '_>, name: &str) {
+    let of_name = FORMATS.iter().find(|(own, _)| *own == name);
+    let file = of_name.expect("it is one of them").1();
     bencher
         .counter(BytesCount::new(file.len()))
-        .bench_local(|| recognise(file).expect("it was written to be read"));
-}
-
-#[divan::bench(sample_count = 10)]
-fn mdf_4(bencher: Bencher<'_, '_>) {
-    reads(bencher, &writers::mdf4::file(&[group(DOUBLE)]));
-}
-
-#[divan::bench(sample_count = 10)]
-fn rpc_3(bencher: Bencher<'_, '_>) {
-    reads(bencher, &writers::rpc::file(&group(SHORT)));
-}
-
-#[divan::bench(sample_count = 10)]
-fn uff_58_text(bencher: Bencher<'_, '_>) {
-    reads(bencher, &writers::uff::file(&group(DOUBLE)));
-}
-
-#[divan::bench(sample_count = 10)]
-fn tdms(bencher: Bencher<'_, '_>) {
-    reads(bencher, &writers::tdms::file(&group(DOUBLE)));
-}
-
-#[divan::bench(sample_count = 10)]
-fn mat_5(bencher: Bencher<'_, '_>) {
-    reads(bencher, &writers::mat5::file(&group(DOUBLE)));
+        .bench_local(|| recognise(&file).expect("it was written to be read"));
 }

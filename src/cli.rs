@@ -67,7 +67,7 @@ enum Verb {
 impl Cli {
     /// Does what the flags say and gives the text for standard output.
     pub fn run(self) -> Result<String, Failure> {
-        terminal::look(self.color);
+        terminal::detect(self.color);
         if let Some(units) = self.units {
             units::choose(units);
         }

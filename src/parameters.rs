@@ -22,7 +22,7 @@ use crate::units;
 use file::{ParameterFile, numbers};
 use fitted::Answer;
 
-/// `name=value`, as `--set` takes it; the value may have a unit behind it.
+/// `name=value`, as `--set` takes it; the value may have a unit after it.
 #[derive(Clone, Debug)]
 pub struct Setting {
     name: String,

@@ -1,7 +1,7 @@
 //! Tables as Apache Parquet: numbers without gaps, plain and uncompressed, in groups of rows of one size.
 //!
 //! So the place of every number follows from the shape of the table. A table that was cut off while it grew is continued
-//! behind its last whole group, which no general writer of the format does, since it keeps the places of its groups in memory.
+//! after its last whole group, which no general writer of the format does, since it keeps the places of its groups in memory.
 //! The format: <https://parquet.apache.org/docs/file-format/>.
 
 // How the format writes its own records.

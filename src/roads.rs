@@ -18,6 +18,8 @@ pub struct Asked {
     speed: f64,
     /// s.
     duration: Option<f64>,
+    /// The file that asks for it; none for the command line.
+    file: Option<PathBuf>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +50,9 @@ const CLASSES: [(&str, Class); 8] = [
 const SPEEDS: std::ops::RangeInclusive<f64> = 0.5..=100.0;
 /// The shortest ride, s, of which a body swings about once; its spectrum has a line at each hertz.
 const SHORTEST: f64 = 1.0;
+/// What a road must be, and what to do about one that is not.
+const DRIVABLE: &str = "a road to drive over";
+const SAMPLED: &str = "give a road that is sampled finely enough and long enough";
 /// The longest ride, s: a road of ISO 8608 is a sum of sines, and a record has its place in memory.
 const LONGEST: f64 = 600.0;
 
@@ -82,6 +87,7 @@ impl FromStr for Asked {
             ground: Ground::of(ground.trim()).ok_or_else(expected)?,
             speed,
             duration,
+            file: None,
         })
     }
 }
@@ -104,13 +110,22 @@ impl Ground {
 }
 
 impl Asked {
-    /// The same with the path of its file relative to a folder.
+    /// The same as a file asks for it: the path of its profile is relative to the folder of that file.
     #[must_use]
-    pub fn beside(mut self, folder: &Path) -> Self {
-        if let Ground::Measured(file, _) = &mut self.ground {
-            *file = folder.join(&*file);
+    pub fn asked_in(mut self, file: &Path) -> Self {
+        if let Ground::Measured(profile, _) = &mut self.ground {
+            *profile = file.parent().unwrap_or(Path::new("")).join(&*profile);
         }
+        self.file = Some(file.into());
         self
+    }
+
+    /// What is wrong with it, where it is asked for.
+    fn problem(&self, found: String, expected: &str, remedy: &str) -> Problem {
+        match &self.file {
+            None => flag("road", found, expected, remedy),
+            Some(file) => Problem::new(file, Place::Name("roads".into()), found, expected, remedy),
+        }
     }
 
     /// The road itself.
@@ -121,7 +136,7 @@ impl Asked {
         match &self.ground {
             Ground::Random(class, seed) => {
                 let course = Course::random(*class, *seed, self.speed, self.duration);
-                course.map_err(|error| no_road(Path::new("command line"), &error))
+                course.map_err(|error| self.problem(error.to_string(), DRIVABLE, SAMPLED).into())
             }
             Ground::Measured(file, source) => self.along(file, source.as_deref()),
         }
@@ -134,7 +149,7 @@ impl Asked {
         let whole = (last - first) / self.speed;
         if self.duration.unwrap_or(whole) > LONGEST {
             let found = format!("a road that takes {whole:.0} s");
-            let remedy = format!("drive over a part of it: write `:{LONGEST}s` behind the speed");
+            let remedy = format!("drive over a part of it: write `:{LONGEST}s` after the speed");
             return Err(Problem::new(file, Place::File, found, "a ride of at most ten minutes", remedy).into());
         }
         if whole < SHORTEST {
@@ -161,7 +176,7 @@ pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputE
         if courses.iter().chain(beside).any(|own| own.name == course.name) {
             let found = format!("two rides called {}", course.name);
             let remedy = "leave one out; another seed, channel, speed or duration makes another ride";
-            return Err(flag("road", found, "each ride once", remedy).into());
+            return Err(road.problem(found, "each ride once", remedy).into());
         }
         courses.push(course);
     }
@@ -169,8 +184,7 @@ pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputE
 }
 
 fn no_road(file: &Path, error: &RoadError) -> InputError {
-    let remedy = "give a road that is sampled finely enough and long enough";
-    Problem::new(file, Place::File, error.to_string(), "a road to drive over", remedy).into()
+    Problem::new(file, Place::File, error.to_string(), DRIVABLE, SAMPLED).into()
 }
 
 /// A name that may be part of that of a file.

@@ -5,8 +5,8 @@ use std::path::Path;
 use qcar_runtime::error::{InputError, Place, Problem};
 use rust_xlsxwriter::{Color, DocProperties, ExcelDateTime, Format, FormatBorder, Workbook, Worksheet, XlsxError};
 
-/// How cells look.
-pub struct Looks {
+/// Formats of cells.
+pub struct CellFormats {
     /// Over a sheet.
     pub title: Format,
     /// Over a column or a group of rows.
@@ -17,9 +17,9 @@ pub struct Looks {
     pub input: Format,
 }
 
-impl Default for Looks {
+impl Default for CellFormats {
     fn default() -> Self {
-        Looks {
+        CellFormats {
             title: Format::new().set_bold().set_font_size(14),
             heading: Format::new().set_bold().set_background_color(Color::RGB(0xD9E2EC)),
             input: Format::new()
@@ -88,12 +88,12 @@ pub fn table<'a>(
     headings: &[String],
     rows: impl IntoIterator<Item = Vec<Cell>>,
 ) -> Result<&'a mut Worksheet, XlsxError> {
-    let looks = Looks::default();
+    let formats = CellFormats::default();
     let sheet = workbook.add_worksheet();
     sheet.set_name(name)?.set_freeze_panes(1, 0)?;
     for (column, heading) in (0..).zip(headings) {
         sheet.set_column_width(column, heading.chars().count().max(8) as f64 + 2.0)?;
-        sheet.write_string_with_format(0, column, heading, &looks.heading)?;
+        sheet.write_string_with_format(0, column, heading, &formats.heading)?;
     }
     for (at, row) in (1..).zip(rows) {
         for (column, cell) in (0..).zip(row) {

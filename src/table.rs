@@ -80,11 +80,11 @@ fn line(row: &[String], shapes: &[Shape]) -> String {
     for (at, (cell, &(width, numeric))) in row.iter().zip(shapes).enumerate() {
         let space = if at > 0 { SPACE } else { "" };
         let blanks = width.saturating_sub(cell.chars().count());
-        let (before, behind) = if numeric { (blanks, 0) } else { (0, blanks) };
+        let (left, right) = if numeric { (blanks, 0) } else { (0, blanks) };
         line += space;
-        line.extend(repeat_n(' ', before));
+        line.extend(repeat_n(' ', left));
         line += cell;
-        line.extend(repeat_n(' ', behind));
+        line.extend(repeat_n(' ', right));
     }
     line.truncate(line.trim_end().len());
     line

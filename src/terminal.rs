@@ -89,8 +89,8 @@ const YELLOW: &str = "33";
 /// Standard output and standard error; a library that nobody has told about a terminal writes for files.
 static OUTLETS: OnceLock<[Outlet; 2]> = OnceLock::new();
 
-/// Looks at the terminal. The first look of a process holds.
-pub fn look(color: Color) {
+/// Finds out how wide each outlet is and whether it has colours. The first call in a process decides.
+pub fn detect(color: Color) {
     let out = Outlet::of(std::io::stdout().is_terminal(), &Term::stdout(), color);
     let error = Outlet::of(std::io::stderr().is_terminal(), &Term::stderr(), color);
     let _ = OUTLETS.set([out, error]);

@@ -106,7 +106,7 @@ pub fn value(value: f64, si: &str) -> f64 {
     CHOSEN.get().map_or(value, |units| units.value(value, si))
 }
 
-/// What is shown, with its unit behind it; of a pure number without.
+/// What is shown, with its unit after it; of a pure number without.
 pub fn with_unit(shown: &str, si: &str) -> String {
     match name(si) {
         "1" | "" => shown.into(),
@@ -119,7 +119,7 @@ pub fn script() -> String {
     CHOSEN.get().map_or(String::new(), Units::script)
 }
 
-/// What a column holds, and behind it in brackets its unit; of a pure number no unit.
+/// What a column holds, and after it in brackets its unit; of a pure number no unit.
 pub fn heading(what: &str, si: &str) -> String {
     match name(si) {
         "1" | "" => what.into(),

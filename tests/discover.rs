@@ -567,7 +567,8 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
     }
 }
 
-/// What a search assumes that no data give decides no answer: 30 % more or less of each number changes at most 2 % of them.
+/// What a search assumes that no data give decides no answer: with all numbers 30 % more or less, in eight ways in which each two of
+/// them meet in every combination, it stays the same.
 #[test]
 fn no_answer_hangs_on_a_number() {
     let hidden = [
@@ -583,33 +584,47 @@ fn no_answer_hangs_on_a_number() {
             &[("k_maxwell", 250e3), ("relaxation_frequency", 10.0)],
         )],
     ];
-    let (mut asked, mut changed) = (0, Vec::new());
     for (number, effects) in hidden.into_iter().enumerate() {
         let folder = tempfile::tempdir().expect("a folder");
         let campaign = folder.path().join("campaign");
         let order = Order {
             cleats: false,
-            programme: Programme::fast(),
+            programme: two_short_sweeps(),
             effects,
             ..Order::clean("c", 2000 + number as u64)
         };
         make(order, &campaign).expect("a campaign");
         let usual = names(&discover(&campaign, None));
-        for name in Numbers::NAMES {
-            for factor in [0.7, 1.3] {
-                let other = names(&discover_with(&campaign, &["--assume", &format!("{name}={factor}")]));
-                asked += 1;
-                if other != usual {
-                    changed.push(format!("{name} times {factor}: {other:?}, was {usual:?}"));
-                }
-            }
+        for assumed in screening() {
+            let other = names(&discover_with(&campaign, &["--assume", &assumed]));
+            assert_eq!(other, usual, "campaign {number} with {assumed}");
         }
     }
-    assert!(
-        50 * changed.len() <= asked,
-        "{} of {asked}: {changed:#?}",
-        changed.len()
-    );
+}
+
+/// Of the fast programme the two harder sweeps, cut to eight seconds: one is fitted, one judges.
+fn two_short_sweeps() -> Programme {
+    let mut programme = Programme::fast();
+    programme.sweeps.remove(0);
+    programme.sweeps[0].role = "held_out";
+    programme.sweeps.iter_mut().for_each(|sweep| sweep.seconds = 8.0);
+    programme
+}
+
+/// The screening design of Plackett and Burman (Biometrika 33, 1946) for seven factors: seven turns of a row, and all of them low.
+fn screening() -> Vec<String> {
+    const ROW: [f64; Numbers::NAMES.len()] = [1.3, 1.3, 1.3, 0.7, 1.3, 0.7, 0.7];
+    let assumed = |factors: &[f64]| {
+        let parts = Numbers::NAMES.iter().zip(factors);
+        let parts: Vec<String> = parts.map(|(name, factor)| format!("{name}={factor}")).collect();
+        parts.join(",")
+    };
+    let turned = |by: usize| {
+        let mut row = ROW;
+        row.rotate_right(by);
+        assumed(&row)
+    };
+    (0..ROW.len()).map(turned).chain([assumed(&[0.7; ROW.len()])]).collect()
 }
 
 /// The verdict, and the effects that are given a name.

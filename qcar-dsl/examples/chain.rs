@@ -1,6 +1,6 @@
 //! Chains of masses, to see how the compiler's work grows with their length.
 //!
-//! `cargo run --release -p qcar-dsl --example chain -- 80` prints a chain of 80 masses, with `own` behind the number one whose masses,
+//! `cargo run --release -p qcar-dsl --example chain -- 80` prints a chain of 80 masses, with `own` after the number one whose masses,
 //! springs and dampers each have a parameter; without a number it prints how long each stage takes for chains of several lengths.
 
 use std::time::Instant;

@@ -1,10 +1,12 @@
 //! Files that are read no further than a limit, so that no file can fill the memory, whatever it unpacks to.
 
 use std::fs::{self, File};
-use std::io::{self, ErrorKind, Read};
+use std::io::{self, BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-use qcar_signals::read::packed;
+use qcar_signals::read::{is_packed, unpacked};
+
+use crate::error::{InputError, Place, Problem};
 
 /// Bytes of a text or of an unpacked file that are read, unless [`VARIABLE`] says otherwise.
 const MOST: u64 = 256 << 20;
@@ -46,7 +48,7 @@ fn limit() -> Option<u64> {
 ///
 /// # Errors
 /// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set; too little memory.
-pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
+fn measured(path: &Path) -> io::Result<Vec<u8>> {
     let file = open(path)?;
     let size = file.metadata()?.len();
     let left = limit().unwrap_or(MOST_PLAIN);
@@ -60,21 +62,32 @@ pub fn measured(path: &Path) -> io::Result<Vec<u8>> {
     if bytes.len() as u64 > left {
         return Err(too_large());
     }
-    let Some(content) = packed(&bytes) else {
+    if !is_packed(&bytes) {
         return Ok(bytes);
-    };
+    }
     let mut whole = Vec::new();
-    limited(content).read_to_end(&mut whole)?;
+    limited(unpacked(&bytes[..])).read_to_end(&mut whole)?;
     Ok(whole)
 }
 
 /// What to do about an error of [`measured`]: raise the limit, or what `else_do` says.
-pub fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
+fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
     match error.kind() {
         ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
         ErrorKind::OutOfMemory => "close other programs, or split the file",
         _ => else_do,
     }
+}
+
+/// The same for a reader of measured files, who is told what is wrong with it; `wrong_path` is what to do about a path that is wrong.
+///
+/// # Errors
+/// A file that cannot be read.
+pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Vec<u8>, InputError> {
+    measured(path).map_err(|error| {
+        let remedy = remedy(&error, wrong_path);
+        Problem::new(path, Place::File, error.to_string(), "a readable file", remedy).into()
+    })
 }
 
 /// A text file.
@@ -85,6 +98,18 @@ pub fn text(path: &Path) -> io::Result<String> {
     let mut text = String::new();
     limited(open(path)?).read_to_string(&mut text)?;
     Ok(text)
+}
+
+/// A table that is read as it goes, which gzip may have packed.
+///
+/// # Errors
+/// As [`open`], and what the system says of its first bytes; the reader has those of [`limited`].
+pub fn table(path: &Path) -> io::Result<Box<dyn Read>> {
+    let mut plain = BufReader::new(open(path)?);
+    Ok(match is_packed(plain.fill_buf()?) {
+        true => Box::new(limited(unpacked(plain))),
+        false => Box::new(limited(plain)),
+    })
 }
 
 struct Limited<R> {

@@ -115,7 +115,7 @@ impl<T> Index<&str> for ByParameter<T> {
 }
 
 /// A derivative of the piecewise cubic curve through points, of an order from 0 to 3, at `x`; beyond its ends it is a
-/// straight line. At a knot, those above the first are of the piece behind it.
+/// straight line. At a knot, those above the first are of the piece above it.
 pub fn table<const N: usize>(order: u8, x: f64, knots: &[f64; N], values: &[f64; N], slopes: &[f64; N]) -> f64 {
     let right = knots.partition_point(|&knot| knot <= x);
     let left = right.saturating_sub(1);

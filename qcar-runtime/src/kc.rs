@@ -81,7 +81,7 @@ pub enum KcError {
 const LINEAR_SHARE: f64 = 0.5;
 /// Share of the peak velocity below which the friction of a sine is about to change sign.
 const SLOW_SHARE: f64 = 0.1;
-/// The direction of travel is that over so many parts of the curve before and behind a sample.
+/// The direction of travel is that over so many parts of the curve before and after a sample.
 const DIRECTION_PARTS: usize = 100;
 /// A slope of fewer standard errors is none.
 const CLEAR: f64 = 3.0;

@@ -31,12 +31,12 @@ pub use step::Step;
 
 /// A system of ordinary differential equations of first order, and what is to be done along its solution.
 pub trait System {
-    /// The right-hand side: writes `dx = f(t, x)`, and behind it the [`System::signals`].
+    /// The right-hand side: writes `dx = f(t, x)`, and after it the [`System::signals`].
     ///
     /// A value that is not finite is legal and means that the solution does not exist there: the step is refused.
     fn derivative(&mut self, t: f64, x: &[f64], dx: &mut [f64]);
 
-    /// The number of signals that come with the derivative, written behind it; an accepted step interpolates both.
+    /// The number of signals that come with the derivative, written after it; an accepted step interpolates both.
     ///
     /// So a signal that the right-hand side has at hand costs nothing more, however finely it is recorded.
     fn signals(&self) -> usize {

@@ -164,7 +164,7 @@ impl Number {
         }
     }
 
-    /// The numbers that lie one behind the other in `data`.
+    /// The numbers that lie one after the other in `data`.
     pub(crate) fn all(self, data: &[u8], order: Order) -> Vec<f64> {
         self.strided(data, self.size(), order)
     }

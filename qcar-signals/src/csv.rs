@@ -80,7 +80,7 @@ fn rows(text: &str, delimiter: u8) -> impl Iterator<Item = Read<Numbered>> {
             Fault::damaged(Place::Line(line), error.to_string(), "a row of cells")
         })?;
         let line = row.position().map_or(0, |position| {
-            // The position is that of the empty lines before the row, and of the line feed behind a carriage return.
+            // The position is that of the empty lines before the row, and of the line feed after a carriage return.
             let before = text.as_bytes()[position.byte() as usize..].iter();
             let ends = before.take_while(|byte| matches!(byte, b'\r' | b'\n'));
             position.line() + ends.filter(|byte| **byte == b'\n').count() as u64

@@ -40,7 +40,7 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         text if text.contains("7.3") => Err(Fault::cut_off(
             Place::Byte(bytes.len() as u64),
             "a header of version 7.3 and nothing of HDF5",
-            "the data behind the header",
+            "the data after the header",
         )),
         _ => layout::recording("MAT 5", v5::variables(bytes)?),
     }

@@ -92,7 +92,7 @@ struct Channel {
     place: Place,
 }
 
-/// Records of a group, one behind the other.
+/// Records of a group, one after the other.
 struct Records<'a> {
     bytes: &'a [u8],
     /// From record to record, bytes.
@@ -126,7 +126,7 @@ impl<'a> Records<'a> {
         })
     }
 
-    /// The same in parts, one behind the other.
+    /// The same in parts, one after the other.
     fn parts(&self) -> impl Iterator<Item = Records<'a>> {
         let most = (BLOCK / self.stride.max(1)).max(1);
         let firsts = (0..self.count).step_by(most);

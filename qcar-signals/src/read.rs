@@ -26,9 +26,9 @@ pub fn read(file: &Path) -> Result<Recording, ReadError> {
         let remedy = "correct the path, or put the file there";
         Fault::new(Place::File, error.to_string(), "a readable file", remedy)
     });
-    let recognised = outcome.and_then(|bytes| match packed(&bytes) {
-        None => recognise(&bytes),
-        Some(content) => recognise(&whole(content, bytes.len())?),
+    let recognised = outcome.and_then(|bytes| match is_packed(&bytes) {
+        false => recognise(&bytes),
+        true => recognise(&whole(unpacked(&bytes[..]), bytes.len())?),
     });
     recognised.map_err(|fault| ReadError {
         file: file.into(),
@@ -36,9 +36,14 @@ pub fn read(file: &Path) -> Result<Recording, ReadError> {
     })
 }
 
-/// What gzip packed into these bytes, to be unpacked as it is read; `None` of bytes that it did not pack.
-pub fn packed(bytes: &[u8]) -> Option<impl io::Read> {
-    bytes.starts_with(GZIP).then(|| MultiGzDecoder::new(bytes))
+/// True of what gzip has packed, by its first bytes.
+pub fn is_packed(beginning: &[u8]) -> bool {
+    beginning.starts_with(GZIP)
+}
+
+/// What gzip has packed, unpacked as it is read; errors of reading are those of `packed`, and of data that are cut off or damaged.
+pub fn unpacked<R: io::Read>(packed: R) -> impl io::Read {
+    MultiGzDecoder::new(packed)
 }
 
 fn whole(mut content: impl io::Read, packed: usize) -> Read<Vec<u8>> {
@@ -58,7 +63,7 @@ fn whole(mut content: impl io::Read, packed: usize) -> Read<Vec<u8>> {
 /// # Errors
 /// As [`read`], without the file.
 pub fn recognise(bytes: &[u8]) -> Read<Recording> {
-    if bytes.starts_with(GZIP) {
+    if is_packed(bytes) {
         let remedy = "unpack the file once with gzip";
         return Err(Fault::new(
             Place::File,

@@ -67,7 +67,7 @@ const PREFIXES: &[(&str, f64, f64)] = &[
 ];
 
 /// What a unit is in SI, such as `m/s^2`, `m/s²`, `g`, `mm`, `kN` or `N*s/mm`; nothing where it is not known, such as `V`.
-/// Everything behind a `/` divides.
+/// Everything after a `/` divides.
 pub fn in_si(unit: &str) -> Option<Si> {
     let plain = bare(unit).replace("**", "^").replace('²', "^2").replace('³', "^3");
     let mut parts = plain.split('/');

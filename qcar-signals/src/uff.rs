@@ -297,7 +297,7 @@ impl Function {
         1 + u64::from(self.complex) + u64::from(!self.even)
     }
 
-    /// The values behind the text of a binary dataset. Uneven times are of single precision, unless the bytes promised say else.
+    /// The values after the text of a binary dataset. Uneven times are of single precision, unless the bytes promised say else.
     fn binary(&self, lines: &mut Lines, binary: &Binary) -> Read<Numbers> {
         let place = Place::Byte(lines.at as u64);
         if !binary.ieee {
@@ -324,14 +324,14 @@ impl Function {
         let promised = self.count.saturating_mul(stride).max(binary.bytes);
         let there = (lines.bytes.len() - lines.at) as u64;
         if promised > there {
-            let found = format!("{there} bytes of dataset 58b, and no line of -1 behind it");
+            let found = format!("{there} bytes of dataset 58b, and no line of -1 after it");
             return Err(Fault::cut_off(place, found, format!("{promised} bytes")));
         }
         let data = &lines.bytes[lines.at..lines.at + promised as usize];
         lines.at += promised as usize;
-        let behind = lines.by_ref().find(|line| !line.1.trim().is_empty());
-        if !behind.is_some_and(|line| is_border(&line.1)) {
-            let expected = "a line of -1 behind the values";
+        let next = lines.by_ref().find(|line| !line.1.trim().is_empty());
+        if !next.is_some_and(|line| is_border(&line.1)) {
+            let expected = "a line of -1 after the values";
             return Err(Fault::damaged(Place::Byte(lines.at as u64), "something else", expected));
         }
         let data = &data[..(self.count * stride) as usize];

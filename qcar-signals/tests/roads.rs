@@ -62,7 +62,7 @@ fn texts_that_are_no_road_are_refused_with_their_line() {
         (
             "v = -1.250",
             "v = -1.750",
-            ["line 43", "v = -1.75 m behind that at -1.5 m", "right to left"],
+            ["line 43", "v = -1.75 m after that at -1.5 m", "right to left"],
         ),
         (
             " 0.0000000 0.0111111\n 0.0550000",

@@ -27,7 +27,7 @@ impl Value {
         }
     }
 
-    /// Its bytes, behind others.
+    /// Its bytes, after others.
     pub fn write(&self, out: &mut Vec<u8>) {
         match self {
             Value::Int(number) => varint(zigzag(i64::from(*number)), out),

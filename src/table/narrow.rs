@@ -101,7 +101,7 @@ fn below<'a>(cells: impl Iterator<Item = &'a str>, shapes: &[Shape]) -> Vec<Vec<
     (0..high).map(row).collect()
 }
 
-/// A text in pieces of so many characters: between words, else behind a joint, else anywhere.
+/// A text in pieces of so many characters: between words, else after a joint, else anywhere.
 fn broken(text: &str, width: usize) -> Vec<String> {
     let mut pieces = Vec::new();
     let mut rest: Vec<char> = text.chars().collect();

@@ -61,8 +61,8 @@ pub struct Arguments {
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// Multiply a number that the search assumes, to see what the answer owes to it
-    #[arg(long, hide = true, value_name = "NAME=FACTOR", value_parser = multiplied)]
+    /// Multiply numbers that the search assumes, to see what the answer owes to them
+    #[arg(long, hide = true, value_name = "NAME=FACTOR,…", value_parser = multiplied)]
     assume: Option<Numbers>,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
@@ -139,12 +139,14 @@ impl Written {
     }
 }
 
-/// The numbers of the search with one of them multiplied.
+/// The numbers of the search with some of them multiplied.
 fn multiplied(text: &str) -> Result<Numbers, String> {
     let expected = || format!("NAME=FACTOR is expected, NAME one of {}", Numbers::NAMES.join(", "));
-    let (name, factor) = text.split_once('=').ok_or_else(expected)?;
-    let factor: f64 = factor.parse().map_err(|_| expected())?;
-    Numbers::default().with(name, factor).ok_or_else(expected)
+    text.split(',').try_fold(Numbers::default(), |numbers, part| {
+        let (name, factor) = part.split_once('=').ok_or_else(expected)?;
+        let factor: f64 = factor.parse().map_err(|_| expected())?;
+        numbers.with(name, factor).ok_or_else(expected)
+    })
 }
 
 /// Does it.

@@ -128,7 +128,7 @@ fn told(
     text += &sensors::table(proposed);
     let out = arguments.out.display();
     text += &format!(
-        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and give what stands behind a `#` with `give yours`\n"
+        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and give what stands after a `#` with `give yours`\n"
     );
     text += &format!("2. qcar check {out}\n3. qcar fit {out}\n");
     text

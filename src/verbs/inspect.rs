@@ -4,7 +4,6 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use qcar_runtime::bounded;
-use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_signals::error::ReadError;
 use qcar_signals::read::recognise;
 use qcar_signals::signal::{Recording, Scalar, Signal, Value};
@@ -50,16 +49,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 /// # Errors
 /// A file that cannot be read.
 pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
-    let bytes = bounded::measured(file).map_err(|error| {
-        let remedy = bounded::remedy(&error, "correct the path, or put the file there");
-        InputError::from(Problem::new(
-            file,
-            Place::File,
-            error.to_string(),
-            "a readable file",
-            remedy,
-        ))
-    })?;
+    let bytes = bounded::measured_file(file, "correct the path, or put the file there")?;
     let file = file.into();
     recognise(&bytes).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
 }

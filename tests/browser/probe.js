@@ -52,6 +52,7 @@
     found.headings = [...document.querySelectorAll('h3')].map((heading) => heading.textContent);
     found.captions = [...document.querySelectorAll('figcaption')].map((caption) => caption.textContent);
     found.paragraphs = [...document.querySelectorAll('#verdict > p')].map((paragraph) => paragraph.textContent);
+    found.ofRig = [...document.querySelectorAll('#rig > p')].map((paragraph) => paragraph.textContent);
     found.keyboard = keyboard();
     found.zoom = await zoomed();
     found.maps = maps();

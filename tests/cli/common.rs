@@ -73,7 +73,7 @@ pub fn succeeds(arguments: &[&str]) -> String {
     ran.stdout
 }
 
-/// A sweep of both pads from 0.5 to 30 Hz in 40 s (peak velocity in m/s), and body and wheel of both sides behind them,
+/// A sweep of both pads from 0.5 to 30 Hz in 40 s (peak velocity in m/s), followed by body and wheel of both sides,
 /// integrated with small steps: accelerations in m/s² under this header. `k` is the spring's stiffness in N/m, `c_tire` the
 /// tyre's damping in N s/m.
 pub fn sweep(peak_velocity: f64, header: &str, [k, c_tire]: [f64; 2]) -> String {

@@ -251,7 +251,7 @@ fn what_is_no_road_is_refused_with_its_place() {
         ),
         (
             format!("{CRG}@20km/h"),
-            &["5 channels of heights, from `v=-0.6` to `v=0.6`", "behind a `#`"],
+            &["5 channels of heights, from `v=-0.6` to `v=0.6`", "after a `#`"],
         ),
         (format!("{CRG}#v=0.2@20km/h"), &["v=0.2", "the nearest are", "`v=0`"]),
         (format!("{CRG}#v=0@20km/h:9s"), &["ends at x = 5.95 m", "x = 50 m"]),
@@ -288,15 +288,18 @@ fn a_ride_is_asked_for_once_by_every_verb() {
     );
     fs::write(&targets, text).unwrap();
     let twins = ["--road", "C@36km/h", "--road", "C@10m/s"];
-    for arguments in [
-        &[&["simulate", AXLE][..], &twins].concat(),
-        &[&["sensitivity", "axle_a", "--campaign", AXLE][..], &twins].concat(),
-        &vec!["target", targets.to_str().unwrap()],
+    for (arguments, place) in [
+        (&[&["simulate", AXLE][..], &twins].concat(), "command line, `road`: "),
+        (
+            &[&["sensitivity", "axle_a", "--campaign", AXLE][..], &twins].concat(),
+            "command line, `road`: ",
+        ),
+        (&vec!["target", targets.to_str().unwrap()], "targets.toml, `roads`: "),
     ] {
         let ran = qcar(arguments);
         let said = ran.stderr.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
-            ran.status == 2 && said.contains("two rides called iso_C_36kmh"),
+            ran.status == 2 && said.contains(&format!("{place}found two rides called iso_C_36kmh")),
             "{arguments:?}: {said}"
         );
     }

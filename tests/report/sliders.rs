@@ -38,6 +38,18 @@ fn a_moved_parameter_moves_the_response_as_qcar_does() {
     }
 }
 
+/// The response of a model that is not linear comes with no program.
+#[test]
+fn a_nonlinear_model_has_a_word_in_place_of_sliders() {
+    let Some(browser) = browser_or_word() else { return };
+    let linear = page(&ONE_MISSING);
+    let nonlinear = linear.replace("const PROGRAM = ", "const PROGRAM = null;\nconst UNUSED = ");
+    assert_ne!(linear, nonlinear);
+    let words = |page: &str| strings(&look(&browser, page, 400, "light")["ofRig"]).join(" ");
+    assert!(words(&nonlinear).contains("There are no sliders here: this model is not linear"));
+    assert!(!words(&linear).contains("no sliders"));
+}
+
 /// Before it is moved, a design is where the report has it; a slider moves it, and one button takes it back.
 pub fn check_design(tried: &Value) {
     assert_eq!(

@@ -104,7 +104,7 @@ impl<'a> Part<'a> {
         let uses = Uses::of(program);
         let mut part = Part {
             program,
-            locals: Locals::none(),
+            locals: Locals::default(),
             variables: Vec::new(),
         };
         for (place, op) in program.ops.iter().enumerate() {
@@ -122,7 +122,7 @@ impl<'a> Part<'a> {
                     names.take(&label.cloned().unwrap_or_else(|| format!("v{place}")))
                 }
             };
-            part.locals.push(name);
+            part.locals.name_it(value, name);
         }
         part
     }

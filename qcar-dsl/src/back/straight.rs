@@ -26,7 +26,7 @@ use crate::program::schedule::Compiled;
 use crate::program::{Program, Value};
 
 pub use kinks::kinks;
-pub use language::{Language, Written};
+pub use language::{Language, Written, usual_name};
 pub use locals::{Locals, Names};
 pub use pieces::{Leaf, Pieces, computed};
 pub use results::{entry_name, parameter_jacobian_names, sensitivity_names};
@@ -78,7 +78,7 @@ pub enum At {
 }
 
 impl fmt::Display for At {
-    /// As Rust and C write it behind the argument.
+    /// As Rust and C write it after the argument.
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             At::Whole => Ok(()),

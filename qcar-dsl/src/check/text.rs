@@ -7,7 +7,7 @@ use crate::check::{Checked, check};
 use crate::diagnostic::{Diagnostic, Report, Severity, names, reading};
 use crate::front::canonical::canonical;
 use crate::front::parse::{Reading, parse_text, parse_tokens};
-use crate::front::resolve::options::{Choices, member, members, take};
+use crate::front::resolve::options::{Choices, member, members, select};
 use crate::front::resolve::resolve;
 use crate::front::syntax::{Axle, AxleKind, Element, File, Item, Path};
 use crate::source::{Load, Source, Span};
@@ -172,13 +172,13 @@ impl<'a> Front<'a> {
     /// looked at in what could be read of a text.
     fn member(&mut self, axle: &Axle, family: Option<&Axle>, elements: &[&Element]) -> Option<Checked> {
         let mut found = vec![];
-        let taken = take(axle, family, &mut found);
+        let member = select(axle, family, &mut found);
         let chosen = !refuses(&found);
         self.note(found);
         if !chosen {
             return None;
         }
-        let (model, found) = resolve(axle, &taken, elements);
+        let (model, found) = resolve(axle, &member, elements);
         let resolved = !self.partial && !refuses(&found);
         self.note(found);
         if !resolved {
@@ -187,7 +187,7 @@ impl<'a> Front<'a> {
         match check(model) {
             Ok((checked, warnings)) => {
                 self.found.extend(warnings);
-                Some(checked.with_text(canonical(axle, &taken, elements)))
+                Some(checked.with_text(canonical(axle, &member, elements)))
             }
             Err(found) => {
                 self.found.extend(found);

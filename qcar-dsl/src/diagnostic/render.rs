@@ -61,7 +61,7 @@ fn place(source: &Source, span: Span) -> String {
     format!("{}:{line}:{column}", source.name)
 }
 
-/// So many mistakes are shown: those behind them most often follow from the first.
+/// So many mistakes are shown: those after them most often follow from the first.
 const MOST: usize = 25;
 
 /// Bytes of a line that is still shown; no editor shows more, and the width of a number that is printed ends at 65 535.

@@ -40,19 +40,19 @@ impl<T> Curve<T> {
         }
     }
 
-    /// The derivative of an order from 0 to 3 at `x`. At a knot, those above the first are of the piece behind it.
+    /// The derivative of an order from 0 to 3 at `x`. At a knot, those above the first are of the piece above it.
     pub fn at(&self, order: u8, x: f64, number: impl Fn(&T) -> f64) -> f64 {
         let knot = |place: usize| f64::from_bits(self.knots[place]);
         let (value, slope) = (|place| number(&self.values[place]), |place| number(&self.slopes[place]));
-        let behind = self.knots.partition_point(|&bits| f64::from_bits(bits) <= x);
-        let left = behind.saturating_sub(1);
+        let above = self.knots.partition_point(|&bits| f64::from_bits(bits) <= x);
+        let left = above.saturating_sub(1);
         let t = x - knot(left);
         let [mut square, mut cube] = [0.0; 2];
-        if behind > 0 && behind < self.knots.len() {
-            let width = knot(behind) - knot(left);
-            let secant = (value(behind) - value(left)) / width;
-            square = (3.0 * secant - 2.0 * slope(left) - slope(behind)) / width;
-            cube = (slope(left) + slope(behind) - 2.0 * secant) / (width * width);
+        if above > 0 && above < self.knots.len() {
+            let width = knot(above) - knot(left);
+            let secant = (value(above) - value(left)) / width;
+            square = (3.0 * secant - 2.0 * slope(left) - slope(above)) / width;
+            cube = (slope(left) + slope(above) - 2.0 * secant) / (width * width);
         }
         match order {
             0 => value(left) + t * (slope(left) + t * (square + t * cube)),
@@ -122,7 +122,7 @@ fn inner_slope(g: &mut Graph, before: Piece, after: Piece) -> Expr {
 }
 
 /// The slope of the parabola through the last three points; 0 where the secant has another sign, and at most three
-/// times the secant where the curve turns behind it.
+/// times the secant where the curve turns beyond it.
 fn end_slope(g: &mut Graph, own: Piece, next: Piece) -> Expr {
     let share = own.width / (own.width + next.width);
     let parabola = g.of((1.0 + share) * own.secant - share * next.secant);

@@ -3,13 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use crate::front::resolve::options::Taken;
+use crate::front::resolve::options::Member;
 use crate::front::syntax::{Axle, AxleKind, Element, File, Item, LawStatement, Statement};
 
 /// The text of an axle whose options are taken.
-pub fn canonical(axle: &Axle, taken: &Taken, elements: &[&Element]) -> String {
+pub fn canonical(axle: &Axle, member: &Member, elements: &[&Element]) -> String {
     let mut used = BTreeSet::new();
-    taken
+    member
         .body
         .iter()
         .for_each(|statement| of_statement(statement, elements, &mut used));
@@ -17,13 +17,13 @@ pub fn canonical(axle: &Axle, taken: &Taken, elements: &[&Element]) -> String {
     let elements = elements.map(|&element| Item::Element(element.clone()));
     let plain = Axle {
         kind: AxleKind::Plain,
-        body: taken.body.clone(),
+        body: member.body.clone(),
         ..axle.clone()
     };
     let file = File {
         items: elements.chain([Item::Axle(plain)]).collect(),
     };
-    let choices: Vec<String> = taken
+    let choices: Vec<String> = member
         .choices
         .iter()
         .map(|(option, value)| format!("{option} = {value}"))

@@ -119,7 +119,7 @@ impl<'a> Patching<'a> {
             .map(Statement::Parameter)
             .collect();
         let body = &mut self.tree.axle.body;
-        let place = behind_last(body, |statement| matches!(statement, Statement::Parameter(_)));
+        let place = after_last(body, |statement| matches!(statement, Statement::Parameter(_)));
         body.splice(place..place, declared);
     }
 
@@ -133,7 +133,7 @@ impl<'a> Patching<'a> {
         }
         if let Statement::Let(_) = bound {
             let is_global = |s: &Statement| matches!(s, Statement::Parameter(_) | Statement::Let(_));
-            let place = behind_last(&self.tree.axle.body, is_global);
+            let place = after_last(&self.tree.axle.body, is_global);
             self.tree.axle.body.insert(place, bound);
             return Ok(());
         }
@@ -141,7 +141,7 @@ impl<'a> Patching<'a> {
             return Ok(());
         };
         let same = std::mem::discriminant(&bound);
-        let place = behind_last(&home.body, |statement| std::mem::discriminant(statement) == same);
+        let place = after_last(&home.body, |statement| std::mem::discriminant(statement) == same);
         home.body.insert(place, bound);
         Ok(())
     }
@@ -464,8 +464,8 @@ fn state_span(statement: &LawStatement) -> Span {
     }
 }
 
-/// The place behind the last statement of a kind; in front of the first direction where there is none.
-fn behind_last(body: &[Statement], kind: impl Fn(&Statement) -> bool) -> usize {
+/// The place after the last statement of a kind; in front of the first direction where there is none.
+fn after_last(body: &[Statement], kind: impl Fn(&Statement) -> bool) -> usize {
     let last = body.iter().rposition(kind).map(|place| place + 1);
     let first_direction = || body.iter().position(|s| matches!(s, Statement::Direction(_)));
     last.or_else(first_direction).unwrap_or(body.len())

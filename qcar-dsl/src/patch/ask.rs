@@ -3,7 +3,7 @@
 use super::base::Base;
 use crate::diagnostic::{Diagnostic, effects};
 use crate::expr::Symbol;
-use crate::front::resolve::options::take;
+use crate::front::resolve::options::select;
 use crate::front::resolve::resolve;
 use crate::front::syntax::{Expression, Let, Name, Statement};
 use crate::model::{Default, Model};
@@ -23,8 +23,8 @@ pub fn with_questions(base: &Base, questions: Vec<Statement>) -> (Model, Vec<Dia
     let mut axle = base.axle.clone();
     axle.body.extend(questions);
     let mut found = Vec::new();
-    let taken = take(&axle, None, &mut found);
-    let (model, more) = resolve(&axle, &taken, &base.elements());
+    let member = select(&axle, None, &mut found);
+    let (model, more) = resolve(&axle, &member, &base.elements());
     found.extend(more);
     // The questions themselves are used by nothing.
     found.retain(|diagnostic| !effects::is_about_use(diagnostic));

@@ -15,7 +15,7 @@ use crate::front::syntax::{
     CoordinateKind, Dotted, Effect, Expression, ExpressionKind, LawStatement, Link, Name, Number, Operator, PlaceKind,
 };
 
-/// What a name may ask of a link or mass behind a dot.
+/// What a name may ask of a link or mass after a dot.
 const FIELDS: [&str; 12] = [
     "upper",
     "lower",

@@ -19,7 +19,7 @@ impl Scale {
     /// Every one.
     pub const ALL: [Scale; 4] = [Scale::Force, Scale::Travel, Scale::Speed, Scale::Acceleration];
 
-    /// As written behind the dot.
+    /// As written after the dot.
     pub fn word(self) -> &'static str {
         match self {
             Scale::Force => "force_scale",
@@ -39,7 +39,7 @@ impl Scale {
         format!("{direction}.{place}.{}", self.word())
     }
 
-    /// The value of an axle on a rig, which stands where nobody has measured, and the unit.
+    /// A usual value of an axle on a rig, for a model without measurements, and its unit.
     fn usual(self) -> (f64, &'static [(&'static str, i32)]) {
         match self {
             Scale::Force => (1e3, &[("N", 1)]),

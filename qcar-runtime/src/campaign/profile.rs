@@ -75,7 +75,7 @@ fn between(file: PathBuf, name: &str, corners: &[[f64; 2]]) -> Result<RoadSample
     Ok(RoadSamples { file, x, z, slope })
 }
 
-/// Slopes of straight pieces from sample to sample; behind the last one it is level.
+/// Slopes of straight pieces from sample to sample; after the last one it is level.
 fn chords(x: &[f64], z: &[f64]) -> Vec<f64> {
     let chord = |(x, z): (&[f64], &[f64])| (z[1] - z[0]) / (x[1] - x[0]);
     x.windows(2).zip(z.windows(2)).map(chord).chain([0.0]).collect()

@@ -1,10 +1,9 @@
-//! A CSV file, plain or gzip, as named columns of finite numbers.
+//! A CSV file, plain or packed by gzip, as named columns of finite numbers.
 
-use std::io::{BufReader, ErrorKind, Read};
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use csv::{ByteRecord, ReaderBuilder, Terminator, Trim};
-use flate2::read::MultiGzDecoder;
 
 use super::unit::{Declared, examples};
 use crate::bounded;
@@ -40,7 +39,7 @@ impl Table {
 /// A column as the header line announces it: `time`, or `time [ms]`.
 pub(super) struct Heading {
     pub name: String,
-    /// What stands in brackets behind the name.
+    /// What stands in brackets after the name.
     pub unit: Option<String>,
 }
 
@@ -176,12 +175,7 @@ fn list<T: AsRef<str>>(names: &[T]) -> String {
 }
 
 fn open(file: &Path) -> Result<csv::Reader<Box<dyn Read>>, InputError> {
-    let plain = BufReader::new(bounded::open(file).map_err(|error| missing(file, &error.to_string()))?);
-    let bytes: Box<dyn Read> = if file.extension().is_some_and(|e| e == "gz") {
-        Box::new(bounded::limited(MultiGzDecoder::new(plain)))
-    } else {
-        Box::new(bounded::limited(plain))
-    };
+    let bytes = bounded::table(file).map_err(|error| missing(file, &error.to_string()))?;
     Ok(ReaderBuilder::new()
         .flexible(true)
         .trim(Trim::All)

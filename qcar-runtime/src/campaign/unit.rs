@@ -78,7 +78,7 @@ impl Declared {
         })
     }
 
-    /// A number with its unit behind it, such as `187 N/mm`: its value in SI, and the unit.
+    /// A number with its unit after it, such as `187 N/mm`: its value in SI, and the unit.
     pub fn quantity(text: &str) -> Option<(f64, Declared)> {
         let text = text.trim();
         let mut ends = text.char_indices().map(|(at, c)| at + c.len_utf8()).rev();
@@ -179,7 +179,7 @@ mod tests {
     }
 
     #[test]
-    fn a_number_may_have_its_unit_behind_it() {
+    fn a_number_may_have_its_unit_after_it() {
         let si = |text| Declared::quantity(text).map(|(value, unit)| (value, unit.coherent));
         assert_eq!(si("187 N/mm"), Some((187e3, "N/m".into())));
         assert_eq!(si(" 1.5e3N s/m"), Some((1500.0, "N s/m".into())));

@@ -21,7 +21,7 @@ pub struct Metric {
 /// What a metric is of.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
-    /// A record of a ride: the output with this place, or behind the outputs the force of the tyre.
+    /// A record of a ride: the output with this place, or after the outputs the force of the tyre.
     Ride(usize, Measure),
     /// The largest magnitude of the channel with this place.
     Peak(usize),

@@ -10,7 +10,7 @@ pub(super) struct Impact {
     pub onset: usize,
     /// The first sample of the after-shake.
     pub end: usize,
-    /// The sample behind the after-shake.
+    /// The sample after the after-shake.
     pub last: usize,
 }
 

@@ -55,7 +55,7 @@ pub struct Cycle {
     pub converged: bool,
     /// The outputs that were asked for, in ascending order.
     outputs: Vec<usize>,
-    /// Amplitudes of their harmonics, a column for each output, and behind these for each of their derivatives.
+    /// Amplitudes of their harmonics, a column for each output, and after these for each of their derivatives.
     harmonics: DMatrix<Complex<f64>>,
 }
 

@@ -86,7 +86,7 @@ impl Between {
         }
     }
 
-    /// The values behind the known samples from the one numbered `first` on; behind the last known are zeros.
+    /// The values after the known samples from the one numbered `first` on; after the last known are zeros.
     fn fill(&self, known: &[f64], first: usize, filled: &mut [f64]) {
         let (end, last_start) = (first + filled.len(), self.count.saturating_sub(AROUND));
         // Near the ends of the gap there are fewer samples on one side.

@@ -13,7 +13,7 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     shortcut: Option<Shortcut>,
     /// Room for a state.
     state: Vec<f64>,
-    /// Room for its rate, behind that the outputs where the model is asked for them, and what is told of the contact.
+    /// Room for its rate, after that the outputs where the model is asked for them, and what is told of the contact.
     rates: Vec<f64>,
     /// For each output its place there. The acceleration of a mass is a rate, so that most models need not be asked.
     places: Vec<usize>,

@@ -93,7 +93,7 @@ struct Rig<'a, M: ?Sized> {
     inputs: Vec<f64>,
     /// When the present leg began, s: until its end, held inputs stay as they were then.
     leg: f64,
-    /// The states, and behind them the outputs.
+    /// The states, and after them the outputs.
     tape: Tape,
     /// Room for a point of it.
     room: Vec<f64>,

@@ -89,8 +89,8 @@ impl<'a, P: Fn(usize) -> &'a [f64]> Loops for Decimation<'_, '_, P> {
         let taps = taps.iter().enumerate().skip(1).filter(|(_, tap)| **tap != 0.0);
         for (distance, tap) in taps {
             let beside = from(reach - distance).iter().zip(from(reach + distance));
-            for (out, (before, behind)) in self.out.iter_mut().zip(beside) {
-                *out += tap * (before + behind);
+            for (out, (before, after)) in self.out.iter_mut().zip(beside) {
+                *out += tap * (before + after);
             }
         }
     }
@@ -169,7 +169,7 @@ pub(super) struct Tape {
     grid: Grid,
     /// The point to be recorded next.
     next: usize,
-    /// Each phase of each signal, one behind the other.
+    /// Each phase of each signal, one after the other.
     tracks: Vec<f64>,
     /// So many samples at the beginning are alike.
     still: usize,

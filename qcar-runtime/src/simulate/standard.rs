@@ -1,9 +1,9 @@
-//! Runs over a cleat that nobody has measured, among them those of thesis table 3.3.
+//! Standard runs over a cleat, without a measurement, among them those of thesis table 3.3.
 
 use super::ride::Drive;
 use crate::road::{Road, RoadError, Shape};
 
-/// A run over a cleat that nobody has measured.
+/// A standard run over a cleat, without a measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Standard {
     /// m/s.

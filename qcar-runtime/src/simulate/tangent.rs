@@ -19,7 +19,7 @@ use crate::solver::{self, After, DormandPrince, Event, Step, System};
 /// A ride, and its derivatives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tangent {
-    /// Each output of the model, through [`AntiAlias`](super::AntiAlias); behind them the vertical force of the tyre
+    /// Each output of the model, through [`AntiAlias`](super::AntiAlias); after them the vertical force of the tyre
     /// on the wheel, N, as it is at the samples.
     pub signals: Vec<Vec<f64>>,
     /// For each direction the derivative of each signal.
@@ -50,11 +50,11 @@ pub fn tangent<M: Model + ?Sized>(
     let neighbours: Vec<[Vec<f64>; 2]> = directions.iter().map(steps).collect();
     let (rolling, mut states) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
     let mut moved = Vec::with_capacity(directions.len());
-    for [ahead, behind] in &neighbours {
+    for [forward, backward] in &neighbours {
         let beside = |parameters| Rolling::at_rest(&Car { parameters, ..*car }, drive.road, drive.speed, start);
-        let ((ahead, x), (behind, y)) = (beside(ahead)?, beside(behind)?);
+        let ((forward, x), (backward, y)) = (beside(forward)?, beside(backward)?);
         states.extend(x.iter().zip(y).map(|(x, y)| (x - y) / (2.0 * STEP)));
-        moved.push([ahead, behind]);
+        moved.push([forward, backward]);
     }
     let mut varied = Varied::new(rolling, moved, about.states.len(), about.outputs.len(), grid);
     varied.rest(span.0, &states);
@@ -80,7 +80,7 @@ fn along(from: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
     from.iter().zip(direction).map(|(from, d)| from + step * d).collect()
 }
 
-/// A rolling model with its neighbours ahead and behind along each direction.
+/// A rolling model with its neighbours a step forward and a step backward along each direction.
 struct Varied<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     moved: Vec<[Rolling<'a, M>; 2]>,
@@ -181,18 +181,18 @@ impl<M: Model + ?Sized> System for Varied<'_, M> {
         let into = rates
             .chunks_exact_mut(self.states)
             .zip(signals.chunks_exact_mut(self.outputs + 1));
-        let [ahead, behind] = &mut self.neighbour;
-        let slope = |ahead: f64, behind: f64| (ahead - behind) / (2.0 * STEP);
+        let [forward, backward] = &mut self.neighbour;
+        let slope = |forward: f64, backward: f64| (forward - backward) / (2.0 * STEP);
         for (([up, down], s), (rate, signal)) in ways.zip(into) {
-            ahead.look(up, t, (x, s), STEP);
-            behind.look(down, t, (x, s), -STEP);
-            for ((rate, ahead), behind) in rate.iter_mut().zip(&ahead.rate).zip(&behind.rate) {
-                *rate = slope(*ahead, *behind);
+            forward.look(up, t, (x, s), STEP);
+            backward.look(down, t, (x, s), -STEP);
+            for ((rate, forward), backward) in rate.iter_mut().zip(&forward.rate).zip(&backward.rate) {
+                *rate = slope(*forward, *backward);
             }
-            for ((signal, ahead), behind) in signal.iter_mut().zip(&ahead.outputs).zip(&behind.outputs) {
-                *signal = slope(*ahead, *behind);
+            for ((signal, forward), backward) in signal.iter_mut().zip(&forward.outputs).zip(&backward.outputs) {
+                *signal = slope(*forward, *backward);
             }
-            signal[self.outputs] = slope(ahead.force, behind.force);
+            signal[self.outputs] = slope(forward.force, backward.force);
         }
     }
 

@@ -31,7 +31,7 @@ pub struct DormandPrince {
     x: Vec<f64>,
     x_end: Vec<f64>,
     stage: Vec<f64>,
-    /// The stages' derivatives, and behind each its signals; the last is the first of the next step.
+    /// The stages' derivatives, and after each its signals; the last is the first of the next step.
     k: [Vec<f64>; 7],
     quartic: Vec<f64>,
     /// Over the step, the mean rate of each state and the mean of each signal.
@@ -94,7 +94,7 @@ impl DormandPrince {
         }
     }
 
-    /// Room for signals behind the derivatives.
+    /// Room for signals after the derivatives.
     fn make_room(&mut self, signals: usize) {
         let rows = self.k.iter_mut().chain([&mut self.quartic, &mut self.means]);
         rows.for_each(|row| row.resize(self.x.len() + signals, 0.0));

@@ -63,16 +63,16 @@ impl Rk4 {
             self.begin(system, t);
             let from = t;
             let steps = ((end - from) / self.step).ceil().max(1.0);
-            let mut taken = 0.0;
-            while taken < steps {
+            let mut done = 0.0;
+            while done < steps {
                 if self.effort.accepted >= self.most_steps {
                     return (Reason::TooManySteps, t);
                 }
-                taken += 1.0;
-                let t_end = if taken == steps {
+                done += 1.0;
+                let t_end = if done == steps {
                     end
                 } else {
-                    from + (end - from) * (taken / steps)
+                    from + (end - from) * (done / steps)
                 };
                 if !self.advance(system, t, t_end - t) {
                     return (Reason::NotFinite, t);

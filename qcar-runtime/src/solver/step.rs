@@ -15,11 +15,11 @@ pub struct Step<'a> {
     pub(super) length: f64,
     /// State at `start` and at `start + length`.
     pub(super) states: [&'a [f64]; 2],
-    /// Derivative at `start` and at `start + length`, and behind it the signals.
+    /// Derivative at `start` and at `start + length`, and after it the signals.
     pub(super) slopes: [&'a [f64]; 2],
     /// The term of fourth order divided by the length; empty for a cubic.
     pub(super) quartic: &'a [f64],
-    /// The mean rate of each state over the step, and behind it the mean of each signal.
+    /// The mean rate of each state over the step, and after it the mean of each signal.
     pub(super) means: &'a [f64],
     /// The estimated error over what is tolerated, of as many such steps as make the longest that is allowed; infinite
     /// where there is no estimate, or where an event has cut the step short and the stages of the method lie beyond it.
@@ -40,7 +40,7 @@ impl<'a> Step<'a> {
         self.states[1]
     }
 
-    /// The rates of the states where the step ends, and behind them the signals; none where an event has cut it short.
+    /// The rates of the states where the step ends, and after them the signals; none where an event has cut it short.
     pub fn end_rates(&self) -> Option<&'a [f64]> {
         self.error.is_finite().then_some(self.slopes[1])
     }
@@ -64,7 +64,7 @@ impl<'a> Step<'a> {
         }
     }
 
-    /// Writes the rates of the states from place `first` on at time `t` of the step, and behind them the signals: the
+    /// Writes the rates of the states from place `first` on at time `t` of the step, and after them the signals: the
     /// slopes of the interpolants of the states, and of those of the signals' integrals.
     ///
     /// They are exact at both ends; between them they are accurate to the order of the dense output less one. To be asked

@@ -27,7 +27,7 @@ pub struct Axle<'a> {
     pub moves: Vec<Move>,
     /// How many there are.
     pub knobs: usize,
-    /// Means of readings, by their places: further results behind the readings.
+    /// Means of readings, by their places: further results after the readings.
     pub means: Vec<Vec<usize>>,
 }
 

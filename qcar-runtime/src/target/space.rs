@@ -44,7 +44,7 @@ pub struct Space {
     pub probability: f64,
     /// With 95 % confidence it is no lower than this.
     pub at_least: f64,
-    /// The share of designs that meet each limit and, behind them, each coupling.
+    /// The share of designs that meet each limit and, after them, each coupling.
     pub each: Vec<f64>,
     /// The part that it has of all designs in range.
     pub volume: f64,

@@ -200,7 +200,7 @@ impl Task<'_> {
             .sum()
     }
 
-    /// By how much a design with these results is beyond each limit and, behind them, each coupling.
+    /// By how much a design with these results is beyond each limit and, after them, each coupling.
     pub fn excesses(&self, design: &[f64], values: &[f64]) -> Vec<f64> {
         let limits = self.limits.iter().map(|limit| limit.excess(values[limit.result]));
         limits

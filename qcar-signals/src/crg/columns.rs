@@ -104,7 +104,7 @@ pub(super) fn places(header: &Header, columns: &[Column]) -> Read<Vec<(usize, f6
     match places.windows(2).find(|pair| pair[1].1 <= pair[0].1) {
         None => Ok(places),
         Some(pair) => {
-            let found = format!("the section at v = {} m behind that at {} m", pair[1].1, pair[0].1);
+            let found = format!("the section at v = {} m after that at {} m", pair[1].1, pair[0].1);
             Err(Fault::damaged(
                 Place::Line(columns[pair[1].0].line),
                 found,

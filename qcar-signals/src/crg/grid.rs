@@ -42,7 +42,7 @@ fn format(header: &Header) -> Read<(&'static str, Stored)> {
 }
 
 impl Grid {
-    /// What stands behind the header.
+    /// What stands after the header.
     pub fn read(data: &[u8], columns: usize, header: &Header) -> Read<Self> {
         let (format, stored) = format(header)?;
         let columns = match stored {
@@ -61,7 +61,7 @@ impl Grid {
     }
 }
 
-/// Numbers one behind the other; the last record is filled up with numbers that count for nothing.
+/// Numbers one after the other; the last record is filled up with numbers that count for nothing.
 fn binary(data: &[u8], number: Number, columns: usize, header: &Header) -> Read<Vec<Vec<f64>>> {
     let row = columns * number.size();
     let promised = header.promised()?.filter(|rows| rows * row as f64 <= data.len() as f64);

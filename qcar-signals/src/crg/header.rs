@@ -64,7 +64,7 @@ impl Header {
         Err(Fault::cut_off(
             Place::Line(header.lines),
             found,
-            "data behind such a line",
+            "data after such a line",
         ))
     }
 

@@ -76,7 +76,7 @@ impl Array {
 /// A file with these variables; `description` is what it says of itself in a line of 116 letters at most.
 ///
 /// A name of a variable or field that MATLAB does not take is changed into one that it does: other characters than letters of ASCII,
-/// digits and `_` become `_`, `x` stands before what begins with no letter and `_` behind a keyword; what is longer than
+/// digits and `_` become `_`, `x` stands before what begins with no letter and `_` after a keyword; what is longer than
 /// [`LONGEST_NAME`] is cut off there.
 ///
 /// # Errors
@@ -123,7 +123,7 @@ fn matrix(name: &str, array: &Array) -> Result<Vec<u8>, String> {
     Ok(all)
 }
 
-/// Elements of a cell array or structure, one behind the other.
+/// Elements of a cell array or structure, one after the other.
 fn unnamed<'a>(arrays: impl IntoIterator<Item = &'a Array>) -> Result<Vec<u8>, String> {
     let matrices = arrays.into_iter().map(|array| matrix("", array));
     Ok(matrices.collect::<Result<Vec<_>, _>>()?.concat())

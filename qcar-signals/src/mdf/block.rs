@@ -27,7 +27,7 @@ impl<'a> File<'a> {
     pub(super) fn block(&self, at: u64, what: &str) -> Read<Block<'a>> {
         if at >= self.bytes.len() {
             let found = format!(
-                "a link to {what} at byte {at}, behind the end of the file ({} bytes)",
+                "a link to {what} at byte {at}, beyond the end of the file ({} bytes)",
                 self.bytes.len()
             );
             return Err(Fault::cut_off(Place::Byte(at), found, what));

@@ -91,7 +91,7 @@ fn unpacked(block: &Block) -> Read<Vec<u8>> {
 }
 
 /// Records of `width` bytes from their transpose: all first bytes, all second ones and so on. What does not fill a record
-/// stands behind as it was.
+/// stands after it as it was.
 fn transposed_back(bytes: &[u8], width: usize) -> Vec<u8> {
     let records = bytes.len().checked_div(width).unwrap_or(0);
     let mut rows = bytes.to_vec();

@@ -35,7 +35,7 @@ fn block<'a>(file: &Bytes<'a>, at: u32, id: &[u8; 2], what: &str) -> Read<Bytes<
     let at = u64::from(at);
     if at >= file.len() {
         let found = format!(
-            "a link to {what} at byte {at}, behind the end of the file ({} bytes)",
+            "a link to {what} at byte {at}, beyond the end of the file ({} bytes)",
             file.len()
         );
         return Err(Fault::cut_off(Place::Byte(at), found, what));

@@ -25,7 +25,7 @@ pub struct Channel {
 }
 
 const IDENTIFICATION: usize = 64;
-/// Value of a block of text or data: behind its head there are no links.
+/// Value of a block of text or data: after its head there are no links.
 const HEAD: usize = 24;
 const MASTER: u8 = 2;
 const TIME: u8 = 1;
@@ -42,7 +42,7 @@ pub fn v4(tool: &str, groups: &[Group]) -> Vec<u8> {
     let comment = file.text(b"MD", &comment);
     let history = file.block(b"FH", &[0, comment], &[0; 16]);
     let mut first = 0;
-    // The last group is written first, so that each knows the one behind it.
+    // The last group is written first, so that each knows the one after it.
     for group in groups.iter().rev() {
         first = file.group(group, first);
     }

@@ -100,13 +100,13 @@ pub(super) fn chunk(used: &[(usize, Index)]) -> Option<u64> {
         .iter()
         .try_fold(0_u64, |all, (_, index)| all.checked_add(own(index)?))?;
     let rows = rows_of_buffers(used);
-    let taken = |index: &Index| match &index.layout {
+    let bytes_used = |index: &Index| match &index.layout {
         Layout::Daqmx { scalers, .. } => scalers.iter().map(|scaler| scaler.number.size() as u64).sum(),
         _ => 0,
     };
-    let taken: u64 = used.iter().map(|(_, index)| taken(index)).sum();
+    let bytes_used: u64 = used.iter().map(|(_, index)| bytes_used(index)).sum();
     let widths: u64 = rows.iter().map(|(_, width)| *width).sum();
-    if taken > MOST_USES * widths {
+    if bytes_used > MOST_USES * widths {
         return None;
     }
     rows.iter()
@@ -145,7 +145,7 @@ pub(super) fn buffer<'a>(used: &[(usize, Index)], chunk: &'a [u8], number: u32) 
     None
 }
 
-/// Reads an object from byte `at` on and moves `at` behind it. `known` gives the index it had before.
+/// Reads an object from byte `at` on and moves `at` past it. `known` gives the index it had before.
 pub(super) fn object(from: &Bytes, at: &mut u64, known: &dyn Fn(&str) -> Option<Index>) -> Read<Described> {
     let path = string(from, at)?;
     let start = *at;

@@ -217,11 +217,11 @@ fn time() -> Variable {
     }
 }
 
-/// A name stands once in a unit: a later one of the same gets a `_` behind it.
+/// A name stands once in a unit: a later one of the same gets a `_` after it.
 fn make_distinct(variables: &mut [Variable]) {
-    let mut taken = HashSet::new();
+    let mut used = HashSet::new();
     for variable in variables {
-        while !taken.insert(variable.name.clone()) {
+        while !used.insert(variable.name.clone()) {
             variable.name.push('_');
         }
     }

@@ -6,6 +6,15 @@ const STEPS = 1000;
 // Ranges whose ends are further apart than by such a factor are spread by their logarithm.
 const WIDE = 20;
 
+// What stands in their place where the page has no program, since the model is not linear.
+function noSliders() {
+  if (view.printing) return { element: null };
+  const words =
+    'There are no sliders here: this model is not linear, so that its response depends on how hard it is driven and takes a simulation. ' +
+    'qcar simulate with --set NAME=VALUE tries other values.';
+  return { element: h('p', {}, words) };
+}
+
 // Details that are closed until a reader wants them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
 // range, gives}`, of which `gives` makes the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, of which
 // `curves(part)` are shown beside those that move.

@@ -1,7 +1,7 @@
 // What a study has fitted, to be moved: the ratios of a run of the rig.
 
 function tried({ fit, refitted, rig: ratios }) {
-  if (!PROGRAM) return { element: null };
+  if (!PROGRAM) return noSliders();
   const { run } = ratios[0];
   const estimated = refitted.length
     ? refitted.filter(({ stderr }) => stderr !== null)

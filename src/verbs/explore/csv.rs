@@ -13,7 +13,7 @@ pub(super) struct Csv {
 }
 
 impl Csv {
-    /// Goes on behind the whole rows of a file with these columns, whose first column counts as `first` says; what is not
+    /// Goes on after the whole rows of a file with these columns, whose first column counts as `first` says; what is not
     /// whole is taken away.
     ///
     /// # Errors
@@ -43,7 +43,7 @@ impl Csv {
         Ok((Csv { file, width }, kept))
     }
 
-    /// Writes rows behind the others, whole or not at all as far as the system can.
+    /// Writes rows after the others, whole or not at all as far as the system can.
     ///
     /// # Errors
     /// What the system says.

@@ -17,7 +17,7 @@ pub(super) struct Grouped {
 }
 
 impl Grouped {
-    /// Goes on behind the whole groups of a file of this shape; what is not whole is taken away.
+    /// Goes on after the whole groups of a file of this shape; what is not whole is taken away.
     ///
     /// # Errors
     /// What the system says.

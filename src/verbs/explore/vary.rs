@@ -12,7 +12,7 @@ use qcar_runtime::spelling;
 
 use crate::failure;
 
-/// `name=low..high`; the ends may have a unit behind them, or be percents of the value.
+/// `name=low..high`; the ends may have a unit after them, or be percents of the value.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Vary {
     name: String,

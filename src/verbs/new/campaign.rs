@@ -176,7 +176,7 @@ fn guess(of: &Parameter) -> (Option<f64>, &'static str) {
     }
 }
 
-/// `key = value`, behind a `#` where there is no value, so that the campaign is refused until someone gives it.
+/// `key = value`, after a `#` where there is no value, so that the campaign is refused until someone gives it.
 fn line(key: &str, value: Option<f64>) -> String {
     value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
 }

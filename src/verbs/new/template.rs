@@ -12,7 +12,7 @@ use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::parameters;
-use crate::spreadsheet::{Looks, filled};
+use crate::spreadsheet::{CellFormats, filled};
 use rows::{Row, rows};
 
 // What stands in it.
@@ -86,8 +86,8 @@ fn corners() -> Result<Vec<catalogue::Loaded>, Failure> {
 
 fn workbook(file: &Path, model: Option<&str>, rows: &[Row]) -> Result<Vec<u8>, InputError> {
     filled(file, |workbook| {
-        let looks = Looks::default();
-        values::write(workbook, &looks, model, rows)?;
-        tables::write(workbook, &looks)
+        let formats = CellFormats::default();
+        values::write(workbook, &formats, model, rows)?;
+        tables::write(workbook, &formats)
     })
 }

@@ -13,11 +13,11 @@ use crate::verbs::each_once;
 
 /// True of a name that a pattern means, in which each `*` stands for any letters.
 pub(crate) fn fits(pattern: &str, name: &str) -> bool {
-    let Some((before, rest)) = pattern.split_once('*') else {
+    let Some((prefix, rest)) = pattern.split_once('*') else {
         return pattern == name;
     };
-    let (between, behind) = rest.rsplit_once('*').unwrap_or(("", rest));
-    let inner = name.strip_prefix(before).and_then(|name| name.strip_suffix(behind));
+    let (between, suffix) = rest.rsplit_once('*').unwrap_or(("", rest));
+    let inner = name.strip_prefix(prefix).and_then(|name| name.strip_suffix(suffix));
     let after = |name: &str, piece: &str| name.find(piece).map(|at| at + piece.len());
     let mut pieces = between.split('*');
     inner.is_some_and(|inner| {

@@ -139,7 +139,7 @@ pub(crate) fn gather(
     Ok(found)
 }
 
-/// The parameters that are asked for, and behind them all others of which errors are known: what they leave in doubt is so
+/// The parameters that are asked for, and after them all others of which errors are known: what they leave in doubt is so
 /// whoever is asked for.
 fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
     let doubted = |name: &str| subject.errors.deviations.get(name).is_some_and(|error| *error > 0.0);

@@ -212,7 +212,7 @@ impl Read {
         let (mut roads, mut problems) = (Vec::new(), Vec::new());
         for own in &self.file.roads {
             match own.get_ref().parse::<roads::Asked>() {
-                Ok(road) => roads.push(road.beside(self.path.parent().unwrap_or(Path::new("")))),
+                Ok(road) => roads.push(road.asked_in(&self.path)),
                 Err(_) => {
                     let found = format!("`{}`", own.get_ref());
                     let remedy = "write it as \"C@60km/h\"";

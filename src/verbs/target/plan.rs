@@ -30,7 +30,7 @@ pub(super) struct Plan {
     pub moves: Vec<Move>,
     pub limits: Vec<Limit>,
     pub couplings: Vec<Coupling>,
-    /// What each limit and, behind them, each coupling is.
+    /// What each limit and, after them, each coupling is.
     pub wanted: Vec<Wanted>,
     /// Results that are means of readings over the runs.
     pub means: Vec<Vec<usize>>,

@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
-use crate::back::straight::{FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written};
+use crate::back::straight::{
+    FREQUENCIES, Function, Language, Leaf, Local, Locals, Names, Pieces, Straight, Written, usual_name,
+};
 use crate::expr;
 use crate::program::Value;
 use crate::program::schedule::Compiled;
@@ -159,23 +161,27 @@ impl<'a> Printer<'a> {
         let read = leaves
             .iter()
             .map(|(local, value)| declare(*value, format!("{}{}", passed(local.argument), local.at)));
-        let taken = cut.taken(piece).into_iter();
-        let taken = taken.map(|value| declare(value, format!("kept[{}]", cut.kept[&value])));
+        let inherited = cut.inherited(piece).into_iter();
+        let inherited = inherited.map(|value| declare(value, format!("kept[{}]", cut.kept[&value])));
         let computed = cut.pieces[piece].iter().flat_map(|&value| self.compute(value));
         let stored = cut.stored(piece).into_iter();
         let stored = stored.map(|(place, value)| self.store(place, value));
         let needed = leaves.iter().map(|(local, _)| local.argument).collect();
         let unused = self.unused(needed);
         let unused = unused.iter().map(|argument| format!("(void){argument};"));
-        read.chain(taken).chain(computed).chain(stored).chain(unused).collect()
+        read.chain(inherited)
+            .chain(computed)
+            .chain(stored)
+            .chain(unused)
+            .collect()
     }
 
     /// The arguments that the piece does not need.
     fn unused(&self, read: BTreeSet<&str>) -> Vec<&'static str> {
         let (cut, piece) = (self.cut, self.piece);
         let computed = &cut.pieces[piece];
-        let keeps = !cut.taken(piece).is_empty() || computed.iter().any(|value| cut.kept.contains_key(value));
-        let writes = !cut.stored(piece).is_empty() || computed.iter().any(|&v| self.locals.results(v).next().is_some());
+        let keeps = !cut.inherited(piece).is_empty() || computed.iter().any(|value| cut.kept.contains_key(value));
+        let writes = !cut.stored(piece).is_empty() || computed.iter().any(|&v| !cut.results(v).is_empty());
         let arguments = self.signature.function.arguments.iter().copied();
         let mut unused: Vec<&str> = arguments
             .filter(|argument| !read.contains(argument))
@@ -197,8 +203,8 @@ impl<'a> Printer<'a> {
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}] = {name};"));
         }
-        let results = self.locals.results(value);
-        statements.extend(results.map(|place| self.store(place, value)));
+        let results = self.cut.results(value).iter();
+        statements.extend(results.map(|&place| self.store(place, value)));
         statements
     }
 
@@ -228,14 +234,7 @@ impl Language for C {
         let name = match function {
             expr::Function::Abs => "fabs",
             expr::Function::Sign => SIGN,
-            expr::Function::Sqrt => "sqrt",
-            expr::Function::Exp => "exp",
-            expr::Function::Ln => "log",
-            expr::Function::Sin => "sin",
-            expr::Function::Cos => "cos",
-            expr::Function::Tan => "tan",
-            expr::Function::Atan => "atan",
-            expr::Function::Tanh => "tanh",
+            other => usual_name(other),
         };
         format!("{name}({a})")
     }

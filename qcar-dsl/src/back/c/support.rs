@@ -46,25 +46,25 @@ static double larger_of(double a, double b)
 ";
 
 const TABLE_TEXT: &str = "/* A derivative of the piecewise cubic curve through points, of an order from 0 to 3, at x; beyond its ends it is a
- * straight line. At a knot, those above the first are of the piece behind it. */
+ * straight line. At a knot, those above the first are of the piece above it. */
 static double curve_at(int order, double x, int count, const double *knots, const double *values, const double *slopes)
 {
-    int behind = 0, end = count;
+    int above = 0, end = count;
     double t, square = 0.0, cube = 0.0;
-    while (behind < end) {
-        const int middle = behind + (end - behind) / 2;
+    while (above < end) {
+        const int middle = above + (end - above) / 2;
         if (knots[middle] <= x)
-            behind = middle + 1;
+            above = middle + 1;
         else
             end = middle;
     }
-    end = behind > 0 ? behind - 1 : 0;
+    end = above > 0 ? above - 1 : 0;
     t = x - knots[end];
-    if (behind > 0 && behind < count) {
-        const double width = knots[behind] - knots[end];
-        const double secant = (values[behind] - values[end]) / width;
-        square = (3.0 * secant - 2.0 * slopes[end] - slopes[behind]) / width;
-        cube = (slopes[end] + slopes[behind] - 2.0 * secant) / (width * width);
+    if (above > 0 && above < count) {
+        const double width = knots[above] - knots[end];
+        const double secant = (values[above] - values[end]) / width;
+        square = (3.0 * secant - 2.0 * slopes[end] - slopes[above]) / width;
+        cube = (slopes[end] + slopes[above] - 2.0 * secant) / (width * width);
     }
     switch (order) {
     case 0: return values[end] + t * (slopes[end] + t * (square + t * cube));

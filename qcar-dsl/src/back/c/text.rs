@@ -12,7 +12,7 @@ pub fn comment(text: &str) -> String {
     format!("/* {first}{rest}{end}\n")
 }
 
-/// A text behind a statement, on its line.
+/// A text after a statement, on its line.
 pub fn remark(text: &str) -> String {
     match text {
         "" => String::new(),

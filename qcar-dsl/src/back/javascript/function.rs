@@ -1,7 +1,9 @@
 //! A straight-line program as a function of JavaScript: one operation a line, a result stored where it is computed.
 
 use super::RESERVED;
-use crate::back::straight::{FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, Straight, Written};
+use crate::back::straight::{
+    FREQUENCIES, Function, Language, Leaf, Locals, Names, Pieces, Straight, Written, usual_name,
+};
 use crate::expr;
 use crate::program::Value;
 
@@ -30,7 +32,7 @@ pub fn text(function: &Function, straight: &Straight) -> String {
     let stored = cut.stored(0).into_iter().map(|(place, value)| store(place, value));
     let computed = cut.pieces[0].iter().flat_map(|&value| {
         let computed = format!("const {} = {};", locals.name(value), written.operation(value));
-        let results = locals.results(value).map(move |place| store(place, value));
+        let results = cut.results(value).iter().map(move |&place| store(place, value));
         [computed].into_iter().chain(results)
     });
     let lines = leaves.chain(stored).chain(computed);
@@ -67,19 +69,7 @@ impl Language for JavaScript {
     }
 
     fn call(&self, function: expr::Function, a: &str) -> String {
-        let name = match function {
-            expr::Function::Abs => "abs",
-            expr::Function::Sign => "sign",
-            expr::Function::Sqrt => "sqrt",
-            expr::Function::Exp => "exp",
-            expr::Function::Ln => "log",
-            expr::Function::Sin => "sin",
-            expr::Function::Cos => "cos",
-            expr::Function::Tan => "tan",
-            expr::Function::Atan => "atan",
-            expr::Function::Tanh => "tanh",
-        };
-        format!("Math.{name}({a})")
+        format!("Math.{}({a})", usual_name(function))
     }
 
     fn power(&self, a: &str, b: &str) -> String {

@@ -21,7 +21,7 @@ impl Statements<'_> {
         let stored = self.cut.stored(0).into_iter().map(|(place, value)| store(place, value));
         let computed = self.cut.pieces[0].iter().flat_map(|&value| {
             let computed = format!("{} = {};", self.locals.name(value), self.written().operation(value));
-            let stored = self.locals.results(value).map(move |place| store(place, value));
+            let stored = self.cut.results(value).iter().map(move |&place| store(place, value));
             [computed].into_iter().chain(stored)
         });
         let lines = leaves.chain(stored).chain(computed);
@@ -86,12 +86,12 @@ end
 const CURVE: &str = "
 % A derivative of the piecewise cubic curve through points; beyond its ends it is a straight line.
 function r = curve_at(order, x, knots, values, slopes)
-    behind = sum(knots <= x);
-    left = max(behind, 1);
+    above = sum(knots <= x);
+    left = max(above, 1);
     t = x - knots(left);
     square = 0;
     cube = 0;
-    if behind > 0 && behind < numel(knots)
+    if above > 0 && above < numel(knots)
         width = knots(left + 1) - knots(left);
         secant = (values(left + 1) - values(left)) / width;
         square = (3 * secant - 2 * slopes(left) - slopes(left + 1)) / width;

@@ -260,7 +260,7 @@ impl<'a> Printer<'a> {
             format!("let {} = {}{}{line};", self.local(*value), local.argument, local.at)
         };
         let once: Vec<String> = once.iter().map(read).collect();
-        let kept = self.cut.taken(self.piece).into_iter().map(|value| {
+        let kept = self.cut.inherited(self.piece).into_iter().map(|value| {
             format!(
                 "let {} = kept[{}]{};",
                 self.local(value),
@@ -308,8 +308,8 @@ impl<'a> Printer<'a> {
         if let Some(place) = self.cut.kept.get(&value) {
             statements.push(format!("kept[{place}]{} = {};", self.line(), self.local(value)));
         }
-        let results = self.locals.results(value);
-        statements.extend(results.map(|place| self.store(place, value)));
+        let results = self.cut.results(value).iter();
+        statements.extend(results.map(|&place| self.store(place, value)));
         statements
     }
 

@@ -19,8 +19,8 @@ const RESERVED: &[&str] = &[
 
 /// The names of local variables beside these arguments.
 pub fn names(arguments: &[&'static str]) -> Names {
-    let taken = KEYWORDS.iter().chain(RESERVED).chain(arguments);
-    Names::beside(taken.copied())
+    let used = KEYWORDS.iter().chain(RESERVED).chain(arguments);
+    Names::beside(used.copied())
 }
 
 /// A name that can stand where Rust expects an identifier of ours, such as a field.

@@ -118,7 +118,7 @@ pub fn sets(about: &About) -> String {
     let written = functions.iter().map(|(function, sizes, rows)| {
         let fields = sizes.iter().map(|size| format!("&'a [seam::Lanes; {size}]"));
         let fields: Vec<String> = fields.collect();
-        let taken: Vec<String> = (0..sizes.len()).map(|place| format!("self.{place}")).collect();
+        let arguments: Vec<String> = (0..sizes.len()).map(|place| format!("self.{place}")).collect();
         format!(
             "
 struct {name}<'a>({fields});
@@ -126,13 +126,13 @@ struct {name}<'a>({fields});
 impl Sets<{rows}> for {name}<'_> {{
     #[inline(always)]
     fn compute(&self, rows: &mut [seam::Lanes; {rows}]) {{
-        straight::{function}_sets({taken}, rows);
+        straight::{function}_sets({arguments}, rows);
     }}
 }}
 ",
             name = camel(&format!("{function}_sets")),
             fields = fields.join(", "),
-            taken = taken.join(", "),
+            arguments = arguments.join(", "),
         )
     });
     written.collect()

@@ -96,8 +96,8 @@ fn row(compiled: &Compiled, matrix: Matrix, row: usize) -> &[(Entry, Expr)] {
         own < (matrix, row) || last && own == (matrix, row)
     };
     let first = nonzeros.partition_point(|(entry, _)| before(entry, false));
-    let behind = nonzeros.partition_point(|(entry, _)| before(entry, true));
-    &nonzeros[first..behind]
+    let last = nonzeros.partition_point(|(entry, _)| before(entry, true));
+    &nonzeros[first..last]
 }
 
 /// The columns and values of two rows, of A and B or of C and D.

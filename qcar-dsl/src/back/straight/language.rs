@@ -12,19 +12,7 @@ pub trait Language {
     fn number(&self, number: f64) -> String;
     /// A function of a value.
     fn call(&self, function: Function, a: &str) -> String {
-        let name = match function {
-            Function::Abs => "abs",
-            Function::Sign => "sign",
-            Function::Sqrt => "sqrt",
-            Function::Exp => "exp",
-            Function::Ln => "log",
-            Function::Sin => "sin",
-            Function::Cos => "cos",
-            Function::Tan => "tan",
-            Function::Atan => "atan",
-            Function::Tanh => "tanh",
-        };
-        format!("{name}({a})")
+        format!("{}({a})", usual_name(function))
     }
     /// `a` to the power of `b`.
     fn power(&self, a: &str, b: &str) -> String {
@@ -42,6 +30,22 @@ pub trait Language {
     fn choice(&self, test: &str, a: &str, b: &str) -> String;
     /// The derivative of an order of a curve, from abscissae, ordinates and slopes.
     fn table(&self, order: u8, x: &str, rows: [Vec<String>; 3]) -> String;
+}
+
+/// What most languages call a function.
+pub fn usual_name(function: Function) -> &'static str {
+    match function {
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+        Function::Sqrt => "sqrt",
+        Function::Exp => "exp",
+        Function::Ln => "log",
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Tan => "tan",
+        Function::Atan => "atan",
+        Function::Tanh => "tanh",
+    }
 }
 
 /// A program whose values have names, in a language.

@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use crate::expr::Symbol;
+use crate::hash::HashMap;
 use crate::program::{Op, Program, Value};
 
 /// The longest piece, in operations.
@@ -18,6 +19,8 @@ pub struct Pieces<'a> {
     pub pieces: Vec<Vec<Value>>,
     /// The values that one piece leaves to a later one, with their places in `kept`.
     pub kept: BTreeMap<Value, usize>,
+    /// The results of the program to which each value goes.
+    results: HashMap<Value, Vec<usize>>,
 }
 
 /// What a program reads from its arguments.
@@ -48,8 +51,9 @@ impl<'a> Pieces<'a> {
             program,
             pieces,
             kept: BTreeMap::new(),
+            results: results(program),
         };
-        let crossing: BTreeSet<Value> = (0..cut.pieces.len()).flat_map(|piece| cut.taken(piece)).collect();
+        let crossing: BTreeSet<Value> = (0..cut.pieces.len()).flat_map(|piece| cut.inherited(piece)).collect();
         cut.kept = crossing.into_iter().zip(0..).collect();
         cut
     }
@@ -60,11 +64,12 @@ impl<'a> Pieces<'a> {
             program,
             pieces: vec![computed(program).collect()],
             kept: BTreeMap::new(),
+            results: results(program),
         }
     }
 
-    /// The values that a piece takes from an earlier one.
-    pub fn taken(&self, piece: usize) -> BTreeSet<Value> {
+    /// The values that a piece has from an earlier one.
+    pub fn inherited(&self, piece: usize) -> BTreeSet<Value> {
         let values = &self.pieces[piece];
         let used = values
             .iter()
@@ -91,6 +96,19 @@ impl<'a> Pieces<'a> {
             .filter(|&(_, value)| piece == 0 && !is_computed(self.program, value))
             .collect()
     }
+
+    /// The places of a value among the results.
+    pub fn results(&self, value: Value) -> &[usize] {
+        self.results.get(&value).map_or(&[], Vec::as_slice)
+    }
+}
+
+fn results(program: &Program) -> HashMap<Value, Vec<usize>> {
+    let mut results: HashMap<Value, Vec<usize>> = HashMap::default();
+    for (place, &value) in program.outputs.iter().enumerate() {
+        results.entry(value).or_default().push(place);
+    }
+    results
 }
 
 /// What a value is.

@@ -86,7 +86,7 @@ fn form(tokens: &mut Tokens) -> Parsed<Form> {
     Ok(Form { name, doc, terms, body })
 }
 
-/// A sentence behind its word.
+/// A sentence after its word.
 fn told(tokens: &mut Tokens, into: &mut String, example: &str) -> Parsed<Option<Change>> {
     tokens.any_word();
     (*into, _) = tokens.text("a sentence", example)?;
@@ -137,7 +137,7 @@ fn seen_from(tokens: &mut Tokens) -> Parsed<Name> {
     after(tokens, "a point", EXAMPLE)
 }
 
-/// The name behind the next word.
+/// The name after the next word.
 fn after(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Name> {
     tokens.any_word();
     tokens.name(what, example)
@@ -151,7 +151,7 @@ fn word(tokens: &mut Tokens, word: &str, example: &str) -> Parsed<()> {
     }
 }
 
-/// Names behind the next word, with commas between.
+/// Names after the next word, with commas between.
 fn list(tokens: &mut Tokens, what: &str, example: &str) -> Parsed<Vec<Name>> {
     let mut names = vec![after(tokens, what, example)?];
     while tokens.take(",") {

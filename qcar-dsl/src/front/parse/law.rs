@@ -24,7 +24,7 @@ const WORDS: [&str; 11] = [
     "an element's name",
 ];
 
-/// `(k: N/m) { … }` behind the word `element` and the name.
+/// `(k: N/m) { … }` after the word `element` and the name.
 pub fn element(tokens: &mut Tokens, name: Name) -> Parsed<Element> {
     const EXAMPLE: &str = "element maxwell(k: N/m, c: N s/m) { … }";
     let at = *tokens;

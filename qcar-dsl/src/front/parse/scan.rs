@@ -36,7 +36,7 @@ impl Scan<'_> {
     fn run(&mut self) {
         let text = self.source.text.as_str();
         let mut at = 0;
-        // What is too deep says all: the brackets behind it would each be a mistake again.
+        // What is too deep says all: the brackets after it would each be a mistake again.
         while let Some(character) = text[at..].chars().next().filter(|_| self.open.len() <= DEEPEST) {
             let rest = &text[at..];
             at += match character {

@@ -244,7 +244,7 @@ impl<'a> Tokens<'a> {
         ))
     }
 
-    /// Steps into a group of brackets if one is next, and behind it.
+    /// Steps into a group of brackets if one is next, and after it.
     pub fn group(&mut self, delimiter: Delimiter) -> Option<Tokens<'a>> {
         let (inside, span, after) = self.cursor.group(delimiter)?;
         self.cursor = after;
@@ -271,7 +271,7 @@ impl<'a> Tokens<'a> {
         }
     }
 
-    /// Goes behind the next `;` or block, where the next statement begins.
+    /// Goes past the next `;` or block, where the next statement begins.
     pub fn skip_statement(&mut self) {
         while let Some((token, after)) = self.cursor.token_tree() {
             self.cursor = after;

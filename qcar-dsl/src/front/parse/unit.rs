@@ -41,7 +41,7 @@ fn product(tokens: &mut Tokens) -> Parsed<Vec<UnitFactor>> {
     }
 }
 
-/// Another factor stands right behind; `in` begins a range, not a unit.
+/// Another factor stands right after; `in` begins a range, not a unit.
 fn follows(tokens: &Tokens) -> bool {
     tokens.peek().is_some_and(|word| word != "in")
 }

@@ -76,7 +76,7 @@ fn binary(operator: Operator, left: &Expression, right: &Expression) -> String {
     }
 }
 
-/// A name behind `/` would be read as a unit where a number with a unit stands before it.
+/// A name after `/` would be read as a unit where a number with a unit stands before it.
 fn quotient(left: &Expression, right: &Expression) -> String {
     let (above, below) = (at_least(Rank::Product, left), at_least(Rank::Sign, right));
     if ends_in_unit(left) && begins_like_unit(right) {
@@ -160,7 +160,7 @@ impl UnitText {
 }
 
 impl Display for UnitText {
-    /// Positive exponents first, the rest behind one `/`.
+    /// Positive exponents first, the rest after one `/`.
     fn fmt(&self, f: &mut Formatter) -> fmt::Result {
         let raised = |above: bool| -> Vec<String> {
             self.factors
@@ -180,7 +180,7 @@ impl Display for UnitText {
     }
 }
 
-/// Without a numerator, behind a number: `5 s^-1`.
+/// Without a numerator, after a number: `5 s^-1`.
 fn spelled_out(factors: &[UnitFactor]) -> String {
     let spelled = |factor: &UnitFactor| match factor.denominator {
         1 => format!("{}^{}", factor.symbol.text, factor.numerator),

@@ -29,7 +29,7 @@ mod connect;
 mod see;
 
 use names::Names;
-use options::Taken;
+use options::Member;
 use value::Value;
 
 /// A mistake has been reported; nothing more is to be said about it. Only [`Resolver::report`] and names whose own
@@ -44,10 +44,10 @@ pub(crate) type Known<Thing> = Result<Thing, Reported>;
 type Placed<'a> = (&'a str, &'a Statement);
 
 /// Resolves one member of a family, or a plain axle. There is a model only where nothing but warnings is found.
-pub fn resolve(axle: &Axle, taken: &Taken, elements: &[&Element]) -> (Model, Vec<Diagnostic>) {
-    let mut resolver = Resolver::new(axle, taken);
+pub fn resolve(axle: &Axle, member: &Member, elements: &[&Element]) -> (Model, Vec<Diagnostic>) {
+    let mut resolver = Resolver::new(axle, member);
     resolver.declare_elements(elements);
-    let placed = placed(&taken.body);
+    let placed = placed(&member.body);
     resolver.parameters(&placed);
     resolver.definitions(&placed);
     resolver.coordinates(&placed);
@@ -92,11 +92,11 @@ struct Resolver<'a> {
 }
 
 impl<'a> Resolver<'a> {
-    fn new(axle: &Axle, taken: &Taken) -> Resolver<'a> {
+    fn new(axle: &Axle, member: &Member) -> Resolver<'a> {
         let model = Model {
             name: axle.name.text.clone(),
             doc: axle.doc.clone(),
-            choices: taken.choices.clone(),
+            choices: member.choices.clone(),
             graph: Graph::default(),
             parameters: vec![],
             definitions: vec![],
@@ -109,7 +109,7 @@ impl<'a> Resolver<'a> {
             channels: vec![],
         };
         let names = Names {
-            off: taken.off.clone(),
+            off: member.off.clone(),
             ..Names::default()
         };
         let (elements, definitions, later) = (BTreeMap::new(), vec![], vec![]);

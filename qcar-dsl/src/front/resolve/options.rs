@@ -10,7 +10,7 @@ use crate::source::Span;
 pub type Choices = Vec<(String, String)>;
 
 /// One member of a family, or a plain axle: its statements without any `option`, `require` and `if`.
-pub struct Taken {
+pub struct Member {
     /// In the order of the text.
     pub body: Vec<Statement>,
     /// The value of each option.
@@ -20,10 +20,10 @@ pub struct Taken {
 }
 
 /// Takes what an axle chooses: the family's statements, then the axle's own.
-pub fn take(axle: &Axle, family: Option<&Axle>, found: &mut Vec<Diagnostic>) -> Taken {
+pub fn select(axle: &Axle, family: Option<&Axle>, found: &mut Vec<Diagnostic>) -> Member {
     let options = Options::of(family.unwrap_or(axle), found);
     let choices = options.chosen_by(axle, found);
-    options.take(&choices, axle, family, found)
+    options.select(&choices, axle, family, found)
 }
 
 /// Every choice of options that fulfils each `require`, in the order in which the family lists the values.
@@ -161,14 +161,14 @@ impl<'a> Options<'a> {
         choices
     }
 
-    fn take(&self, choices: &Choices, axle: &Axle, family: Option<&Axle>, found: &mut Vec<Diagnostic>) -> Taken {
+    fn select(&self, choices: &Choices, axle: &Axle, family: Option<&Axle>, found: &mut Vec<Diagnostic>) -> Member {
         for rule in &self.requirements {
             let decided = choices.len() == self.options.len();
             if decided && !holds(&rule.condition, choices) {
                 found.push(broken(rule, choices, axle.name.span));
             }
         }
-        let mut taking = Taking {
+        let mut selection = Selection {
             choices,
             off: BTreeMap::new(),
         };
@@ -176,12 +176,12 @@ impl<'a> Options<'a> {
         let body = of_family
             .iter()
             .chain(&axle.body)
-            .flat_map(|statement| taking.statement(statement))
+            .flat_map(|statement| selection.statement(statement))
             .collect();
-        Taken {
+        Member {
             body,
             choices: choices.clone(),
-            off: taking.off,
+            off: selection.off,
         }
     }
 }
@@ -291,18 +291,18 @@ fn state(condition: &Logic<OptionTest>, choices: &Choices) -> Vec<String> {
 }
 
 /// Takes branches, and keeps what the others would have declared.
-struct Taking<'a> {
+struct Selection<'a> {
     choices: &'a Choices,
     off: BTreeMap<String, String>,
 }
 
-impl Taking<'_> {
+impl Selection<'_> {
     fn statement(&mut self, statement: &Statement) -> Vec<Statement> {
         match statement {
             Statement::Option(_) | Statement::Require(_) | Statement::Choose(..) => vec![],
             Statement::If(choice) => {
-                let taken = self.branch(choice, |off, part, why| declared(part, why, off));
-                taken.iter().flat_map(|part| self.statement(part)).collect()
+                let chosen = self.branch(choice, |off, part, why| declared(part, why, off));
+                chosen.iter().flat_map(|part| self.statement(part)).collect()
             }
             Statement::Direction(direction) => {
                 let body = direction.body.iter().flat_map(|part| self.statement(part)).collect();
@@ -320,18 +320,18 @@ impl Taking<'_> {
     }
 
     fn law(&mut self, body: &[LawStatement]) -> Vec<LawStatement> {
-        let mut taken = Vec::new();
+        let mut chosen = Vec::new();
         for statement in body {
             match statement {
                 LawStatement::If(choice) => {
                     let branch = self.branch(choice, |_, _, _| {});
-                    taken.extend(self.law(branch));
+                    chosen.extend(self.law(branch));
                 }
-                LawStatement::Rolling(span, body) => taken.push(LawStatement::Rolling(*span, self.law(body))),
-                other => taken.push(other.clone()),
+                LawStatement::Rolling(span, body) => chosen.push(LawStatement::Rolling(*span, self.law(body))),
+                other => chosen.push(other.clone()),
             }
         }
-        taken
+        chosen
     }
 
     /// The branch whose condition is the first to hold; the others are switched off.

@@ -192,7 +192,7 @@ fn heights<'a>(
                 last.full_name()
             );
             let remedy = format!(
-                "choose one: `{}` behind a `#` on the command line, or `source` in a campaign",
+                "choose one: `{}` after a `#` on the command line, or `source` in a campaign",
                 first.full_name()
             );
             Err(Problem::new(file, Place::File, found, "the one that the tyre rolls over", remedy).into())

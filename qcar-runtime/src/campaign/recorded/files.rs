@@ -55,16 +55,7 @@ pub(in crate::campaign) const BESIDE_MANIFEST: &str =
 /// # Errors
 /// A file that cannot be read.
 pub(in crate::campaign) fn recording(file: &Path, wrong_path: &str) -> Result<Recording, InputError> {
-    let bytes = bounded::measured(file).map_err(|error| {
-        let remedy = bounded::remedy(&error, wrong_path);
-        InputError::from(Problem::new(
-            file,
-            Place::File,
-            error.to_string(),
-            "a readable file",
-            remedy,
-        ))
-    })?;
+    let bytes = bounded::measured_file(file, wrong_path)?;
     recognise(&bytes).map_err(|fault| problem(file, &fault).into())
 }
 

@@ -47,7 +47,7 @@ impl<'a> Together<'a> {
     /// Names and samples, all of one length.
     pub fn columns(&self) -> Vec<(String, Vec<f64>)> {
         let both = self.channels.iter().zip(&self.even);
-        both.map(|(channel, even)| (channel.tap.name.clone(), taken(channel, even, self.grid)))
+        both.map(|(channel, even)| (channel.tap.name.clone(), on_grid(channel, even, self.grid)))
             .collect()
     }
 
@@ -107,7 +107,7 @@ fn grid(file: &Path, channels: &[Channel<'_>], even: &[Even], rate: f64) -> Resu
 }
 
 /// The values at the instants of the grid: as they are where they were taken then, else through the filter.
-fn taken(channel: &Channel<'_>, even: &Even, grid: Grid) -> Vec<f64> {
+fn on_grid(channel: &Channel<'_>, even: &Even, grid: Grid) -> Vec<f64> {
     let values = channel.values(even.samples.clone());
     let as_they_are = even.sample_at(grid.start).filter(|_| even.grid.rate == grid.rate);
     match as_they_are.and_then(|first| values.get(first..first + grid.count)) {

@@ -94,7 +94,7 @@ impl<'a> Reader<'a> {
             bytes = match *filter {
                 DEFLATE => {
                     let mut unpacked = Vec::new();
-                    // A checksum may still stand behind.
+                    // A checksum may still follow.
                     let outcome = ZlibDecoder::new(&bytes[..]).take(size + 4).read_to_end(&mut unpacked);
                     outcome.map_err(|error| {
                         let found = format!("packed data that end with: {error}");

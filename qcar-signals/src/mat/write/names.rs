@@ -8,7 +8,7 @@ use hdf5_pure::mat::identifier::sanitize_name;
 const LONGEST: usize = super::LONGEST_NAME;
 
 /// The names in one scope as they are written: what is no letter of ASCII, digit or `_` becomes `_`, `x` stands before a name that does
-/// not begin with a letter, `_` behind a keyword, and a long name is cut off.
+/// not begin with a letter, `_` after a keyword, and a long name is cut off.
 ///
 /// # Errors
 /// Two that would be written alike.

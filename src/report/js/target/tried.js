@@ -5,7 +5,7 @@ const TRIED_BAND = [0.5, 30];
 const TRIED_LINES = 200;
 
 function tried({ parameters, moves }) {
-  if (!PROGRAM) return { element: null };
+  if (!PROGRAM) return noSliders();
   const given = (place, value) =>
     Object.fromEntries(
       moves.filter((own) => own.knob === place).map((own) => [own.parameter, own.factor * value + own.constant]),

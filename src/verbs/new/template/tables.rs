@@ -3,7 +3,7 @@
 use qcar_runtime::campaign::workbook::{AXLES, CLEATS, COLUMNS, CURVES, DAMPERS, TESTS};
 use rust_xlsxwriter::{DataValidation, DataValidationRule, Workbook, XlsxError};
 
-use crate::spreadsheet::Looks;
+use crate::spreadsheet::CellFormats;
 use crate::units;
 
 /// Heights of the thesis's cleats, mm.
@@ -14,7 +14,7 @@ const DAMPER: [(&str, &str); 2] = [("velocity", "m/s"), ("force", "N")];
 const PREPARED: u32 = 5000;
 
 /// Adds the sheets.
-pub(super) fn write(workbook: &mut Workbook, looks: &Looks) -> Result<(), XlsxError> {
+pub(super) fn write(workbook: &mut Workbook, formats: &CellFormats) -> Result<(), XlsxError> {
     let of_test = |axle, test| COLUMNS.map(|(column, unit)| (format!("{axle} {test} {column}"), unit));
     let curves = AXLES
         .into_iter()
@@ -25,18 +25,23 @@ pub(super) fn write(workbook: &mut Workbook, looks: &Looks) -> Result<(), XlsxEr
     let cleats = HEIGHTS
         .into_iter()
         .flat_map(|height| ["x", "z"].map(|axis| (format!("cleat_{height} {axis}"), "m")));
-    table(workbook, looks, CURVES, curves.collect())?;
-    table(workbook, looks, DAMPERS, dampers.collect())?;
-    table(workbook, looks, CLEATS, cleats.collect())
+    table(workbook, formats, CURVES, curves.collect())?;
+    table(workbook, formats, DAMPERS, dampers.collect())?;
+    table(workbook, formats, CLEATS, cleats.collect())
 }
 
-fn table(workbook: &mut Workbook, looks: &Looks, name: &str, columns: Vec<(String, &str)>) -> Result<(), XlsxError> {
+fn table(
+    workbook: &mut Workbook,
+    formats: &CellFormats,
+    name: &str,
+    columns: Vec<(String, &str)>,
+) -> Result<(), XlsxError> {
     let sheet = workbook.add_worksheet();
     sheet.set_name(name)?;
     for (at, (heading, unit)) in (0..).zip(&columns) {
         sheet.set_column_width(at, heading.len().max(10) as f64 + 2.0)?;
-        sheet.write_string_with_format(0, at, heading, &looks.heading)?;
-        sheet.write_string_with_format(1, at, units::name(unit), &looks.input)?;
+        sheet.write_string_with_format(0, at, heading, &formats.heading)?;
+        sheet.write_string_with_format(1, at, units::name(unit), &formats.input)?;
     }
     sheet.set_freeze_panes(2, 0)?;
     let number = DataValidation::new()

@@ -5,12 +5,12 @@ use rust_xlsxwriter::{DataValidation, DataValidationErrorStyle, DataValidationRu
 
 use super::rows::{GROUPS, Row};
 use crate::catalogue;
-use crate::spreadsheet::Looks;
+use crate::spreadsheet::CellFormats;
 use crate::units;
 
 /// Columns of what a row is; those of each axle follow.
 const WHAT: [(&str, f64); 2] = [("Name", 58.0), ("Model variable", 20.0)];
-/// Columns of an axle: the value's own name, and what is behind its dot.
+/// Columns of an axle: the value's own name, and what is after its dot.
 const OF_AXLE: [(&str, &str); 5] = [
     ("", ""),
     ("Unit", ".unit"),
@@ -18,7 +18,7 @@ const OF_AXLE: [(&str, &str); 5] = [
     ("To", ".upper"),
     ("Fit", ".fit"),
 ];
-/// Columns behind those of both axles: what names begin with.
+/// Columns after those of both axles: what names begin with.
 const LAST: [(&str, &str, f64); 2] = [("Comment", "comment.", 40.0), ("Kind of unit", "kind.", 14.0)];
 
 /// Rows above the table.
@@ -27,20 +27,20 @@ const TOP: u32 = 8;
 /// A sheet under way, and the names of its cells.
 struct Sheet<'a> {
     sheet: Worksheet,
-    looks: &'a Looks,
+    formats: &'a CellFormats,
     names: Vec<(String, u32, u16)>,
 }
 
 /// Adds the sheet.
 pub(super) fn write(
     workbook: &mut Workbook,
-    looks: &Looks,
+    formats: &CellFormats,
     model: Option<&str>,
     rows: &[Row],
 ) -> Result<(), XlsxError> {
     let mut out = Sheet {
         sheet: Worksheet::new(),
-        looks,
+        formats,
         names: Vec::new(),
     };
     out.sheet.set_name(VALUES)?;
@@ -49,7 +49,7 @@ pub(super) fn write(
     for (group, title) in GROUPS.iter().enumerate() {
         let mut of_group = rows.iter().filter(|row| row.group == group).peekable();
         if of_group.peek().is_some() {
-            out.sheet.write_string_with_format(at, 0, *title, &looks.heading)?;
+            out.sheet.write_string_with_format(at, 0, *title, &formats.heading)?;
             at += 1;
         }
         for row in of_group {
@@ -68,8 +68,8 @@ pub(super) fn write(
 impl Sheet<'_> {
     /// What stands over the table.
     fn head(&mut self, model: Option<&str>) -> Result<(), XlsxError> {
-        let looks = self.looks;
-        self.sheet.write_string_with_format(0, 0, "Vehicle", &looks.title)?;
+        let formats = self.formats;
+        self.sheet.write_string_with_format(0, 0, "Vehicle", &formats.title)?;
         let hint = "Fill in the coloured cells. A unit may be changed, then its row is in it. What an axle does not have \
                     stays empty. All masses are those of one corner.";
         self.sheet.write_string(1, 0, hint)?;
@@ -88,7 +88,7 @@ impl Sheet<'_> {
     }
 
     fn headings(&mut self) -> Result<(), XlsxError> {
-        let heading = &self.looks.heading;
+        let heading = &self.formats.heading;
         for (column, (title, width)) in (0..).zip(WHAT) {
             self.sheet.set_column_width(column, width)?;
             self.sheet.write_string_with_format(TOP, column, title, heading)?;
@@ -111,8 +111,8 @@ impl Sheet<'_> {
     }
 
     fn label(&mut self, row: u32, doc: &str, name: &str) -> Result<(), XlsxError> {
-        self.sheet.write_string_with_format(row, 0, doc, &self.looks.plain)?;
-        self.sheet.write_string_with_format(row, 1, name, &self.looks.plain)?;
+        self.sheet.write_string_with_format(row, 0, doc, &self.formats.plain)?;
+        self.sheet.write_string_with_format(row, 1, name, &self.formats.plain)?;
         Ok(())
     }
 
@@ -124,10 +124,10 @@ impl Sheet<'_> {
             column += OF_AXLE.len() as u16;
         }
         let [comment, kind] = LAST.map(|(_, prefix, _)| format!("{prefix}{}", row.name));
-        self.sheet.write_blank(at, column, &self.looks.input)?;
+        self.sheet.write_blank(at, column, &self.formats.input)?;
         self.names.push((comment, at, column));
         self.sheet
-            .write_string_with_format(at, column + 1, &row.unit, &self.looks.plain)?;
+            .write_string_with_format(at, column + 1, &row.unit, &self.formats.plain)?;
         self.names.push((kind, at, column + 1));
         Ok(())
     }
@@ -168,8 +168,8 @@ impl Sheet<'_> {
         match value {
             Some(value) => self
                 .sheet
-                .write_number_with_format(at, column, value, &self.looks.input)?,
-            None => self.sheet.write_blank(at, column, &self.looks.input)?,
+                .write_number_with_format(at, column, value, &self.formats.input)?,
+            None => self.sheet.write_blank(at, column, &self.formats.input)?,
         };
         Ok(())
     }
@@ -177,10 +177,10 @@ impl Sheet<'_> {
     /// A cell for one of several words.
     fn word(&mut self, at: u32, column: u16, name: &str, word: &str, choices: &[&str]) -> Result<(), XlsxError> {
         match word {
-            "" => self.sheet.write_blank(at, column, &self.looks.input)?,
+            "" => self.sheet.write_blank(at, column, &self.formats.input)?,
             word => self
                 .sheet
-                .write_string_with_format(at, column, word, &self.looks.input)?,
+                .write_string_with_format(at, column, word, &self.formats.input)?,
         };
         // Other units and models of the user's own are read as well.
         let list = DataValidation::new()
