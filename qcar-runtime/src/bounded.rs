@@ -1,7 +1,7 @@
 //! Files that are read no further than a limit, so that no file can fill the memory, whatever it unpacks to.
 
 use std::fs::{self, File};
-use std::io::{self, BufRead, BufReader, ErrorKind, Read};
+use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
 use qcar_signals::read::{is_packed, unpacked};
@@ -100,13 +100,13 @@ pub fn text(path: &Path) -> io::Result<String> {
     Ok(text)
 }
 
-/// A table that is read as it goes, which gzip may have packed.
+/// A table that is read as it goes, unpacked where its name ends in `.gz`.
 ///
 /// # Errors
-/// As [`open`], and what the system says of its first bytes; the reader has those of [`limited`].
+/// As [`open`]; the reader has those of [`limited`].
 pub fn table(path: &Path) -> io::Result<Box<dyn Read>> {
-    let mut plain = BufReader::new(open(path)?);
-    Ok(match is_packed(plain.fill_buf()?) {
+    let plain = BufReader::new(open(path)?);
+    Ok(match path.extension().is_some_and(|end| end == "gz") {
         true => Box::new(limited(unpacked(plain))),
         false => Box::new(limited(plain)),
     })
