@@ -7,7 +7,7 @@ use super::assembly::Placed;
 use super::judging::predicts;
 use super::race::{Finalist, race};
 use super::screen::Prospect;
-use super::set::{Set, closed};
+use super::set::{Set, closed, is_missing};
 use super::{News, Progress, explained, looks};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::observe::Evidence;
@@ -15,8 +15,8 @@ use crate::discover::observe::Evidence;
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;
 
-/// The laws that the evidence wants beside a set; `None` where it wants none, or where they do not predict the runs that
-/// judge.
+/// The laws that the evidence wants beside a set; `None` where it wants none, or where they neither predict the runs that judge
+/// nor close most of what a model leaves there that is far off.
 pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     for _ in 0..MOST_LAWS {
@@ -30,7 +30,11 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
         }
         best = Some(more);
     }
-    best.filter(|best| holds(best, base, evidence))
+    // What the model alone leaves is far from noise there: a law that closes most of it says what is missing, even where it is
+    // too sure of runs that go further than the fitted ones.
+    let closes_most =
+        |best: &Set| closed(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
+    best.filter(|best| holds(best, base, evidence) || is_missing(base, evidence) && closes_most(best))
 }
 
 /// The one law that the evidence wants beside a set; `None` as for [`learn`].
