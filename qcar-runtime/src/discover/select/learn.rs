@@ -15,8 +15,8 @@ use crate::discover::observe::Evidence;
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;
 
-/// The laws that the evidence wants beside a set; `None` where it wants none, or where they neither predict the runs that judge
-/// nor close most of what a model leaves there that is far off.
+/// The laws that the evidence wants beside a set; `None` where it wants none. They must predict the runs that judge, or close most
+/// of the gap there where the set is far off.
 pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     for _ in 0..MOST_LAWS {
@@ -30,8 +30,8 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
         }
         best = Some(more);
     }
-    // What the model alone leaves is far from noise there: a law that closes most of it says what is missing, even where it is
-    // too sure of runs that go further than the fitted ones.
+    // The score leaves out the uncertainty of the law's parameters, so a law is overconfident on runs beyond the range of the
+    // fitted ones. Where the model alone is far off, a law that closes most of the gap there still says what is missing.
     let closes_most =
         |best: &Set| closed(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
     best.filter(|best| holds(best, base, evidence) || is_missing(base, evidence) && closes_most(best))

@@ -67,7 +67,7 @@ const STARTED: usize = 9;
 /// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
 /// thousand.
 const CLOSE: f64 = 10.0;
-/// Candidates that enter in any case.
+/// So many of those that gain most enter, at whatever place and in whatever form.
 const ENTRANTS: usize = 6;
 /// How many times as many evaluations a linear model has: they cost little.
 const LINEAR: usize = 3;
