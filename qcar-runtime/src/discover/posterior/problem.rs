@@ -45,8 +45,19 @@ pub struct Posterior<'a> {
     has_answered: bool,
     /// What the sweeps add to their balance, series by series.
     pub unsteady: Vec<Vec<Complex<f64>>>,
-    /// Where the residual was evaluated last, and the predicted sweeps there: an accepted step asks for them again.
-    pub last: Option<(Vec<f64>, Vec<Prediction>)>,
+    /// What was predicted last, and last with derivatives: an accepted step asks again, and so does the next round.
+    pub known: Vec<Known>,
+}
+
+/// What a model says of the fitted runs at a place.
+pub struct Known {
+    at: Vec<f64>,
+    /// Of the sweeps, always with derivatives,
+    swept: Vec<Prediction>,
+    /// and of all other runs,
+    others: Vec<Prediction>,
+    /// which may have derivatives, too.
+    is_sloped: bool,
 }
 
 impl<'a> Posterior<'a> {
@@ -75,7 +86,7 @@ impl<'a> Posterior<'a> {
             refused: None,
             has_answered: false,
             unsteady: vec![Vec::new(); evidence.series.len()],
-            last: None,
+            known: Vec::new(),
             values,
         }
     }
@@ -124,31 +135,48 @@ impl<'a> Posterior<'a> {
         &x[self.free.len() + self.nuisance.len()..]
     }
 
-    /// What the model says of the fitted runs: of the sweeps, and of all others, these differentiated along `free`.
-    fn predictions(&mut self, x: &[f64], free: &[Free]) -> Result<[Vec<Prediction>; 2], PredictError> {
+    /// What the model says of the fitted runs, differentiated where that is wanted.
+    fn predicted(&mut self, x: &[f64], sloped: bool) -> Result<Known, PredictError> {
+        let here = self.known.iter().position(|known| known.at == x);
+        let here = here.map(|place| self.known.remove(place));
         self.move_to(x);
+        let here = match here {
+            Some(known) if known.is_sloped || !sloped => return Ok(known),
+            other => other,
+        };
         let both = [&self.values, &self.side];
         let misread = self.nuisance.misread(self.evidence, &x[self.free.len()..]);
         let predict = |free: &[Free], swept: bool| {
             let wanted = |run: &Run| run.role == Role::Fit && is_swept(run) == swept;
             predict_sides(self.model, both, &misread, free, self.evidence, &wanted)
         };
-        let swept = match self.last.take().filter(|(at, _)| at == x) {
-            Some((_, swept)) => swept,
+        let swept = match here {
+            Some(known) => known.swept,
             None => {
                 let mut swept = predict(&self.free, true)?;
                 swept.iter_mut().for_each(|own| own.add(&self.unsteady[own.series]));
                 swept
             }
         };
-        Ok([swept, predict(free, false)?])
+        Ok(Known {
+            at: x.to_vec(),
+            swept,
+            others: predict(if sloped { &self.free } else { &[] }, false)?,
+            is_sloped: sloped,
+        })
+    }
+
+    /// Keeps what was predicted last, and what was predicted last with derivatives.
+    fn keep(&mut self, known: Known) {
+        let is_sloped = known.is_sloped;
+        self.known.retain(|own| own.is_sloped && !is_sloped);
+        self.known.push(known);
     }
 
     /// Writes the residual; gives the columns of the Jacobian, of the data alone, where these are wanted.
     pub fn residual_and_slopes(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
-        let free = if sloped { self.free.clone() } else { Vec::new() };
-        let [swept, others] = match self.predictions(x, &free) {
-            Ok(predictions) => predictions,
+        let known = match self.predicted(x, sloped) {
+            Ok(known) => known,
             Err(error) => {
                 self.refused = (!self.has_answered).then_some(error);
                 residual.fill(f64::NAN);
@@ -156,7 +184,7 @@ impl<'a> Posterior<'a> {
             }
         };
         self.has_answered = true;
-        let mut predictions: Vec<&Prediction> = swept.iter().chain(&others).collect();
+        let mut predictions: Vec<&Prediction> = known.swept.iter().chain(&known.others).collect();
         predictions.sort_by_key(|own| own.series);
         let mut rows = Vec::with_capacity(residual.len());
         let count = if sloped { self.variables() } else { 0 };
@@ -164,7 +192,7 @@ impl<'a> Posterior<'a> {
         for prediction in predictions {
             self.rows(prediction, x, &mut rows, &mut columns);
         }
-        self.last = Some((x.to_vec(), swept));
+        self.keep(known);
         if let Some(discrepancy) = self.discrepancy.as_ref().filter(|_| self.whitens) {
             discrepancy.whiten(&mut rows);
             columns.iter_mut().for_each(|column| discrepancy.whiten(column));

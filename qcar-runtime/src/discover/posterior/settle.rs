@@ -25,6 +25,7 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
     let mut settled = refit;
     for _ in 0..ROUNDS {
         let misread = settled.nuisance.misread(evidence, &settled.coefficients);
+        posterior.known.clear();
         posterior.unsteady = unsteady(model, &settled.values, &misread, evidence, Role::Fit)?;
         let place = posterior.place(&settled);
         settled = posterior.settle(place)?;
