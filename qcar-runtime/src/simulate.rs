@@ -24,8 +24,10 @@ mod shortcut;
 mod recorder;
 // Rides over a road.
 mod ride;
-// How they change with the parameters.
+// How they change with the parameters,
 mod tangent;
+// and how those of linear axles do, faster.
+mod variation;
 // Those that a campaign has measured.
 mod cleat;
 // Those of the thesis.
@@ -47,3 +49,4 @@ pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};
 pub use standard::Standard;
 pub use tangent::{Tangent, tangent};
+pub use variation::variation;

@@ -22,9 +22,12 @@ mod matrix;
 mod polynomial;
 // and steps.
 mod exponential;
+// Many of them at once, under forces that are known.
+mod hold;
 
 pub use dormand_prince::{DormandPrince, Settings};
 pub use exponential::{Driven, ExponentialAdams};
+pub use hold::Hold;
 pub use polynomial::PAST;
 pub use rk4::Rk4;
 pub use step::Step;

@@ -1,9 +1,17 @@
 //! Derivatives of a ride, against rides whose parameters are moved.
 
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
 use models::axle_d::AxleD;
+use qcar::catalogue::compiled;
+use qcar::effects;
+use qcar::workshop::Bench;
+use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::model::{About, Contact, Model};
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::direction;
-use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent};
+use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent, variation};
 
 use crate::cleat;
 
@@ -169,4 +177,125 @@ fn the_usual_tolerance_is_enough_for_a_sensitivity() {
         }
     }
     assert!(worst < 2e-3, "{worst:e}");
+}
+
+/// What discovery fits by: derivatives on the grid of the samples, of every output, over a cleat that throws the wheel.
+#[test]
+fn derivatives_of_a_linear_axle_on_the_grid_of_the_samples_are_those_of_its_ride() {
+    let (parameters, road) = (cleat::parameters(), cleat::cleat(0.02));
+    let (car, drive) = (cleat::car(&parameters), cleat::drive(&road, 30.0 / 3.6));
+    let outputs: Vec<usize> = (0..AxleD.about().outputs.len()).collect();
+    let exact = along_each(&drive, EXACT);
+    let mut worst: f64 = 0.0;
+    for (k, exact_slopes) in leaders().into_iter().zip(&exact.slopes) {
+        const PART: f64 = 1e-4;
+        let mut moved = parameters.clone();
+        moved.set(k, parameters.as_slice()[k] * (1.0 + PART));
+        let found = variation(&car, &drive, &outputs, &[(moved.as_slice(), PART)]);
+        let found = found.expect("it rides").expect("axle D is linear");
+        for (signal, found) in found[0].iter().enumerate() {
+            worst = worst.max(error(found, &exact_slopes[signal], &exact.signals[signal]));
+        }
+    }
+    assert!(worst < 1e-2, "{worst:e}");
+    assert_eq!(
+        variation(
+            &Car {
+                model: &General::new(),
+                parameters: car.parameters,
+                tyre: car.tyre,
+                load: car.load,
+                variant: car.variant
+            },
+            &drive,
+            &outputs,
+            &[(car.parameters, 1.0)]
+        ),
+        Ok(None)
+    );
+}
+
+/// The largest error of the derivatives of all outputs of a model by some of its parameters and those of an effect, against the
+/// central difference of two exact rides: a part of the signal, or of the derivative where that is larger.
+fn worst_on_the_grid(model: &dyn Model, added: &[(&str, f64)]) -> f64 {
+    const PART: f64 = 1e-3;
+    let own = cleat::parameters();
+    let road = cleat::cleat(0.02);
+    let drive = cleat::drive(&road, 30.0 / 3.6);
+    let axle_d = AxleD
+        .about()
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.to_string());
+    let given: BTreeMap<String, f64> = axle_d
+        .zip(own.as_slice().iter().copied())
+        .chain(added.iter().map(|(name, value)| (name.to_string(), *value)))
+        .collect();
+    let values = Values::resolve(model.about(), &given, &BTreeMap::new()).unwrap();
+    let here = values.as_slice();
+    let Car {
+        tyre, load, variant, ..
+    } = cleat::car(&own);
+    let car = Car {
+        model,
+        parameters: here,
+        tyre,
+        load,
+        variant,
+    };
+    let of = |parameters: &[f64]| {
+        ride(&Car { parameters, ..car }, &drive, &settings(1e-10))
+            .expect("it rides")
+            .outputs
+    };
+    let still = of(here);
+    let outputs: Vec<usize> = (0..still.len()).collect();
+    let mut worst: f64 = 0.0;
+    for name in ["k_tire", "c_tire", "m_wheel", "k_sf_z", "c_wheel_x"]
+        .into_iter()
+        .chain(added.iter().map(|own| own.0))
+    {
+        let k = model
+            .about()
+            .parameters
+            .iter()
+            .position(|own| own.name == name)
+            .unwrap();
+        let moved = |part: f64| {
+            let mut moved = values.clone();
+            moved.set(k, here[k] * (1.0 + part));
+            moved.as_slice().to_vec()
+        };
+        let (up, down) = (of(&moved(PART)), of(&moved(-PART)));
+        let found = variation(&car, &drive, &outputs, &[(&moved(1e-4), 1e-4)]);
+        let found = found.expect("it rides").expect("it is linear beside the contact");
+        for (signal, found) in found[0].iter().enumerate() {
+            let pairs = up[signal].iter().zip(&down[signal]);
+            let difference: Vec<f64> = pairs.map(|(up, down)| (up - down) / (2.0 * PART)).collect();
+            worst = worst.max(error(found, &difference, &still[signal]).min(error(found, &difference, &difference)));
+        }
+    }
+    worst
+}
+
+/// What a tyre with states of its own is told, deflection and its rate, acts beside the force.
+#[test]
+fn derivatives_on_the_grid_know_tyres_with_states_of_their_own() {
+    let catalogue = Arc::new(effects::catalogue().map_err(|_| "the catalogue reads").unwrap());
+    let axle = compiled("axle_d").map_err(|_| "it compiles").unwrap().model;
+    let bench = Bench::new(axle, catalogue, Arc::new(BTreeMap::new()));
+    let relaxing = [("stiffness_ratio", 1.6), ("relaxation_frequency", 12.0)];
+    let belt = [("m_belt", 7.0), ("k_sidewall", 9e5), ("c_sidewall", 250.0)];
+    let cases = [
+        ("tire_dynamic_stiffness", "always", &relaxing[..]),
+        ("tire_dynamic_stiffness", "rolling", &relaxing),
+        ("tire_belt", "in_plane", &belt),
+    ];
+    for (effect, form, added) in cases {
+        let with = bench
+            .with(effect, "tire", Some(form))
+            .expect("the effect has this form");
+        let worst = worst_on_the_grid(with.model(), added);
+        assert!(worst < 1.5e-2, "{effect} {form}: {worst:e}");
+    }
 }

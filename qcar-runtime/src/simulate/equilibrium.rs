@@ -15,7 +15,7 @@ const MOST_ITERATIONS: usize = 100;
 /// Rates that would move no state by more than this part of its size count as rest.
 const REST: f64 = 1e-9;
 /// Below this part there is nothing but rounding to be improved.
-const ROUNDING: f64 = 1e-14;
+const ROUNDING: f64 = 1e-12;
 /// Directions in which the scaled Jacobian is flatter than this are free: a model may float in x, and a dry friction
 /// may rest at any force. It lies above the rounding of the difference quotients and below any spring.
 const FREE: f64 = 1e-9;

@@ -41,6 +41,14 @@ pub(super) struct Rolling<'a, M: ?Sized> {
     pub smooth_from: f64,
 }
 
+/// Changes of a position, m, and of a velocity, m/s, for derivatives of the contact's force: a thousandth of what rounding
+/// leaves of it, and far below the deflection of any tyre.
+const SMALL_MOTION: [f64; 2] = [1e-7, 1e-5];
+/// The same of a state of the tyre, on which its law depends linearly, in parts of its size.
+const SMALL_PART: f64 = 1e-3;
+/// Deflections, m, and their rates, m/s, at which two laws of a contact are compared.
+const PROBES: [[f64; 2]; 3] = [[-0.01, 0.1], [-0.02, -1.0], [-0.035, 0.4]];
+
 /// Places of the wheel's position and velocity, in z and, where it moves, in x.
 struct WheelStates {
     z: [usize; 2],
@@ -143,10 +151,32 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
         }
     }
 
-    /// True where but for the force of the contact all is linear: in a linear model whose tyre has no states of its own.
-    pub fn is_linear(&self) -> bool {
+    /// Of the model, how many states and how many outputs there are.
+    pub fn sizes(&self) -> (usize, usize) {
         let about = self.model.about();
-        let states = vec![0.0; about.states.len()];
+        (about.states.len(), about.outputs.len())
+    }
+
+    /// True where but for what the contact gives all is linear.
+    pub fn is_linear_beside_contact(&self) -> bool {
+        let deflected = |by: f64| {
+            let given = Contact {
+                s: by,
+                v: 2.0 * by,
+                force: [0.0; 2],
+            };
+            let states = vec![0.0; self.sizes().0];
+            let mut rate = states.clone();
+            self.move_by(&given, &states, &mut rate, &mut []);
+            rate
+        };
+        let twice = |once: f64| 2.0 * once;
+        self.model.about().linear && deflected(1.0).into_iter().map(twice).eq(deflected(2.0))
+    }
+
+    /// True where that is the force of the contact alone: the tyre has no states of its own.
+    pub fn is_linear(&self) -> bool {
+        let states = vec![0.0; self.sizes().0];
         let mut rate = states.clone();
         let moving = Contact {
             s: 1.0,
@@ -154,7 +184,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
             force: [0.0; 2],
         };
         self.move_by(&moving, &states, &mut rate, &mut []);
-        about.linear && rate == states
+        self.model.about().linear && rate == states
     }
 
     /// The contact at time `t`; none in the air.
@@ -162,6 +192,48 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     pub fn contact_at(&self, t: f64, x: &[f64]) -> Option<Contact> {
         let touch = self.touch(t, x)?;
         Some(self.contact(Some(&touch), x))
+    }
+
+    /// What the contact gives to the axle at time `t`: the forces that move the wheel from its rest, N, in z and x, and to a
+    /// tyre with states of its own deflection and rate, m and m/s.
+    pub fn given(&self, t: f64, x: &[f64]) -> [f64; 4] {
+        let contact = self.driven(self.contact_at(t, x).unwrap_or_default());
+        [contact.force[0], contact.force[1], contact.s, contact.v]
+    }
+
+    /// Places of the states that the contact depends on, each with a small change of it.
+    pub fn touching(&self) -> Vec<(usize, f64)> {
+        let axes = [Some(self.wheel.z), self.wheel.x].into_iter().flatten();
+        let of_axis = |[position, velocity]: [usize; 2]| [(position, SMALL_MOTION[0]), (velocity, SMALL_MOTION[1])];
+        let mut touching: Vec<(usize, f64)> = axes.flat_map(of_axis).collect();
+        let mut x = self.nowhere_zero();
+        for (state, scale) in scales(self.model.about()).enumerate() {
+            let was = self.laws(&x);
+            x[state] += scale;
+            if self.laws(&x) != was {
+                touching.push((state, SMALL_PART * scale));
+            }
+            x[state] -= scale;
+        }
+        touching
+    }
+
+    /// True where the contact of another car gives the same in the same place.
+    pub fn is_touched_like(&self, other: &Self) -> bool {
+        let laws = [self, other].map(|own| own.laws(&own.nowhere_zero()));
+        let others = |own: &Self| (own.tyre, own.height, own.load, own.traction);
+        laws[0] == laws[1] && others(self) == others(other)
+    }
+
+    /// What the law of the contact says at some places of its own.
+    fn laws(&self, x: &[f64]) -> [f64; 3] {
+        PROBES.map(|[s, v]| self.model.contact_force(&self.constants, x, s, v))
+    }
+
+    /// A state at which no law that depends on it shows nothing of that.
+    fn nowhere_zero(&self) -> Vec<f64> {
+        let scales = scales(self.model.about()).enumerate();
+        scales.map(|(state, scale)| (1 + state) as f64 * scale).collect()
     }
 
     /// Where the wheel's centre is at time `t`, m.

@@ -119,6 +119,11 @@ impl Grid {
         self.time(0)
     }
 
+    /// Between points, s.
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
     /// Time of the last point, s.
     pub fn end(&self) -> f64 {
         self.time(self.points() - 1)

@@ -12,7 +12,7 @@ use crate::discover::observe::{Delay, Evidence, Free, Means, Passage, PredictErr
 use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::response::signal::output_of;
-use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride};
+use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride, variation};
 
 /// The integration: its error stays far below what a tyre model is good for.
 const METHOD: Method = Method::Adaptive(3e-6);
@@ -47,15 +47,13 @@ pub fn passage(
         moved.set(free.parameter, values.as_slice()[free.parameter] + change);
         moved
     });
-    let all: Vec<Values> = std::iter::once(values.clone()).chain(moved).collect();
-    let rides = all.par_iter().map(|values| {
-        let failed = |reason| PredictError::Ride {
-            run: evidence.runs[run].name.clone(),
-            reason,
-        };
-        accelerations(model, values, passage, &outputs).map_err(failed)
-    });
-    let rides: Vec<Vec<Vec<f64>>> = rides.collect::<Result<_, _>>()?;
+    let moved: Vec<Values> = moved.collect();
+    let failed = |reason| PredictError::Ride {
+        run: evidence.runs[run].name.clone(),
+        reason,
+    };
+    let base = accelerations(model, values, passage, &outputs).map_err(failed)?;
+    let slopes = slopes(model, (values, &base), (&moved, &changes), passage, &outputs).map_err(failed)?;
     let seen = Seen {
         means: passage.means,
         late: series
@@ -65,7 +63,7 @@ pub fn passage(
         places: series.iter().map(|(place, _)| *place).collect(),
         series: series.into_iter().map(|(_, series)| series).collect(),
     };
-    Ok(seen.predictions(&rides[0], &rides[1..], &changes))
+    Ok(seen.predictions(&base, &slopes))
 }
 
 /// By how much a parameter is changed for its difference; towards its lower bound where it stands at the upper one.
@@ -75,13 +73,12 @@ fn change(values: &Values, free: &Free) -> f64 {
     if value + change > free.upper { -change } else { change }
 }
 
-/// The outputs of a ride, sampled like the record.
-fn accelerations(
-    model: &dyn Model,
-    values: &Values,
-    passage: &Passage,
-    outputs: &[usize],
-) -> Result<Vec<Vec<f64>>, SimulateError> {
+/// The car of a passage, and how it is driven.
+fn car_and_drive<'a>(
+    model: &'a dyn Model,
+    values: &'a Values,
+    passage: &'a Passage,
+) -> (Car<'a, dyn Model + 'a>, Drive<'a>) {
     let car = Car {
         model,
         parameters: values.as_slice(),
@@ -96,12 +93,50 @@ fn accelerations(
         sample_rate: rate,
         samples: (passage.duration * rate).ceil() as usize + 1,
     };
+    (car, drive)
+}
+
+/// The outputs of a ride, sampled like the record.
+fn accelerations(
+    model: &dyn Model,
+    values: &Values,
+    passage: &Passage,
+    outputs: &[usize],
+) -> Result<Vec<Vec<f64>>, SimulateError> {
+    let (car, drive) = car_and_drive(model, values, passage);
     let settings = Settings {
         method: METHOD,
         most_steps: (passage.most_steps * passage.duration).ceil() as usize,
     };
     let ride = ride(&car, &drive, &settings)?;
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
+}
+
+/// Their derivatives by each parameter that is `moved`, which a linear axle tells of itself; differences of rides else.
+fn slopes(
+    model: &dyn Model,
+    (values, base): (&Values, &[Vec<f64>]),
+    (moved, changes): (&[Values], &[f64]),
+    passage: &Passage,
+    outputs: &[usize],
+) -> Result<Vec<Vec<Vec<f64>>>, SimulateError> {
+    let (car, drive) = car_and_drive(model, values, passage);
+    let sets: Vec<(&[f64], f64)> = moved
+        .iter()
+        .map(Values::as_slice)
+        .zip(changes.iter().copied())
+        .collect();
+    if let Some(slopes) = variation(&car, &drive, outputs, &sets)? {
+        return Ok(slopes);
+    }
+    let difference = |(moved, change): (&Values, &f64)| {
+        let mut there = accelerations(model, moved, passage, outputs)?;
+        for (there, here) in there.iter_mut().flatten().zip(base.iter().flatten()) {
+            *there = (*there - here) / change;
+        }
+        Ok(there)
+    };
+    moved.par_iter().zip(changes).map(difference).collect()
 }
 
 /// What the sensors of a run see of a ride.
@@ -118,20 +153,11 @@ struct Seen<'a> {
 type Shifted = Vec<(Vec<f64>, Vec<f64>)>;
 
 impl Seen<'_> {
-    fn predictions(&self, base: &[Vec<f64>], moved: &[Vec<Vec<f64>>], changes: &[f64]) -> Vec<Prediction> {
+    fn predictions(&self, base: &[Vec<f64>], slopes: &[Vec<Vec<f64>>]) -> Vec<Prediction> {
         let shift = self.best_shift(base);
         let here = self.shifted(base, shift);
-        let slopes = moved.iter().zip(changes).map(|(moved, change)| {
-            let there = self.shifted(moved, shift);
-            let pairs = there.iter().zip(&here);
-            let slopes = pairs.map(|(there, here)| {
-                there
-                    .0
-                    .iter()
-                    .zip(&here.0)
-                    .map(|(there, here)| (there - here) / change)
-                    .collect()
-            });
+        let slopes = slopes.iter().map(|records| {
+            let slopes = self.shifted(records, shift).into_iter().map(|(slopes, _)| slopes);
             self.without_shift(slopes.collect(), &here, shift)
         });
         let slopes: Vec<Vec<Vec<f64>>> = slopes.collect();

@@ -1,0 +1,438 @@
+//! How rides of a linear axle change with its parameters, to first order and on the grid of the samples.
+//!
+//! But for what the contact gives all is linear: its force, and to a tyre with states of its own its deflection and rate. So
+//! the variational equation of each parameter, `dS/dt = A S + B (K S + ∂g/∂p) + ∂A/∂p x + ∂B/∂p g`, has the matrix of the axle
+//! and the derivatives `K` of the contact in common with all others, and the parameters are stepped together. Between points
+//! what acts is linear in time: a derivative is good to about a hundredth, which a least-squares fit needs no better, and
+//! [`tangent`](super::tangent()) does without.
+
+use std::array;
+
+use nalgebra::{DMatrix, Matrix4, Vector4};
+
+use super::car::Car;
+use super::failure::SimulateError;
+use super::ride::{Drive, oversampling};
+use super::rolling::Rolling;
+use super::sampling::{Grid, Tape};
+use crate::model::{Contact, Model};
+use crate::solver::Hold;
+use crate::tyre::Geometry;
+
+/// Derivatives of some `outputs` of a ride, sampled like these: for each of the `moved` parameter sets, by what it was
+/// changed by. None where the axle is not linear, or its tyre feels single points of the road.
+///
+/// # Errors
+/// As [`ride`](super::ride()), also where a car with a moved set cannot stand.
+pub fn variation<M: Model + ?Sized>(
+    car: &Car<'_, M>,
+    drive: &Drive<'_>,
+    outputs: &[usize],
+    moved: &[(&[f64], f64)],
+) -> Result<Option<Vec<Vec<Vec<f64>>>>, SimulateError> {
+    let tyre = car.rolling_tyre();
+    drive.check(&tyre)?;
+    if moved.is_empty() {
+        return Ok(Some(Vec::new()));
+    }
+    let grid = Grid::new(drive.sample_rate, drive.samples, oversampling(&tyre));
+    let start = drive.start(&tyre).min(grid.start());
+    let at_rest = |parameters| Rolling::at_rest(&Car { parameters, ..*car }, drive.road, drive.speed, start);
+    let (rolling, x) = at_rest(car.parameters)?;
+    if tyre.geometry() == Geometry::Point || !rolling.is_linear_beside_contact() {
+        return Ok(None);
+    }
+    let axle = Axle::of(&rolling, outputs);
+    let mut directions = Vec::with_capacity(moved.len());
+    for &(parameters, change) in moved {
+        directions.push(Direction::new(
+            at_rest(parameters)?,
+            change,
+            (&rolling, &x),
+            (&axle, outputs),
+        ));
+    }
+    let begins = drive.reaches(&tyre).max(start);
+    Ok(Variation::new(rolling, axle, directions, grid, begins, x).map(Variation::slopes))
+}
+
+/// What a contact gives: see [`Rolling::given`].
+const GIVEN: usize = 4;
+
+/// The matrices of an axle: of the rates of its states, and of some outputs.
+struct Axle {
+    a: DMatrix<f64>,
+    b: DMatrix<f64>,
+    c: DMatrix<f64>,
+    d: DMatrix<f64>,
+}
+
+impl Axle {
+    /// A linear axle, asked column by column.
+    fn of<M: Model + ?Sized>(rolling: &Rolling<'_, M>, outputs: &[usize]) -> Self {
+        let (n, signals) = rolling.sizes();
+        let mut axle = Self {
+            a: DMatrix::zeros(n, n),
+            b: DMatrix::zeros(n, GIVEN),
+            c: DMatrix::zeros(outputs.len(), n),
+            d: DMatrix::zeros(outputs.len(), GIVEN),
+        };
+        let (mut rate, mut shown) = (vec![0.0; n], vec![0.0; signals]);
+        let mut ask = |x: &[f64], given: [f64; GIVEN], rates: &mut [f64], seen: &mut dyn Iterator<Item = &mut f64>| {
+            let [vertical, longitudinal, s, v] = given;
+            let contact = Contact {
+                force: [vertical, longitudinal],
+                s,
+                v,
+            };
+            rolling.move_by(&contact, x, &mut rate, &mut shown);
+            rates.copy_from_slice(&rate);
+            seen.zip(outputs).for_each(|(seen, &output)| *seen = shown[output]);
+        };
+        let mut x = vec![0.0; n];
+        for state in 0..n {
+            x[state] = 1.0;
+            let (rates, mut seen) = (axle.a.column_mut(state), axle.c.column_mut(state));
+            ask(&x, [0.0; GIVEN], { rates }.as_mut_slice(), &mut seen.iter_mut());
+            x[state] = 0.0;
+        }
+        for place in 0..GIVEN {
+            let mut given = [0.0; GIVEN];
+            given[place] = 1.0;
+            let (rates, mut seen) = (axle.b.column_mut(place), axle.d.column_mut(place));
+            ask(&x, given, { rates }.as_mut_slice(), &mut seen.iter_mut());
+        }
+        axle
+    }
+}
+
+/// An entry of a matrix that differs: its row, its column and its derivative.
+type Entry = (usize, usize, f64);
+
+/// The derivatives of all entries of a matrix that have one.
+fn changes(from: &DMatrix<f64>, to: &DMatrix<f64>, by: f64) -> Vec<Entry> {
+    let places = (0..from.ncols()).flat_map(|column| (0..from.nrows()).map(move |row| (row, column)));
+    let entries = places.map(|(row, column)| (row, column, (to[(row, column)] - from[(row, column)]) / by));
+    entries.filter(|(.., slope)| *slope != 0.0).collect()
+}
+
+/// What one parameter changes.
+struct Direction<'a, M: ?Sized> {
+    a: Vec<Entry>,
+    b: Vec<Entry>,
+    c: Vec<Entry>,
+    d: Vec<Entry>,
+    /// At rest.
+    state: Vec<f64>,
+    /// The car that has it changed, and by how much, where its tyre pushes otherwise in the same place.
+    other: Option<(Rolling<'a, M>, f64)>,
+}
+
+impl<'a, M: Model + ?Sized> Direction<'a, M> {
+    fn new(
+        (other, x): (Rolling<'a, M>, Vec<f64>),
+        by: f64,
+        (rolling, rests): (&Rolling<'a, M>, &[f64]),
+        (axle, outputs): (&Axle, &[usize]),
+    ) -> Self {
+        let own = Axle::of(&other, outputs);
+        Self {
+            a: changes(&axle.a, &own.a, by),
+            b: changes(&axle.b, &own.b, by),
+            c: changes(&axle.c, &own.c, by),
+            d: changes(&axle.d, &own.d, by),
+            state: x.iter().zip(rests).map(|(x, rests)| (x - rests) / by).collect(),
+            other: (!other.is_touched_like(rolling)).then_some((other, by)),
+        }
+    }
+}
+
+/// A ride and what its parameters change, at a point of the grid.
+struct Variation<'a, M: ?Sized> {
+    rolling: Rolling<'a, M>,
+    axle: Axle,
+    directions: Vec<Direction<'a, M>>,
+    /// States on which anything acts beside the others,
+    forced: Vec<usize>,
+    hold: Hold,
+    /// and what the contact gives at the end of a step adds to the states there.
+    of_contact: DMatrix<f64>,
+    tape: Tape,
+    time: f64,
+    spacing: f64,
+    x: Vec<f64>,
+    /// The states that the contact depends on, each with a small change.
+    touching: Vec<(usize, f64)>,
+    contact: Touching,
+    /// By how much that has changed in the last step.
+    grew: [f64; GIVEN],
+    /// There is a value for each parameter, and room up to so many.
+    lanes: usize,
+    /// Of each state, of what acts on each forced one, and of what the contact gives, the derivatives.
+    slopes: Vec<f64>,
+    acting: Vec<f64>,
+    given_slopes: [Vec<f64>; GIVEN],
+    /// Room for the next states, for their derivatives, for what acted before, and for the derivatives of the outputs.
+    next: Vec<f64>,
+    next_slopes: Vec<f64>,
+    before: Vec<f64>,
+    shown: Vec<f64>,
+}
+
+/// What a contact gives at a point.
+struct Touching {
+    given: [f64; GIVEN],
+    /// Its derivatives by the states that it depends on.
+    by_state: Vec<(usize, [f64; GIVEN])>,
+}
+
+impl Touching {
+    fn new<M: Model + ?Sized>(rolling: &Rolling<'_, M>, touching: &[(usize, f64)], t: f64, x: &mut [f64]) -> Self {
+        let given = rolling.given(t, x);
+        let by_state = touching.iter().map(|&(state, change)| {
+            let here = x[state];
+            x[state] += change;
+            let there = rolling.given(t, x);
+            x[state] = here;
+            (state, slope(given, there, change))
+        });
+        Self {
+            by_state: by_state.collect(),
+            given,
+        }
+    }
+}
+
+fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
+    array::from_fn(|axis| (to[axis] - from[axis]) / by)
+}
+
+/// Adds a multiple of numbers to others.
+fn add(factor: f64, of: &[f64], to: &mut [f64]) {
+    to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
+}
+
+impl<'a, M: Model + ?Sized> Variation<'a, M> {
+    /// At the last point before something `begins` to move the car from its rest `x`; none where the axle is too fast for the
+    /// grid by far.
+    fn new(
+        rolling: Rolling<'a, M>,
+        axle: Axle,
+        directions: Vec<Direction<'a, M>>,
+        grid: Grid,
+        begins: f64,
+        mut x: Vec<f64>,
+    ) -> Option<Self> {
+        let forced = forced(&axle, &directions);
+        let spacing = grid.spacing();
+        let hold = Hold::new(&axle.a, &forced, spacing)?;
+        let pushed = DMatrix::from_fn(forced.len(), GIVEN, |place, axis| axle.b[(forced[place], axis)]);
+        let time = grid.start() + ((begins - grid.start()) / spacing).floor() * spacing;
+        // A multiple of what is computed together.
+        let lanes = directions.len().next_multiple_of(4);
+        let mut slopes = vec![0.0; x.len() * lanes];
+        for (lane, direction) in directions.iter().enumerate() {
+            for (state, slope) in direction.state.iter().enumerate() {
+                slopes[state * lanes + lane] = *slope;
+            }
+        }
+        let signals = axle.c.nrows() * lanes;
+        let touching = rolling.touching();
+        let contact = Touching::new(&rolling, &touching, time, &mut x);
+        let mut variation = Self {
+            of_contact: hold.of_end() * pushed,
+            tape: Tape::new(grid, signals),
+            acting: vec![0.0; forced.len() * lanes],
+            before: vec![0.0; forced.len() * lanes],
+            given_slopes: array::from_fn(|_| vec![0.0; lanes]),
+            next: vec![0.0; x.len()],
+            next_slopes: vec![0.0; slopes.len()],
+            shown: vec![0.0; signals],
+            grew: [0.0; GIVEN],
+            rolling,
+            axle,
+            directions,
+            forced,
+            hold,
+            time,
+            spacing,
+            x,
+            touching,
+            contact,
+            lanes,
+            slopes,
+        };
+        variation.vary_given();
+        variation.act_beside_contact();
+        variation.act_by_contact();
+        variation.show();
+        variation.tape.record_rest(time - 0.5 * spacing, &variation.shown);
+        Some(variation)
+    }
+
+    /// The derivatives of the outputs.
+    fn slopes(mut self) -> Vec<Vec<Vec<f64>>> {
+        while self.tape.next(f64::INFINITY).is_some() {
+            if self.tape.next(self.time + 0.5 * self.spacing).is_some() {
+                self.show();
+                self.tape.record(&self.shown);
+            }
+            self.advance();
+        }
+        let (outputs, lanes) = (self.axle.c.nrows(), self.lanes);
+        let of = |lane: usize| {
+            (0..outputs)
+                .map(|output| self.tape.filtered(output * lanes + lane))
+                .collect()
+        };
+        (0..self.directions.len()).map(of).collect()
+    }
+
+    /// Goes on to the next point.
+    fn advance(&mut self) {
+        std::mem::swap(&mut self.before, &mut self.acting);
+        self.advance_ride();
+        // What the contact adds at the end of the step follows from the states without it.
+        self.act_beside_contact();
+        let forces = [&self.before, &self.acting].map(Vec::as_slice);
+        self.hold.step(self.lanes, &self.slopes, forces, &mut self.next_slopes);
+        std::mem::swap(&mut self.slopes, &mut self.next_slopes);
+        self.vary_given();
+        let solve = self.solver();
+        for lane in 0..self.lanes {
+            let without = Vector4::from_fn(|axis, _| self.given_slopes[axis][lane]);
+            let given = solve * without;
+            self.given_slopes
+                .iter_mut()
+                .zip(given.iter())
+                .for_each(|(slopes, given)| slopes[lane] = *given);
+        }
+        for (state, slopes) in self.slopes.chunks_exact_mut(self.lanes).enumerate() {
+            for (axis, of_given) in self.given_slopes.iter().enumerate() {
+                add(self.of_contact[(state, axis)], of_given, slopes);
+            }
+        }
+        self.act_by_contact();
+    }
+
+    /// The ride itself: what the contact gives is foreseen from its last change, and corrected by its derivatives.
+    fn advance_ride(&mut self) {
+        let was = self.contact.given;
+        let foreseen: [f64; GIVEN] = array::from_fn(|axis| was[axis] + self.grew[axis]);
+        let acts = |given: [f64; GIVEN]| {
+            let of = |&state: &usize| {
+                self.axle
+                    .b
+                    .row(state)
+                    .iter()
+                    .zip(given)
+                    .map(|(b, given)| b * given)
+                    .sum()
+            };
+            self.forced.iter().map(of).collect::<Vec<f64>>()
+        };
+        self.hold
+            .step(1, &self.x, [&acts(was), &acts(foreseen)], &mut self.next);
+        std::mem::swap(&mut self.x, &mut self.next);
+        self.time += self.spacing;
+        self.contact = Touching::new(&self.rolling, &self.touching, self.time, &mut self.x);
+        let found = self.contact.given;
+        let off = self.solver() * Vector4::from_fn(|axis, _| found[axis] - foreseen[axis]);
+        for (state, x) in self.x.iter_mut().enumerate() {
+            *x += self
+                .of_contact
+                .row(state)
+                .iter()
+                .zip(off.iter())
+                .map(|(by, off)| by * off)
+                .sum::<f64>();
+        }
+        self.contact.given = array::from_fn(|axis| foreseen[axis] + off[axis]);
+        self.grew = array::from_fn(|axis| self.contact.given[axis] - was[axis]);
+    }
+
+    /// From what the contact would give by the states without it to what it gives: it moves them at once.
+    fn solver(&self) -> Matrix4<f64> {
+        let mut answers = Matrix4::identity();
+        for (state, by_state) in &self.contact.by_state {
+            answers -= Vector4::from(*by_state) * self.of_contact.fixed_view::<1, GIVEN>(*state, 0);
+        }
+        answers.try_inverse().unwrap_or_else(Matrix4::identity)
+    }
+
+    /// The derivatives of what the contact gives, by those of the states.
+    fn vary_given(&mut self) {
+        self.given_slopes.iter_mut().for_each(|slopes| slopes.fill(0.0));
+        let others = self.directions.iter().map(|own| own.other.as_ref()).enumerate();
+        let mut here = None;
+        for (lane, (other, by)) in others.filter_map(|(lane, other)| Some((lane, other?))) {
+            let here = *here.get_or_insert_with(|| self.rolling.given(self.time, &self.x));
+            let own = slope(here, other.given(self.time, &self.x), *by);
+            self.given_slopes
+                .iter_mut()
+                .zip(own)
+                .for_each(|(slopes, own)| slopes[lane] = own);
+        }
+        for (state, by_state) in &self.contact.by_state {
+            let of_state = &self.slopes[state * self.lanes..][..self.lanes];
+            for (axis, slopes) in self.given_slopes.iter_mut().enumerate() {
+                add(by_state[axis], of_state, slopes);
+            }
+        }
+    }
+
+    /// What acts on the derivatives of the forced states, beside the states and the contact.
+    fn act_beside_contact(&mut self) {
+        self.acting.fill(0.0);
+        for (lane, direction) in self.directions.iter().enumerate() {
+            let place = |state: usize| self.forced.partition_point(|&own| own < state) * self.lanes + lane;
+            for &(row, column, slope) in &direction.a {
+                self.acting[place(row)] += slope * self.x[column];
+            }
+            for &(row, axis, slope) in &direction.b {
+                self.acting[place(row)] += slope * self.contact.given[axis];
+            }
+        }
+    }
+
+    /// Adds what the contact does.
+    fn act_by_contact(&mut self) {
+        for (&state, acting) in self.forced.iter().zip(self.acting.chunks_exact_mut(self.lanes)) {
+            for (axis, of_given) in self.given_slopes.iter().enumerate() {
+                add(self.axle.b[(state, axis)], of_given, acting);
+            }
+        }
+    }
+
+    /// The derivatives of the outputs here, output by output.
+    fn show(&mut self) {
+        self.shown.fill(0.0);
+        for (output, shown) in self.shown.chunks_exact_mut(self.lanes).enumerate() {
+            let (of_states, of_given) = (self.axle.c.row(output), self.axle.d.row(output));
+            let states = self.slopes.chunks_exact(self.lanes).zip(of_states.iter());
+            let forces = self.given_slopes.iter().map(Vec::as_slice).zip(of_given.iter());
+            for (slopes, factor) in states.chain(forces) {
+                add(*factor, slopes, shown);
+            }
+        }
+        for (lane, direction) in self.directions.iter().enumerate() {
+            for &(row, column, slope) in &direction.c {
+                self.shown[row * self.lanes + lane] += slope * self.x[column];
+            }
+            for &(row, axis, slope) in &direction.d {
+                self.shown[row * self.lanes + lane] += slope * self.contact.given[axis];
+            }
+        }
+    }
+}
+
+/// The states on which the contact acts, or a parameter.
+fn forced<M: ?Sized>(axle: &Axle, directions: &[Direction<'_, M>]) -> Vec<usize> {
+    let of_directions = directions.iter().flat_map(|own| own.a.iter().chain(&own.b));
+    let is_pushed = |state: &usize| axle.b.row(*state).iter().any(|by| *by != 0.0);
+    let pushed = (0..axle.b.nrows()).filter(is_pushed);
+    let mut forced: Vec<usize> = of_directions.map(|entry| entry.0).chain(pushed).collect();
+    forced.sort_unstable();
+    forced.dedup();
+    forced
+}
