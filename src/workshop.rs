@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::derive;
-use qcar_dsl::difference::difference;
+use qcar_dsl::difference::moves_alike;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
 use qcar_runtime::campaign::{Axis, Campaign, Parameter};
@@ -146,18 +146,12 @@ impl Workshop for Bench {
 fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
     let mut apart: Vec<Patched> = Vec::new();
     for own in patched {
-        let is_same = |other: &Patched| other.place == own.place && moves_alike(other, &own);
+        let is_same = |other: &Patched| other.place == own.place && moves_alike(&other.model, &own.model);
         if own.form.is_none() || !apart.iter().any(is_same) {
             apart.push(own);
         }
     }
     apart
-}
-
-/// True where the models have the same equations, however their links are written.
-fn moves_alike(one: &Patched, other: &Patched) -> bool {
-    let parts = difference(&one.model, &other.model).parts;
-    parts.iter().all(|part| part.heading != "equations")
 }
 
 /// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.

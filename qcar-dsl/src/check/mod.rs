@@ -1,11 +1,14 @@
 //! The structure: what is held, what is solvable, what takes energy. Each rule is a function; [`check`] lists them.
 
 use std::ops::Deref;
+use std::sync::{Arc, OnceLock};
 
 use crate::diagnostic::{Diagnostic, Report, Severity, structure, visibility};
 use crate::expr::Graph;
+use crate::front::parse::parse_text;
+use crate::front::syntax::File;
 use crate::model::{CoordinateKind, Model};
-use crate::source::Span;
+use crate::source::{Source, Span};
 
 // Numbers to try a model with.
 pub(crate) mod sample;
@@ -38,6 +41,8 @@ pub use text::{Member, check_members, check_text, check_tokens};
 pub struct Checked {
     model: Model,
     text: String,
+    /// Read from the text when it is first asked for, and shared by copies.
+    tree: Arc<OnceLock<File>>,
     warnings: Report,
     /// Known once it is derived.
     unseen: Option<Vec<Unseen>>,
@@ -61,6 +66,7 @@ impl Checked {
         Checked {
             model,
             text: String::new(),
+            tree: Arc::default(),
             warnings: Report::default(),
             unseen: None,
         }
@@ -73,7 +79,23 @@ impl Checked {
 
     /// The same model with its text.
     pub(crate) fn with_text(self, text: String) -> Self {
-        Checked { text, ..self }
+        Checked {
+            text,
+            tree: Arc::default(),
+            ..self
+        }
+    }
+
+    /// That file as a tree.
+    pub(crate) fn tree(&self) -> &File {
+        let read = || {
+            let source = Source {
+                name: self.name.clone(),
+                text: self.text.clone(),
+            };
+            parse_text(&source, 0).file
+        };
+        self.tree.get_or_init(read)
     }
 
     /// Parameters that no measurement can tell from each other, or at all; empty as long as nobody has looked

@@ -2,12 +2,10 @@
 
 use super::rewrite;
 use crate::check::Checked;
-use crate::front::parse::parse_text;
 use crate::front::syntax::{
     Axle, AxleKind, Coordinate, CoordinateKind, Direction, Element, Expression, ExpressionKind, File, Item,
     LawStatement, Link, Name, Operator, Statement,
 };
-use crate::source::Source;
 
 /// The tree of a plain axle.
 #[derive(Clone, Debug)]
@@ -21,10 +19,6 @@ pub struct Base {
 impl Base {
     /// The tree of a model's text. A model without text has nothing that could be changed.
     pub fn of(model: &Checked) -> Base {
-        let source = Source {
-            name: model.name.clone(),
-            text: model.text().to_string(),
-        };
         let mut base = Base {
             axle: Axle {
                 kind: AxleKind::Plain,
@@ -34,10 +28,10 @@ impl Base {
             },
             elements: vec![],
         };
-        for item in parse_text(&source, 0).file.items {
+        for item in &model.tree().items {
             match item {
-                Item::Axle(axle) => base.axle = axle,
-                Item::Element(element) => base.elements.push(element),
+                Item::Axle(axle) => base.axle = axle.clone(),
+                Item::Element(element) => base.elements.push(element.clone()),
                 Item::Effect(_) => {}
             }
         }

@@ -72,6 +72,11 @@ pub fn difference(first: &Checked, second: &Checked) -> Difference {
     }
 }
 
+/// True where two models have the same equations, however their links are written.
+pub fn moves_alike(first: &Checked, second: &Checked) -> bool {
+    changes(&equations(first), &equations(second)).is_empty()
+}
+
 /// The statements of a kind, each with the direction that it stands in.
 fn lines(tree: &Base, belongs: Belongs) -> Lines {
     let outside = tree.axle.body.iter().map(|statement| (String::new(), statement));
