@@ -8,6 +8,7 @@ mod command_line;
 mod common;
 mod compare;
 mod document;
+mod dynamometer;
 mod effects;
 mod explore;
 mod export;

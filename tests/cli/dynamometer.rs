@@ -1,0 +1,193 @@
+//! Tables of a dynamometer as evidence: forces in closed form are predicted, and parameters of their laws are found again.
+
+use std::fmt::Write;
+use std::fs;
+use std::path::Path;
+
+use serde_json::Value;
+
+use crate::common::{Ran, qcar, succeeds};
+
+/// Peak velocities of the sines, m/s, as the trade drives them.
+const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
+/// Half the stroke, m.
+const AMPLITUDE: f64 = 0.02;
+/// Standard deviation of the forces, N.
+const NOISE: f64 = 5.0;
+
+/// A damper whose rebound and compression differ, with the friction of its seals, which slips slowly enough to show.
+const DAMPER: &str = "
+element dahl(f_c: N, k: N/m) {
+    state f: N;
+    rate f = k*v - k*abs(v)*f/f_c;
+    force = f;
+}
+
+axle sealed {
+    \"A body on a spring and a damper with seals\"
+
+    known param m_body: kg = 390;
+    param k: N/m = 25 N/mm in 10 N/mm..80 N/mm \"Spring\";
+    param c_out: N s/m = 1500 in 100..9000 \"Damping in rebound at low speed\";
+    param c_in: N s/m = 1500 in 100..9000 \"Damping in compression at low speed\";
+    param v_0: m/s = 0.5 in 0.02..3 \"Speed at which the damping has fallen to a half\";
+    param f_seal: N = 50 in 5..300 \"Friction of the seals\";
+    param k_seal: N/m = 10 N/mm in 1 N/mm..200 N/mm \"Their stiffness before they slip\";
+
+    direction z {
+        motion wheel;
+        mass body = m_body;
+        link spring: body - wheel { spring k; }
+        link damper: body - wheel {
+            force = (if v > 0 { c_out } else { c_in })*v/(1 + abs(v)/v_0);
+            dahl(f_seal, k_seal);
+        }
+        channel wheel_to_body = body.acceleration / wheel.acceleration;
+    }
+}
+";
+
+/// What the campaign hides: c_out, c_in, v_0, f_seal, k_seal.
+const TRUTH: [(&str, f64); 5] = [
+    ("c_out", 4200.0),
+    ("c_in", 2100.0),
+    ("v_0", 0.21),
+    ("f_seal", 90.0),
+    ("k_seal", 9e3),
+];
+
+/// The force in the middle of the travel. The friction is the periodic solution of Dahl's law: from a reversal, where it is
+/// `-f tanh(kA/f)`, it nears `f` by a factor of e every `f/k` of travel.
+fn force(speed: f64) -> f64 {
+    let [c_out, c_in, v_0, f, k] = TRUTH.map(|(_, value)| value);
+    let c = if speed > 0.0 { c_out } else { c_in };
+    let turned = f * (k * AMPLITUDE / f).tanh();
+    let friction = f - (f + turned) * (-k * AMPLITUDE / f).exp();
+    c * speed / (1.0 + speed.abs() / v_0) + friction * speed.signum()
+}
+
+/// A normal deviate for each place, the same everywhere: the sum of twelve even ones less six.
+fn normal(place: usize) -> f64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(place as u64 + 1);
+    let mut even = || {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..12).map(|_| even()).sum::<f64>() - 6.0
+}
+
+fn table(noise: f64) -> String {
+    let speeds = SPEEDS.iter().flat_map(|speed| [*speed, -speed]).enumerate();
+    speeds.fold("velocity,force\n".into(), |mut text: String, (place, speed)| {
+        let _ = writeln!(text, "{speed},{:.4}", force(speed) + noise * normal(place));
+        text
+    })
+}
+
+fn campaign(folder: &Path, run: &str, table: &str) {
+    fs::write(folder.join("sealed.axle"), DAMPER).unwrap();
+    fs::write(folder.join("damper.csv"), table).unwrap();
+    let text = format!(
+        "format = 1\nname = \"bench\"\nmodel = \"./sealed.axle\"\n\n[parameters.k]\nvalue = 25000\nunit = \"N/m\"\nfit = false\n\n\
+         [[run]]\nkind = \"dynamometer\"\nfile = \"damper.csv\"\nrole = \"fit\"\nlink = \"damper\"\namplitude = \"20 mm\"\n{run}\n"
+    );
+    fs::write(folder.join("campaign.toml"), text).unwrap();
+}
+
+fn fit(folder: &Path) -> Value {
+    serde_json::from_str(&succeeds(&["fit", folder.to_str().unwrap(), "--format", "json"])).unwrap()
+}
+
+/// All five parameters of a law with memory come out within what the fit says that it does not know.
+#[test]
+fn a_law_that_remembers_is_found_from_its_table() {
+    let folder = tempfile::tempdir().unwrap();
+    campaign(folder.path(), "uncertainty = \"5 N\"", &table(NOISE));
+    let fitted = fit(folder.path());
+    let gap = fitted["gap"]["fit"].as_f64().unwrap();
+    assert!((0.4..1.4).contains(&gap), "{fitted}");
+    for (name, truth) in TRUTH {
+        let own = &fitted["parameters"][name];
+        let (value, error) = (own["value"].as_f64().unwrap(), own["stderr"].as_f64());
+        let error = error.unwrap_or_else(|| panic!("{name} has no standard error: {own}"));
+        assert!((value - truth).abs() < 3.0 * error, "{name}: {value} ± {error}, not {truth}");
+        assert!(error < 0.3 * truth, "{name}: ± {error} says little");
+    }
+}
+
+/// Without noise the closed form itself is met, far below the friction, whatever the search had to do.
+#[test]
+fn forces_are_those_of_the_closed_form() {
+    let folder = tempfile::tempdir().unwrap();
+    campaign(folder.path(), "uncertainty = \"10 mN\"", &table(0.0));
+    let start: String = TRUTH.iter().fold(String::new(), |mut text, (name, value)| {
+        let unit = if name.starts_with("c_") { "N s/m" } else { "N/m" };
+        let unit = match *name {
+            "v_0" => "m/s",
+            "f_seal" => "N",
+            _ => unit,
+        };
+        let _ = write!(text, "\n[parameters.{name}]\nvalue = {value}\nunit = \"{unit}\"\nfit = {}\n", *name == "c_out");
+        if *name == "c_out" {
+            text += "range = [100, 9000]\n";
+        }
+        text
+    });
+    let file = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&file).unwrap() + &start;
+    fs::write(&file, text).unwrap();
+    let fitted = fit(folder.path());
+    let found = fitted["parameters"]["c_out"]["value"].as_f64().unwrap();
+    // The table has four decimals, and states are integrated to 1e-8.
+    assert!((found / 4200.0 - 1.0).abs() < 1e-5, "{found}");
+    assert!(fitted["gap"]["fit"].as_f64().unwrap() < 0.1, "{fitted}");
+}
+
+fn refused(run: &str, table: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    campaign(folder.path(), run, table);
+    let Ran { status, stderr, .. } = qcar(&["fit", folder.path().to_str().unwrap()]);
+    assert_eq!(status, 2, "{stderr}");
+    stderr
+}
+
+#[test]
+fn what_is_wrong_with_a_table_is_told_with_its_place() {
+    let sure = "uncertainty = \"5 N\"";
+    let says = |run: &str, table: &str, words: &[&str]| {
+        let told = refused(run, table);
+        for word in words {
+            assert!(told.contains(word), "{word} in\n{told}");
+        }
+    };
+    says("", &table(0.0), &["damper.csv", "no uncertainty", "uncertainty = \"10 N\""]);
+    says("uncertainty = \"5 N/m\"", &table(0.0), &["campaign.toml, line 16", "N/m"]);
+    says("uncertainty = 0", &table(0.0), &["campaign.toml, line 16", "above zero"]);
+    says(sure, "velocity,force\n0.1,200\n0,3\n", &["damper.csv, line 3", "`velocity`", "remove the row"]);
+    says(sure, "velocity,force\n-0.1,200\n", &["damper.csv, line 2", "`force`", "pushes along", "sign = -1"]);
+    says(sure, "speed,force\n0.1,200\n", &["damper.csv, line 1", "`velocity`"]);
+    says(sure, "velocity [mm],force\n0.1,200\n", &["damper.csv, line 1", "\"mm\"", "m/s"]);
+    says(sure, "velocity,force,uncertainty\n0.1,200,4\n", &["one of them"]);
+    says("", "velocity,force,uncertainty\n0.1,200,0\n", &["damper.csv, line 2", "`uncertainty`", "above zero"]);
+    says(&format!("{sure}\naxis = \"x\""), &table(0.0), &["`damper` in the run damper.csv", "along x", "none"]);
+}
+
+/// A table in the units and signs of its maker is the same table.
+#[test]
+fn units_and_signs_of_a_table_are_those_that_it_states() {
+    let (plain, other) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    campaign(plain.path(), "uncertainty = \"5 N\"", &table(NOISE));
+    let lines = table(NOISE);
+    let rows = lines.lines().skip(1).map(|line| line.split_once(',').unwrap());
+    let number = |text: &str| text.parse::<f64>().unwrap();
+    let turned = rows.fold("Speed,Load\n".to_string(), |mut text, (speed, force)| {
+        let _ = writeln!(text, "{},{}", 1e3 * number(speed), -number(force));
+        text
+    });
+    let mapped = "uncertainty = \"5 N\"\nvelocity = { source = \"Speed\", unit = \"mm/s\" }\nforce = { source = \"Load\", unit = \"N\", sign = -1 }";
+    campaign(other.path(), mapped, &turned);
+    let value = |of: &Path| fit(of)["parameters"]["c_out"]["value"].as_f64().unwrap();
+    assert!((value(other.path()) / value(plain.path()) - 1.0).abs() < 1e-6);
+}
