@@ -57,6 +57,15 @@ impl Bench {
         }
     }
 
+    /// The same beside a dynamometer for each of its links.
+    pub fn with_every_link_alone(self) -> Self {
+        let links = self.model.links.iter();
+        let all = links
+            .map(|link| (link.direction.0.clone(), link.name.clone()))
+            .collect();
+        self.with_alone(Arc::new(all))
+    }
+
     /// The same beside dynamometers, for links by axis and name.
     fn with_alone(mut self, links: Arc<Vec<(String, String)>>) -> Self {
         self.alone = links;

@@ -41,7 +41,7 @@ pub(crate) mod files;
 // The result as a workbook.
 pub(crate) mod workbook;
 // All of that of a nonlinear model.
-mod nonlinear;
+pub(crate) mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
@@ -91,7 +91,7 @@ pub struct Choices {
     /// Fit a linear model as a nonlinear one is: to all runs, each by its own uncertainty
     #[arg(long)]
     pub all_runs: bool,
-    /// Find intervals of these parameters of a linear model by their profile likelihoods too; `all` for every one that is fitted
+    /// Find intervals of these parameters by their profile likelihoods too; `all` for every one that is fitted
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub profile: Vec<String>,
 }

@@ -112,7 +112,10 @@ fn a_law_that_remembers_is_found_from_its_table() {
         let own = &fitted["parameters"][name];
         let (value, error) = (own["value"].as_f64().unwrap(), own["stderr"].as_f64());
         let error = error.unwrap_or_else(|| panic!("{name} has no standard error: {own}"));
-        assert!((value - truth).abs() < 3.0 * error, "{name}: {value} ± {error}, not {truth}");
+        assert!(
+            (value - truth).abs() < 3.0 * error,
+            "{name}: {value} ± {error}, not {truth}"
+        );
         assert!(error < 0.3 * truth, "{name}: ± {error} says little");
     }
 }
@@ -129,7 +132,11 @@ fn forces_are_those_of_the_closed_form() {
             "f_seal" => "N",
             _ => unit,
         };
-        let _ = write!(text, "\n[parameters.{name}]\nvalue = {value}\nunit = \"{unit}\"\nfit = {}\n", *name == "c_out");
+        let _ = write!(
+            text,
+            "\n[parameters.{name}]\nvalue = {value}\nunit = \"{unit}\"\nfit = {}\n",
+            *name == "c_out"
+        );
         if *name == "c_out" {
             text += "range = [100, 9000]\n";
         }
@@ -162,16 +169,48 @@ fn what_is_wrong_with_a_table_is_told_with_its_place() {
             assert!(told.contains(word), "{word} in\n{told}");
         }
     };
-    says("", &table(0.0), &["damper.csv", "no uncertainty", "uncertainty = \"10 N\""]);
-    says("uncertainty = \"5 N/m\"", &table(0.0), &["campaign.toml, line 16", "N/m"]);
-    says("uncertainty = 0", &table(0.0), &["campaign.toml, line 16", "above zero"]);
-    says(sure, "velocity,force\n0.1,200\n0,3\n", &["damper.csv, line 3", "`velocity`", "remove the row"]);
-    says(sure, "velocity,force\n-0.1,200\n", &["damper.csv, line 2", "`force`", "pushes along", "sign = -1"]);
+    says(
+        "",
+        &table(0.0),
+        &["damper.csv", "no uncertainty", "uncertainty = \"10 N\""],
+    );
+    says(
+        "uncertainty = \"5 N/m\"",
+        &table(0.0),
+        &["campaign.toml, line 16", "N/m"],
+    );
+    says(
+        "uncertainty = 0",
+        &table(0.0),
+        &["campaign.toml, line 16", "above zero"],
+    );
+    says(
+        sure,
+        "velocity,force\n0.1,200\n0,3\n",
+        &["damper.csv, line 3", "`velocity`", "remove the row"],
+    );
+    says(
+        sure,
+        "velocity,force\n-0.1,200\n",
+        &["damper.csv, line 2", "`force`", "pushes along", "sign = -1"],
+    );
     says(sure, "speed,force\n0.1,200\n", &["damper.csv, line 1", "`velocity`"]);
-    says(sure, "velocity [mm],force\n0.1,200\n", &["damper.csv, line 1", "\"mm\"", "m/s"]);
+    says(
+        sure,
+        "velocity [mm],force\n0.1,200\n",
+        &["damper.csv, line 1", "\"mm\"", "m/s"],
+    );
     says(sure, "velocity,force,uncertainty\n0.1,200,4\n", &["one of them"]);
-    says("", "velocity,force,uncertainty\n0.1,200,0\n", &["damper.csv, line 2", "`uncertainty`", "above zero"]);
-    says(&format!("{sure}\naxis = \"x\""), &table(0.0), &["`damper` in the run damper.csv", "along x", "none"]);
+    says(
+        "",
+        "velocity,force,uncertainty\n0.1,200,0\n",
+        &["damper.csv, line 2", "`uncertainty`", "above zero"],
+    );
+    says(
+        &format!("{sure}\naxis = \"x\""),
+        &table(0.0),
+        &["`damper` in the run damper.csv", "along x", "none"],
+    );
 }
 
 /// A table in the units and signs of its maker is the same table.
@@ -190,4 +229,166 @@ fn units_and_signs_of_a_table_are_those_that_it_states() {
     campaign(other.path(), mapped, &turned);
     let value = |of: &Path| fit(of)["parameters"]["c_out"]["value"].as_f64().unwrap();
     assert!((value(other.path()) / value(plain.path()) - 1.0).abs() < 1e-6);
+}
+
+/// The least sum of squares for a held speed at which the damping has fallen to a half: over the damping in rebound, in which forces are
+/// linear, and over the gain of the load cell, which is known to 0.7 %.
+fn least_squares(text: &str, v_0: f64) -> f64 {
+    let rows: Vec<(f64, f64)> = text
+        .lines()
+        .skip(1)
+        .map(|line| line.split_once(',').unwrap())
+        .map(|(speed, force)| (speed.parse().unwrap(), force.parse().unwrap()))
+        .collect();
+    let [_, c_in, ..] = TRUTH.map(|(_, value)| value);
+    let rest =
+        |speed: f64| force(speed) - if speed > 0.0 { 4200.0 } else { c_in } * speed / (1.0 + speed.abs() / TRUTH[2].1);
+    let shape = |speed: f64| speed / (1.0 + speed.abs() / v_0);
+    let of_gain = |gain: f64| {
+        let own = |speed: f64| gain.exp() * (rest(speed) + if speed > 0.0 { 0.0 } else { c_in * shape(speed) });
+        let slope = |speed: f64| if speed > 0.0 { gain.exp() * shape(speed) } else { 0.0 };
+        let (mut top, mut bottom) = (0.0, 0.0);
+        for (speed, measured) in &rows {
+            top += slope(*speed) * (measured - own(*speed));
+            bottom += slope(*speed).powi(2);
+        }
+        let left = rows
+            .iter()
+            .map(|(speed, measured)| measured - own(*speed) - top / bottom * slope(*speed));
+        left.map(|left| (left / NOISE).powi(2)).sum::<f64>() + (gain / 0.007).powi(2)
+    };
+    (-400..=400)
+        .map(|step| of_gain(1e-4 * f64::from(step)))
+        .fold(f64::INFINITY, f64::min)
+}
+
+/// An end of a profile is where a least squares of its own, over the closed form, has risen by the 95 % quantile of chi-square.
+#[test]
+fn a_profile_ends_where_the_closed_form_puts_it() {
+    let folder = tempfile::tempdir().unwrap();
+    // Noise that is smaller than stated leaves nothing for the model to miss.
+    let measured = table(0.8 * NOISE);
+    campaign(folder.path(), "uncertainty = \"5 N\"", &(measured.clone()));
+    let file = folder.path().join("campaign.toml");
+    let known = ["c_in", "f_seal", "k_seal"].map(|name| {
+        let value = TRUTH.iter().find(|own| own.0 == name).unwrap().1;
+        let unit = ["N s/m", "N", "N/m"][["c_in", "f_seal", "k_seal"]
+            .iter()
+            .position(|own| *own == name)
+            .unwrap()];
+        format!("\n[parameters.{name}]\nvalue = {value}\nunit = \"{unit}\"\nfit = false\n")
+    });
+    fs::write(&file, fs::read_to_string(&file).unwrap() + &known.concat()).unwrap();
+    let path = folder.path().to_str().unwrap();
+    let text = succeeds(&["fit", path, "--profile", "v_0", "--format", "json"]);
+    let fitted: Value = serde_json::from_str(&text).unwrap();
+    let profile = &fitted["profiles"][0];
+    let least = least_squares(&measured, profile["value"].as_f64().unwrap());
+    for side in 0..2 {
+        let end = profile["interval"][side].as_f64().unwrap();
+        let rise = least_squares(&measured, end) - least;
+        assert!((rise / 3.841 - 1.0).abs() < 0.05, "{end}: {rise}, {profile}");
+    }
+}
+
+/// A record of the body over a wheel that is moved, for a damper without seals (the parts of `TRUTH` that it has): Runge and Kutta's
+/// method in steps of a tenth of a sample.
+fn record() -> String {
+    const RATE: f64 = 200.0;
+    let wheel = |t: f64| {
+        [(2.1, 0.012), (5.3, 0.006), (11.9, 0.0025)].map(|(hertz, size)| {
+            let (sin, cos) = (std::f64::consts::TAU * hertz * t).sin_cos();
+            let omega = std::f64::consts::TAU * hertz;
+            [size * sin, size * omega * cos, -size * omega * omega * sin]
+        })
+    };
+    let sum = |t: f64, k: usize| wheel(t).iter().map(|own| own[k]).sum::<f64>();
+    let pull = |t: f64, [x, v]: [f64; 2]| {
+        let (s, rate) = (x - sum(t, 0), v - sum(t, 1));
+        let c = if rate > 0.0 { TRUTH[0].1 } else { TRUTH[1].1 };
+        -(25e3 * s + c * rate / (1.0 + rate.abs() / TRUTH[2].1)) / 390.0
+    };
+    let rates = |t: f64, y: [f64; 2]| [y[1], pull(t, y)];
+    let (mut y, h) = ([0.0, 0.0], 0.1 / RATE);
+    let mut text = String::from("time,wheel,body\n");
+    for sample in 0..1200 {
+        let t0 = f64::from(sample) / RATE;
+        let noise = |k: usize| 0.02 * normal(2 * sample as usize + k + 1000);
+        let _ = writeln!(text, "{t0:.4},{:.6},{:.6}", sum(t0, 2), pull(t0, y) + noise(1));
+        for step in 0..10 {
+            let t = t0 + f64::from(step) * h;
+            let add = |y: [f64; 2], k: [f64; 2], h: f64| [y[0] + h * k[0], y[1] + h * k[1]];
+            let a = rates(t, y);
+            let b = rates(t + h / 2.0, add(y, a, h / 2.0));
+            let c = rates(t + h / 2.0, add(y, b, h / 2.0));
+            let d = rates(t + h, add(y, c, h));
+            y = [0, 1].map(|k| y[k] + h / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]));
+        }
+    }
+    text
+}
+
+/// The referee is the table itself, which the plan has not seen: errors come out as they were foreseen.
+#[test]
+fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
+    let folder = tempfile::tempdir().unwrap();
+    let model = DAMPER.replace("            dahl(f_seal, k_seal);\n", "");
+    let unused = |line: &&str| !line.contains("f_seal: N = ") && !line.contains("k_seal: N/m = ");
+    let model: String = model.lines().filter(unused).map(|line| format!("{line}\n")).collect();
+    fs::write(folder.path().join("sealed.axle"), model).unwrap();
+    fs::write(folder.path().join("record.csv"), record()).unwrap();
+    let channel = |name: &str| {
+        format!(
+            "[[channel]]\nname = \"{name}\"\nlocation = \"{name}\"\nside = \"centre\"\naxis = \"z\"\nquantity = \"acceleration\"\n\
+             unit = \"m/s^2\"\n\n"
+        )
+    };
+    let text = format!(
+        "format = 1\nname = \"record\"\nmodel = \"./sealed.axle\"\n\n{}{}[[run]]\nkind = \"time_history\"\nfile = \"record.csv\"\n\
+         role = \"fit\"\nsample_rate = 200\nband_limited = true\n",
+        channel("wheel"),
+        channel("body")
+    );
+    let file = folder.path().join("campaign.toml");
+    fs::write(&file, &text).unwrap();
+    let path = folder.path().to_str().unwrap();
+    let plan: Value = serde_json::from_str(&succeeds(&["plan", path, "--format", "json"])).unwrap();
+    let further = plan["further"].as_array().unwrap();
+    let is_it = |own: &&Value| own["what"] == "a dynamometer's table of damper";
+    let planned = further.iter().find(is_it).unwrap_or_else(|| panic!("{plan}"));
+    assert!(planned["rise"].as_f64().unwrap() > 0.0);
+    // The forces of the law alone, with one percent of their RMS value of noise.
+    let force = |speed: f64| {
+        let c = if speed > 0.0 { TRUTH[0].1 } else { TRUTH[1].1 };
+        c * speed / (1.0 + speed.abs() / TRUTH[2].1)
+    };
+    let speeds: Vec<f64> = SPEEDS.iter().flat_map(|speed| [*speed, -speed]).collect();
+    let sigma = 0.01 * (speeds.iter().map(|speed| force(*speed).powi(2)).sum::<f64>() / speeds.len() as f64).sqrt();
+    let rows = speeds.iter().enumerate();
+    let measured = rows.fold("velocity,force\n".to_string(), |mut text, (place, speed)| {
+        let _ = writeln!(text, "{speed},{:.4}", force(*speed) + sigma * normal(place));
+        text
+    });
+    fs::write(folder.path().join("damper.csv"), measured).unwrap();
+    let run = format!(
+        "\n[[run]]\nkind = \"dynamometer\"\nfile = \"damper.csv\"\nrole = \"fit\"\nlink = \"damper\"\namplitude = 0.05\n\
+         uncertainty = {sigma:.4}\n"
+    );
+    fs::write(&file, text + &run).unwrap();
+    let fitted = fit(folder.path());
+    for name in ["c_out", "c_in", "v_0"] {
+        let expected = planned["stderr"][name].as_f64().unwrap();
+        let found = fitted["parameters"][name]["stderr"].as_f64().unwrap();
+        let now = plan["parameters"][name]["stderr"].as_f64().unwrap();
+        assert!(
+            (expected / found - 1.0).abs() < 0.25,
+            "{name}: {expected} and {found}, now {now}"
+        );
+        let value = fitted["parameters"][name]["value"].as_f64().unwrap();
+        let truth = TRUTH.iter().find(|own| own.0 == name).unwrap().1;
+        assert!(
+            (value - truth).abs() < 3.5 * found,
+            "{name}: {value} ± {found}, not {truth}"
+        );
+    }
 }

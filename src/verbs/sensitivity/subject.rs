@@ -59,6 +59,16 @@ pub(crate) struct Beneath<'a> {
     pub roads: &'a [Asked],
 }
 
+impl Errors {
+    /// Adds correlations, each in both orders.
+    fn correlate(&mut self, pairs: impl IntoIterator<Item = ((String, String), f64)>) {
+        for ((a, b), value) in pairs {
+            self.correlations.insert((a.clone(), b.clone()), value);
+            self.correlations.insert((b, a), value);
+        }
+    }
+}
+
 impl Subject {
     /// A model by name or path, a campaign's folder, or what a fit has written.
     ///
@@ -95,7 +105,7 @@ impl Subject {
             )
             .into())
         } else {
-            of_model(text, text, &[], Errors::default(), beneath)
+            of_model(text, text, &[], beneath)
         }
     }
 
@@ -125,20 +135,10 @@ fn of_answer(text: &str, answer: &Path, beneath: &Beneath<'_>) -> Result<Subject
         )
         .into());
     };
-    let errors = Errors {
-        deviations: beside.errors,
-        ..Errors::default()
-    };
-    of_model(text, &model, &[answer.to_path_buf()], errors, beneath)
+    of_model(text, &model, &[answer.to_path_buf()], beneath)
 }
 
-fn of_model(
-    name: &str,
-    model: &str,
-    own: &[PathBuf],
-    mut errors: Errors,
-    beneath: &Beneath<'_>,
-) -> Result<Subject, Failure> {
+fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &Beneath<'_>) -> Result<Subject, Failure> {
     let (source, model) = (model, catalogue::load(model)?);
     let folder = beneath.campaign.map(|folder| folder.join("campaign.toml"));
     let files: Vec<PathBuf> = folder
@@ -148,11 +148,12 @@ fn of_model(
         .collect();
     let campaign = beneath.campaign.map(Campaign::open).transpose()?;
     let values = resolved(&model, &files, campaign.as_ref(), beneath.set)?;
-    let mut facts = BTreeMap::new();
+    let (mut facts, mut errors) = (BTreeMap::new(), Errors::default());
     for file in &files {
         let beside = Beside::read(file)?;
         facts.extend(beside.vehicle);
         errors.deviations.extend(beside.errors);
+        errors.correlate(beside.correlations);
     }
     finish((name, source), model, values, facts, campaign, errors)
 }
@@ -196,7 +197,7 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
             campaign: Some(folder),
             ..*beneath
         };
-        return of_model(&folder.display().to_string(), &model, &[], Errors::default(), &beneath);
+        return of_model(&folder.display().to_string(), &model, &[], &beneath);
     }
     let fitted = fit::fit(folder, &Choices::of_model(None))?;
     let own = fitted.fit.parameters.iter();
