@@ -188,7 +188,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         names => chosen::metrics(&ground, names)?,
     };
     let parameters = chosen::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
-    let doubts = doubts(&subject, arguments)?;
+    let doubts = doubts(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
         designs: designs as usize,
         seed: arguments.seed,
@@ -230,12 +230,19 @@ fn list(ground: &Ground<'_>) -> String {
 }
 
 /// What the user says of it.
-fn doubts(subject: &Subject, arguments: &Arguments) -> Result<Doubts, InputError> {
+fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<Doubts, InputError> {
     let mut problems = Vec::new();
     let mut place = |name: &str, option: &'static str| {
         let problem = |found: &str, expected: &str, remedy: &str| flag(option, found, expected, remedy);
-        let found = chosen::parameter(subject.model.about(), &subject.values, name, problem);
-        found.map_err(|error| problems.extend(error.problems)).ok()
+        match chosen::parameter(subject.model.about(), &subject.values, name, problem) {
+            Ok(place) if parameters.contains(&place) => return Some(place),
+            Ok(_) => {
+                let found = format!("`{name}`, which is not looked at");
+                problems.push(problem(&found, "one of the parameters", "name it in --parameters, too"));
+            }
+            Err(error) => problems.extend(error.problems),
+        }
+        None
     };
     let mut doubts = Doubts {
         fit: true,

@@ -101,6 +101,19 @@ impl Doubts {
     /// A fit whose correlations contradict each other.
     pub fn chance(&self, subject: &Subject) -> Result<Chance, InputError> {
         let places = self.fitted(subject);
+        let fit = match places.is_empty() {
+            true => None,
+            false => Some((self.posterior(subject, &places)?, places)),
+        };
+        Ok(Chance {
+            fit,
+            tolerances: pairs_of(&self.tolerances),
+            per_kelvin: pairs_of(&self.per_kelvin),
+            temperatures: self.temperatures,
+        })
+    }
+
+    fn posterior(&self, subject: &Subject, places: &[usize]) -> Result<Posterior, InputError> {
         let estimate = |&place: &usize| {
             let value = subject.values.as_slice()[place];
             Estimate {
@@ -115,15 +128,9 @@ impl Doubts {
             .map(|(a, b)| (a, b, self.correlation(subject, [places[a], places[b]])))
             .collect();
         let posterior = Posterior::new(places.iter().map(estimate).collect(), &correlations);
-        let posterior = posterior.map_err(|error| {
+        posterior.map_err(|error| {
             let expected = "correlations that a distribution has";
-            flag(&subject.name, error, expected, "repeat the fit with `qcar fit --out`")
-        })?;
-        Ok(Chance {
-            fit: (!places.is_empty()).then_some((posterior, places)),
-            tolerances: pairs_of(&self.tolerances),
-            per_kelvin: pairs_of(&self.per_kelvin),
-            temperatures: self.temperatures,
+            flag(&subject.name, error, expected, "repeat the fit with `qcar fit --out`").into()
         })
     }
 }
