@@ -341,6 +341,19 @@ fn record() -> String {
     text
 }
 
+/// Metrics of a campaign whose model is nonlinear are as sure as its fit: a natural frequency has half the relative error of the stiffness.
+fn is_as_sure_as_its_fit(path: &str) {
+    let fitted = fit(Path::new(path));
+    let own = succeeds(&["sensitivity", path, "--metrics", "mode.1.frequency", "--format", "json"]);
+    let own: Value = serde_json::from_str(&own).unwrap();
+    let (metric, k) = (&own["metrics"][0], &fitted["parameters"]["k"]);
+    let relative = metric["doubt"]["deviation"].as_f64().unwrap() / metric["value"].as_f64().unwrap();
+    assert!(
+        (relative / (0.5 * k["relative_stderr"].as_f64().unwrap()) - 1.0).abs() < 1e-6,
+        "{metric} and {k}"
+    );
+}
+
 /// The referee is the table itself, which the plan has not seen: errors come out as they were foreseen.
 #[test]
 fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
@@ -366,6 +379,7 @@ fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
     let file = folder.path().join("campaign.toml");
     fs::write(&file, &text).unwrap();
     let path = folder.path().to_str().unwrap();
+    is_as_sure_as_its_fit(path);
     let plan: Value = serde_json::from_str(&succeeds(&["plan", path, "--format", "json"])).unwrap();
     let further = plan["further"].as_array().unwrap();
     let is_it = |own: &&Value| own["what"] == "a dynamometer's table of damper";
@@ -405,5 +419,34 @@ fn a_dynamometer_that_is_planned_gives_the_errors_that_it_is_expected_to() {
             (value - truth).abs() < 3.5 * found,
             "{name}: {value} ± {found}, not {truth}"
         );
+    }
+}
+
+/// In the middle of one stroke friction is one number, whatever it is made of: the fit says which parameters are seen only together, and
+/// the plan which measurement tells them apart.
+#[test]
+fn what_one_stroke_cannot_tell_apart_is_named_with_its_remedy() {
+    let folder = tempfile::tempdir().unwrap();
+    campaign(folder.path(), "uncertainty = \"5 N\"", &table(NOISE));
+    let fitted = fit(folder.path());
+    for (name, other) in [("f_seal", "k_seal"), ("k_seal", "f_seal")] {
+        let why = &fitted["parameters"][name]["why_no_stderr"];
+        assert_eq!(
+            (&why["reason"], &why["with"][0]),
+            (&"only_together".into(), &other.into()),
+            "{fitted}"
+        );
+    }
+    let path = folder.path().to_str().unwrap();
+    let text = succeeds(&["plan", path, "--parameters", "f_seal,k_seal", "--format", "json"]);
+    let plan: Value = serde_json::from_str(&text).unwrap();
+    let first = &plan["further"][0];
+    assert_eq!(
+        first["what"], "damper.csv once more with a tenth of its stroke",
+        "{plan}"
+    );
+    for name in ["f_seal", "k_seal"] {
+        assert_eq!(plan["parameters"][name]["stderr"], Value::Null);
+        assert!(first["stderr"][name].as_f64().unwrap() > 0.0, "{first}");
     }
 }

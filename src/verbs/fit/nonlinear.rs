@@ -18,6 +18,7 @@ use qcar_runtime::discover::select::{self, Alone};
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
+use qcar_runtime::least_squares::information::Unseen;
 use qcar_runtime::model::{About, Model};
 use qcar_runtime::progress::{self, Told};
 use qcar_runtime::response::parameters::Values;
@@ -175,7 +176,7 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
             _ if leader != place => NoError::Tied,
             (None, _) => NoError::Known,
             (_, Some(_)) => NoError::AtBound,
-            _ => NoError::Undetermined,
+            (Some(free), None) => why_unseen(about, refit, free),
         };
         ParameterFit {
             name: own.name.to_string(),
@@ -196,6 +197,19 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
         }
     };
     about.parameters.iter().enumerate().map(parameter).collect()
+}
+
+/// Why a parameter that was fitted, and is off its bounds, has no standard error.
+fn why_unseen(about: &About, refit: &Refit, free: usize) -> NoError {
+    match &refit.unseen[free] {
+        Some(Unseen::Combination { with }) if !with.is_empty() => {
+            let name = |&other: &usize| about.parameters[refit.free[other].parameter].name.to_string();
+            NoError::OnlyTogether {
+                with: with.iter().map(name).collect(),
+            }
+        }
+        _ => NoError::Undetermined,
+    }
 }
 
 impl Nonlinear {

@@ -90,7 +90,7 @@ impl Nonlinear {
     }
 
     /// Of every two parameters that the runs see.
-    fn correlations(&self) -> Vec<Correlation> {
+    pub(crate) fn correlations(&self) -> Vec<Correlation> {
         let refit = &self.found.explanation.refit;
         let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
         let seen = |k: &usize| self.parameters[refit.free[*k].parameter].stderr.is_some();

@@ -22,6 +22,8 @@ pub struct Measurement {
 const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
 const AMPLITUDE: f64 = 0.05;
 const UNCERTAINTY: f64 = 0.01;
+/// A stroke that tells how far a law remembers.
+const SHORTER: f64 = 0.1;
 
 /// All that could be added to what was fitted.
 ///
@@ -35,6 +37,14 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
         if is_steady(&fitted.runs[run].stimulus) {
             let what = format!("{name} once more at twice its level");
             found.push((Added::Level, what, again(fitted, run, 2.0)));
+        }
+    }
+    for (run, own) in fitted.runs.iter().enumerate() {
+        if let Stimulus::Dynamometer { link, axis, .. } = &own.stimulus
+            && remembers(model, link, *axis)
+        {
+            let what = format!("{} once more with a tenth of its stroke", own.name);
+            found.push((Added::Level, what, shorter(fitted, run)));
         }
     }
     for output in model.about().outputs.iter() {
@@ -83,6 +93,25 @@ fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
         ..series.clone()
     }));
     more.runs.push(added);
+    more
+}
+
+/// Whether the law of a link has inner states, so that its force depends on how far it has come.
+fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
+    let links = model.about().links.iter();
+    let place = links
+        .clone()
+        .position(|own| own.name == link && own.axis == axis.name());
+    let alone = place.and_then(|place| model.alone(place));
+    alone.is_some_and(|alone| !alone.about().states.is_empty())
+}
+
+/// With the table of a dynamometer once more, driven at the same speeds with shorter strokes.
+fn shorter(fitted: &Evidence, run: usize) -> Evidence {
+    let mut more = again(fitted, run, 1.0);
+    if let Some(Stimulus::Dynamometer { amplitude, .. }) = more.runs.last_mut().map(|run| &mut run.stimulus) {
+        *amplitude *= SHORTER;
+    }
     more
 }
 
