@@ -67,6 +67,6 @@ function doubts({ all, draws, wanted, parameters }) {
   const by = Object.entries(parameters)
     .filter(([, names]) => names.length)
     .map(([source, names]) => `${source} (${names.join(', ')})`);
-  const asked = wanted === null ? '' : ` Each target was to hold with ${percent(wanted, 3)}.`;
+  const asked = wanted === null ? '' : ` Each target was to hold with ${percent(wanted, 3)}; beyond the limit counts the margin for that.`;
   return `With what is not known of the parameters, the design meets all that must hold in ${percent(all, 3)} of ${draws} draws.${asked} In doubt by ${by.join(', ')}.`;
 }
