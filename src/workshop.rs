@@ -48,12 +48,22 @@ pub struct Bench {
 impl Bench {
     /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
     pub fn new(model: Checked, catalogue: Arc<Catalogue>, values: Arc<BTreeMap<String, f64>>) -> Self {
+        Self::beside(model, catalogue, values, Arc::default())
+    }
+
+    /// The same beside dynamometers, for links by axis and name.
+    fn beside(
+        model: Checked,
+        catalogue: Arc<Catalogue>,
+        values: Arc<BTreeMap<String, f64>>,
+        alone: Arc<Vec<(String, String)>>,
+    ) -> Self {
         Bench {
-            running: Arc::new(Evaluator::new(&derive(model.clone()))),
+            running: Arc::new(run(&model, &alone)),
             model,
             catalogue,
             values,
-            alone: Arc::default(),
+            alone,
         }
     }
 
@@ -63,25 +73,7 @@ impl Bench {
         let all = links
             .map(|link| (link.direction.0.clone(), link.name.clone()))
             .collect();
-        self.with_alone(Arc::new(all))
-    }
-
-    /// The same beside dynamometers, for links by axis and name.
-    fn with_alone(mut self, links: Arc<Vec<(String, String)>>) -> Self {
-        self.alone = links;
-        self.running = Arc::new(self.run(&self.model));
-        self
-    }
-
-    /// A model that runs, and so do its links that are measured alone.
-    fn run(&self, model: &Checked) -> Evaluator {
-        let whole = Evaluator::new(&derive(model.clone()));
-        self.alone
-            .iter()
-            .fold(whole, |whole, (axis, link)| match derive_alone(model, axis, link) {
-                Some(alone) => whole.with_alone(axis, link, &alone),
-                None => whole,
-            })
+        Self::beside(self.model, self.catalogue, self.values, Arc::new(all))
     }
 
     /// The model of a campaign, or another, beside the shipped catalogue.
@@ -94,8 +86,9 @@ impl Bench {
         let values: BTreeMap<String, f64> = vehicle
             .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
             .collect();
-        let bench = Bench::new(compiled.model, Arc::new(effects::catalogue()?), Arc::new(values));
-        Ok(bench.with_alone(Arc::new(alone(campaign))))
+        let catalogue = Arc::new(effects::catalogue()?);
+        let alone = Arc::new(alone(campaign));
+        Ok(Self::beside(compiled.model, catalogue, Arc::new(values), alone))
     }
 
     /// The same with what the ranges of effects are measured by in a campaign.
@@ -115,8 +108,8 @@ impl Bench {
 
     /// Another model beside the same catalogue.
     pub fn holding(&self, model: Checked) -> Self {
-        let bench = Bench::new(model, Arc::clone(&self.catalogue), Arc::clone(&self.values));
-        bench.with_alone(Arc::clone(&self.alone))
+        let (catalogue, values) = (Arc::clone(&self.catalogue), Arc::clone(&self.values));
+        Self::beside(model, catalogue, values, Arc::clone(&self.alone))
     }
 
     /// The effect or law of a name.
@@ -152,7 +145,7 @@ impl Bench {
                         .filter(|p| p.is_new || !p.known)
                         .map(added)
                         .collect(),
-                    model: Box::new(self.run(&patched.model)),
+                    model: Box::new(run(&patched.model, &self.alone)),
                 },
             }];
         };
@@ -211,6 +204,16 @@ impl Workshop for Bench {
         let changes_model = patched.signals.is_empty();
         changes_model.then(|| Box::new(self.holding(patched.model)) as Box<dyn Workshop>)
     }
+}
+
+/// A model that runs, and so do its links that are measured alone.
+fn run(model: &Checked, alone: &[(String, String)]) -> Evaluator {
+    let whole = Evaluator::new(&derive(model.clone()));
+    let derived = |(axis, link): &(String, String)| derive_alone(model, axis, link);
+    let alone = alone.iter().filter_map(|own| Some((own, derived(own)?)));
+    alone.fold(whole, |whole, ((axis, link), alone)| {
+        whole.with_alone(axis, link, &alone)
+    })
 }
 
 /// The links that a campaign has measured alone, each once.
