@@ -4,9 +4,10 @@ use std::fmt::Write;
 use std::fs;
 use std::path::Path;
 
+use qcar_runtime::campaign::Truth;
 use serde_json::Value;
 
-use crate::common::{Ran, qcar, succeeds};
+use crate::common::{Ran, copy, qcar, succeeds};
 
 /// Peak velocities of the sines, m/s, as the trade drives them.
 const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
@@ -449,4 +450,46 @@ fn what_one_stroke_cannot_tell_apart_is_named_with_its_remedy() {
         assert_eq!(plan["parameters"][name]["stderr"], Value::Null);
         assert!(first["stderr"][name].as_f64().unwrap() > 0.0, "{first}");
     }
+}
+
+/// The cost of a linear fit is made of transmissibilities, and says so; with `--all-runs` a linear model is fitted to tables, cleats and
+/// K&C curves too, to the truth of its campaign.
+#[test]
+fn a_linear_model_is_fitted_to_all_runs_on_request() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("own");
+    copy(
+        Path::new(env!("CARGO_MANIFEST_DIR"))
+            .join("models/campaigns/axle_a_rig")
+            .as_path(),
+        &own,
+    );
+    let truth = Truth::read(&own.join("truth.toml")).unwrap().parameters;
+    let damping = truth.iter().find(|own| own.0 == "c_wheel_z").unwrap().1;
+    let speeds = SPEEDS[..5].iter().flat_map(|speed| [*speed, -speed]).enumerate();
+    let table = speeds.fold("velocity,force\n".to_string(), |mut text, (place, speed)| {
+        let _ = writeln!(text, "{speed},{:.3}", damping * speed + 10.0 * normal(place));
+        text
+    });
+    fs::write(own.join("damper.csv"), table).unwrap();
+    let file = own.join("campaign.toml");
+    let run = "\n[[run]]\nkind = \"dynamometer\"\nfile = \"damper.csv\"\nrole = \"fit\"\nlink = \"damper\"\namplitude = 0.05\nuncertainty = 10\n";
+    fs::write(&file, fs::read_to_string(&file).unwrap() + run).unwrap();
+    let path = own.to_str().unwrap();
+    assert!(succeeds(&["fit", path, "--starts", "1"]).contains("damper.csv: the table of a dynamometer has no part"));
+    let all = succeeds(&["fit", path, "--starts", "1", "--all-runs", "--format", "json"]);
+    let fitted: Value = serde_json::from_str(&all).unwrap();
+    assert!(fitted["gap"]["fit"].as_f64().unwrap() < 1.2, "{fitted}");
+    let mut seen = 0;
+    for (name, truth) in &truth {
+        let own = &fitted["parameters"][name];
+        let Some(error) = own["stderr"].as_f64() else { continue };
+        let value = own["value"].as_f64().unwrap();
+        assert!(
+            (value - truth).abs() < 3.0 * error,
+            "{name}: {value} ± {error}, not {truth}"
+        );
+        seen += 1;
+    }
+    assert!(seen >= 12, "{fitted}");
 }

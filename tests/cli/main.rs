@@ -28,5 +28,6 @@ mod targets;
 mod terminal;
 mod trials;
 mod tutorial;
+mod uncertainty;
 mod unending;
 mod units;
