@@ -88,6 +88,7 @@ fn word(kind: Kind) -> &'static str {
         Kind::Passage => "cleat",
         Kind::Travel => "kc_force",
         Kind::Width => "kc_hysteresis",
+        Kind::Speed => "dynamometer",
         Kind::Cycle(_) => "kc_sine",
     }
 }

@@ -127,8 +127,10 @@ pub fn resolve_both<'a>(
 pub struct Beside {
     /// The name of the model to which they were fitted.
     pub model: Option<String>,
-    /// Standard errors, where the file has them.
+    /// Standard errors, where the file has them,
     pub errors: BTreeMap<String, f64>,
+    /// and correlations of pairs.
+    pub correlations: Vec<((String, String), f64)>,
     /// Facts of the vehicle.
     pub vehicle: BTreeMap<String, f64>,
 }
@@ -141,11 +143,10 @@ impl Beside {
     pub fn read(path: &Path) -> Result<Self, InputError> {
         let file = read(path)?;
         let errors = file.parameters.iter();
+        let answer = is_answer(path).then(|| Answer::read(path)).transpose()?;
         Ok(Beside {
-            model: is_answer(path)
-                .then(|| Answer::read(path))
-                .transpose()?
-                .map(|answer| answer.model),
+            correlations: answer.as_ref().map_or(Vec::new(), Answer::correlations),
+            model: answer.map(|answer| answer.model),
             errors: errors
                 .filter_map(|(name, own)| Some((name.clone(), own.stderr?)))
                 .collect(),

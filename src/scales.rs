@@ -83,7 +83,7 @@ fn driven(run: &Run) -> Vec<Driven<'_>> {
                 .map(|(point, samples)| recorded(point, samples, *rate))
                 .collect()
         }
-        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => vec![],
+        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => vec![],
     }
 }
 

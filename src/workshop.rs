@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use qcar_dsl::check::Checked;
-use qcar_dsl::compile::derive;
+use qcar_dsl::compile::{derive, derive_alone};
 use qcar_dsl::difference::moves_alike;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
-use qcar_runtime::campaign::{Axis, Campaign, Parameter};
+use qcar_runtime::campaign::{Axis, Campaign, Parameter, Test};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
 use qcar_runtime::discover::noise::Form;
@@ -41,17 +41,39 @@ pub struct Bench {
     running: Arc<Evaluator>,
     catalogue: Arc<Catalogue>,
     values: Arc<BTreeMap<String, f64>>,
+    /// Axes and names of the links that a campaign has measured alone.
+    alone: Arc<Vec<(String, String)>>,
 }
 
 impl Bench {
     /// Puts a model on the bench. Starts and ranges of effects that depend on it are taken at `values`.
     pub fn new(model: Checked, catalogue: Arc<Catalogue>, values: Arc<BTreeMap<String, f64>>) -> Self {
+        Self::beside(model, catalogue, values, Arc::default())
+    }
+
+    /// The same beside dynamometers, for links by axis and name.
+    fn beside(
+        model: Checked,
+        catalogue: Arc<Catalogue>,
+        values: Arc<BTreeMap<String, f64>>,
+        alone: Arc<Vec<(String, String)>>,
+    ) -> Self {
         Bench {
-            running: Arc::new(Evaluator::new(&derive(model.clone()))),
+            running: Arc::new(run(&model, &alone)),
             model,
             catalogue,
             values,
+            alone,
         }
+    }
+
+    /// The same beside a dynamometer for each of its links.
+    pub fn with_every_link_alone(self) -> Self {
+        let links = self.model.links.iter();
+        let all = links
+            .map(|link| (link.direction.0.clone(), link.name.clone()))
+            .collect();
+        Self::beside(self.model, self.catalogue, self.values, Arc::new(all))
     }
 
     /// The model of a campaign, or another, beside the shipped catalogue.
@@ -64,11 +86,9 @@ impl Bench {
         let values: BTreeMap<String, f64> = vehicle
             .chain(campaign.parameters.iter().map(|p| (p.name.clone(), p.value)))
             .collect();
-        Ok(Bench::new(
-            compiled.model,
-            Arc::new(effects::catalogue()?),
-            Arc::new(values),
-        ))
+        let catalogue = Arc::new(effects::catalogue()?);
+        let alone = Arc::new(alone(campaign));
+        Ok(Self::beside(compiled.model, catalogue, Arc::new(values), alone))
     }
 
     /// The same with what the ranges of effects are measured by in a campaign.
@@ -88,7 +108,8 @@ impl Bench {
 
     /// Another model beside the same catalogue.
     pub fn holding(&self, model: Checked) -> Self {
-        Bench::new(model, Arc::clone(&self.catalogue), Arc::clone(&self.values))
+        let (catalogue, values) = (Arc::clone(&self.catalogue), Arc::clone(&self.values));
+        Self::beside(model, catalogue, values, Arc::clone(&self.alone))
     }
 
     /// The effect or law of a name.
@@ -104,9 +125,53 @@ impl Bench {
         let of_patch = |patch: &Patch| {
             let nuisance = patch.effect().nuisance;
             let apart = told_apart(patch.candidates(&self.model, &values)).into_iter();
-            apart.flat_map(move |patched| candidates(patched, nuisance))
+            apart.flat_map(move |patched| self.candidates_at(patched, nuisance))
         };
         patched.flat_map_iter(of_patch).collect()
+    }
+
+    /// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.
+    fn candidates_at(&self, patched: Patched, nuisance: bool) -> Vec<Candidate> {
+        let Some(signal) = patched.signals.first() else {
+            return vec![Candidate {
+                effect: patched.effect,
+                at: patched.place,
+                form: patched.form,
+                nuisance,
+                change: Change::Model {
+                    parameters: patched
+                        .parameters
+                        .iter()
+                        .filter(|p| p.is_new || !p.known)
+                        .map(added)
+                        .collect(),
+                    model: Box::new(run(&patched.model, &self.alone)),
+                },
+            }];
+        };
+        let axis = if signal.axis == "x" { Axis::X } else { Axis::Z };
+        let mut axes = vec![(format!("along_{}", signal.axis), Some(axis))];
+        if patched.place == signal.location {
+            axes.push(("along_every_axis".into(), None));
+        }
+        let sensor = |(form, axis)| {
+            Some(Candidate {
+                effect: patched.effect.clone(),
+                at: patched.place.clone(),
+                form: Some(form),
+                nuisance,
+                change: Change::Sensor {
+                    location: signal.location.clone(),
+                    axis,
+                    form: match signal.kind {
+                        Signal::Delay => Form::Delay,
+                        Signal::Gain => Form::Gain(0),
+                    },
+                    parameter: added(patched.parameters.first()?),
+                },
+            })
+        };
+        axes.into_iter().filter_map(sensor).collect()
     }
 
     /// The model with an effect in it, in one of its forms where it has several; `None` where that does not apply.
@@ -141,6 +206,30 @@ impl Workshop for Bench {
     }
 }
 
+/// A model that runs, and so do its links that are measured alone.
+fn run(model: &Checked, alone: &[(String, String)]) -> Evaluator {
+    let whole = Evaluator::new(&derive(model.clone()));
+    let derived = |(axis, link): &(String, String)| derive_alone(model, axis, link);
+    let alone = alone.iter().filter_map(|own| Some((own, derived(own)?)));
+    alone.fold(whole, |whole, ((axis, link), alone)| {
+        whole.with_alone(axis, link, &alone)
+    })
+}
+
+/// The links that a campaign has measured alone, each once.
+fn alone(campaign: &Campaign) -> Vec<(String, String)> {
+    let mut links: Vec<(String, String)> = Vec::new();
+    for run in &campaign.runs {
+        if let Test::Dynamometer(test) = &run.test {
+            let link = (test.axis.name().to_string(), test.link.clone());
+            if !links.contains(&link) {
+                links.push(link);
+            }
+        }
+    }
+    links
+}
+
 /// Without the forms that come to the same in this model as one before them: past a strut on the upright, friction is
 /// friction between wheel and body.
 fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
@@ -152,50 +241,6 @@ fn told_apart(patched: Vec<Patched>) -> Vec<Patched> {
         }
     }
     apart
-}
-
-/// What the search needs of a patched model. A location that has the name alone stands for its sensors of all axes too.
-fn candidates(patched: Patched, nuisance: bool) -> Vec<Candidate> {
-    let Some(signal) = patched.signals.first() else {
-        return vec![Candidate {
-            effect: patched.effect,
-            at: patched.place,
-            form: patched.form,
-            nuisance,
-            change: Change::Model {
-                parameters: patched
-                    .parameters
-                    .iter()
-                    .filter(|p| p.is_new || !p.known)
-                    .map(added)
-                    .collect(),
-                model: Box::new(Evaluator::new(&derive(patched.model))),
-            },
-        }];
-    };
-    let axis = if signal.axis == "x" { Axis::X } else { Axis::Z };
-    let mut axes = vec![(format!("along_{}", signal.axis), Some(axis))];
-    if patched.place == signal.location {
-        axes.push(("along_every_axis".into(), None));
-    }
-    let sensor = |(form, axis)| {
-        Some(Candidate {
-            effect: patched.effect.clone(),
-            at: patched.place.clone(),
-            form: Some(form),
-            nuisance,
-            change: Change::Sensor {
-                location: signal.location.clone(),
-                axis,
-                form: match signal.kind {
-                    Signal::Delay => Form::Delay,
-                    Signal::Gain => Form::Gain(0),
-                },
-                parameter: added(patched.parameters.first()?),
-            },
-        })
-    };
-    axes.into_iter().filter_map(sensor).collect()
 }
 
 fn added(parameter: &NewParameter) -> Added {

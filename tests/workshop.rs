@@ -1,12 +1,17 @@
 //! What a discovery is given to choose from.
 
 use std::collections::BTreeMap;
+use std::fs;
 use std::sync::Arc;
 
 use qcar::catalogue::compiled;
 use qcar::effects;
 use qcar::workshop::Bench;
+use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::discover::candidate::Workshop;
+use qcar_runtime::discover::observe::predict;
+use qcar_runtime::discover::{Evidence, Free};
+use qcar_runtime::response::parameters::Values;
 
 fn forms(model: &str, effect: &str) -> Vec<String> {
     let catalogue = effects::catalogue().map_err(|_| "the catalogue reads").unwrap();
@@ -25,4 +30,76 @@ fn forms_that_come_to_the_same_are_tried_once() {
     let (inside, across, beside) = ("in_damper", "across_strut", "between_wheel_and_body");
     assert_eq!(forms("axle_c", "coulomb_friction"), [inside, across]);
     assert_eq!(forms("axle_d", "coulomb_friction"), [inside, across, beside]);
+}
+
+/// A damper whose seals slip within a stroke, beside a parameter that is tied to another.
+const SEALED: &str = "
+axle sealed {
+    param c: N s/m = 3000 in 100..9000;
+    param c_same: N s/m = c;
+    param v_0: m/s = 0.2 in 0.02..3;
+    param f_seal: N = 90 in 5..300;
+    param k_seal: N/m = 9 N/mm in 1 N/mm..200 N/mm;
+    direction z {
+        motion wheel;
+        mass body = 390 kg;
+        link spring: body - wheel { spring 25 N/mm; }
+        link damper: body - wheel {
+            force = (0.7*c + 0.3*c_same)*v/(1 + abs(v)/v_0);
+            state f: N;
+            rate f = k_seal*v - k_seal*abs(v)*f/f_seal;
+            force = f;
+        }
+        output body.acceleration;
+    }
+}";
+
+/// The sensitivity of a force through its states is the limit of differences of the force, to 1e-6 of it.
+#[test]
+fn slopes_of_a_link_alone_are_limits_of_differences() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("sealed.axle"), SEALED).unwrap();
+    fs::write(
+        folder.path().join("damper.csv"),
+        "velocity,force\n0.05,90\n-0.05,-90\n0.3,300\n-0.3,-300\n1.05,700\n",
+    )
+    .unwrap();
+    let text = "format = 1\nname = \"bench\"\nmodel = \"./sealed.axle\"\n\n[[run]]\nkind = \"dynamometer\"\nfile = \"damper.csv\"\n\
+                role = \"fit\"\nlink = \"damper\"\namplitude = 0.008\nuncertainty = 1\n";
+    fs::write(folder.path().join("campaign.toml"), text).unwrap();
+    let campaign = Campaign::open(folder.path()).unwrap();
+    let bench = Bench::of_campaign(&campaign, None)
+        .map_err(|_| "the model compiles")
+        .unwrap();
+    let (model, about) = (bench.model(), bench.model().about());
+    let evidence = Evidence::from_campaign(&campaign, about).unwrap();
+    let values = Values::resolve(about, &BTreeMap::new(), &BTreeMap::new()).unwrap();
+    let free: Vec<Free> = ["c", "v_0", "f_seal", "k_seal"]
+        .map(|name| Free {
+            parameter: about.parameters.iter().position(|own| own.name == name).unwrap(),
+            lower: 0.0,
+            upper: f64::INFINITY,
+        })
+        .to_vec();
+    let forces = |values: &Values, free: &[Free]| predict(model, values, free, &evidence, Role::Fit).unwrap().remove(0);
+    let own = forces(&values, &free);
+    for (slopes, free) in own.slopes.iter().zip(&free) {
+        let size = values.as_slice()[free.parameter];
+        let moved = |part: f64| {
+            let mut moved = values.clone();
+            moved.set(free.parameter, size * (1.0 + part));
+            forces(&moved, &[]).value
+        };
+        let (up, down) = (moved(1e-3), moved(-1e-3));
+        for (k, slope) in slopes.iter().enumerate() {
+            let difference = (up[k].re - down[k].re) / 2e-3;
+            let scale = own.value[k].re.abs();
+            // The third derivative adds a part of 1e-6.
+            assert!(
+                (slope.re * size - difference).abs() < 1e-6 * scale,
+                "{k}: {} and {difference}",
+                slope.re * size
+            );
+        }
+    }
 }

@@ -115,6 +115,7 @@ fn read(folder: &Path) -> Result<(), InputError> {
             Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => campaign.history(run).map(drop),
             Test::Bounce | Test::Longitudinal => campaign.curve(run).map(drop),
             Test::DynamicBounce { .. } => campaign.dynamic_curve(run).map(drop),
+            Test::Dynamometer(_) => campaign.force_table(run).map(drop),
         });
     }
     for road in &campaign.roads {

@@ -4,6 +4,7 @@ use proc_macro2::TokenStream;
 
 use crate::check::Checked;
 use crate::check::{check_text, check_tokens};
+use crate::derive::alone::alone;
 use crate::derive::describe::{describe, vectors};
 use crate::derive::response::Wanted;
 use crate::derive::{linear, motion, response, visible};
@@ -41,6 +42,11 @@ pub fn compile_wanted(source: Source, load: Load, wanted: Wanted) -> Result<Comp
 /// One `compile_error!` for each mistake, at the mistaken token.
 pub fn compile_tokens(tokens: TokenStream, load: Load) -> Result<Compiled, TokenStream> {
     check_tokens(tokens, load).map(derive)
+}
+
+/// One link of a model on a dynamometer, by its axis and name; see [`alone`].
+pub fn derive_alone(model: &Checked, axis: &str, link: &str) -> Option<Compiled> {
+    alone(model, axis, link).map(derive)
 }
 
 /// Derives a model's equations, its matrices and its responses, and schedules them.

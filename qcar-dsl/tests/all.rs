@@ -1,5 +1,6 @@
 //! The compiler as those who call it see it.
 
+mod alone;
 mod balance;
 mod common;
 mod couplings;

@@ -126,4 +126,10 @@ pub trait Model: Send + Sync {
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, y: &mut [f64]) {
         self.outputs(constants, x, u, y);
     }
+
+    /// A link (its place in [`About::links`]) on a dynamometer: a model with the same parameters, whose one motion is the link's stretch
+    /// and whose one output is its force. `None` of all but those that a model was compiled with so.
+    fn alone(&self, _link: usize) -> Option<&dyn Model> {
+        None
+    }
 }

@@ -33,16 +33,19 @@ pub mod workbook;
 mod manifest;
 // Quasi-static curves.
 mod curve;
+// Forces of a link over its speed.
+mod dynamometer;
 // Roads.
 mod profile;
 // The answer that some campaigns are published with.
 mod truth;
 
 pub use contents::{
-    Axis, Campaign, Channel, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording, Road, Role, RoleNames, Run,
-    Side, Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
+    Axis, Campaign, Channel, Dynamometer, FACT_UNITS, FACTS, Parameter, Profile, Quantity, Recording, Road, Role,
+    RoleNames, Run, Side, Spacing, Sweep, Tap, Test, Trigger, Window, unit_of_fact,
 };
 pub use curve::{Curve, DynamicCurve};
+pub use dynamometer::ForceTable;
 pub use finding::Finding;
 pub use history::History;
 pub use profile::RoadSamples;

@@ -137,6 +137,7 @@ fn read_all(folder: &Path) -> Result<(), InputError> {
             Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => drop(campaign.history(run)?),
             Test::Bounce | Test::Longitudinal => drop(campaign.curve(run)?),
             Test::DynamicBounce { .. } => drop(campaign.dynamic_curve(run)?),
+            Test::Dynamometer(_) => drop(campaign.force_table(run)?),
         }
     }
     campaign.roads.iter().try_for_each(|road| campaign.road(road).map(drop))

@@ -31,6 +31,7 @@ fn every_file_is_sound_and_says_where_it_comes_from() {
             match run.test {
                 Test::Bounce | Test::Longitudinal => drop(campaign.curve(run).unwrap()),
                 Test::DynamicBounce { .. } => drop(campaign.dynamic_curve(run).unwrap()),
+                Test::Dynamometer(_) => drop(campaign.force_table(run).unwrap()),
                 _ => drop(campaign.history(run).unwrap()),
             }
         }

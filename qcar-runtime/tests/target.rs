@@ -48,6 +48,7 @@ fn at_most(result: usize, value: f64) -> Limit {
         sense: Sense::AtMost,
         value,
         wish: None,
+        margin: 0.0,
     }
 }
 
@@ -111,6 +112,7 @@ fn couplings_and_steps_hold() {
             sense: Sense::AtLeast,
             value: 7.3,
             wish: None,
+            margin: 0.0,
         }],
     );
     task.couplings = vec![Coupling {
@@ -206,4 +208,56 @@ fn nothing_good_gives_no_box() {
     let bad = Formula(|x| vec![x[0] + 2.0]);
     let task = task(&bad, vec![knob("x", 0.0, 1.0, 0.5, None)], vec![at_most(0, 1.0)]);
     assert!(space(&task, &[], SpaceSettings::default(), UNTOLD).is_none());
+}
+
+/// What a design should give and what it gives, which lies evenly within 0.2 of it.
+struct Scattered;
+
+impl Designs for Scattered {
+    fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
+        Some(design.to_vec())
+    }
+
+    fn slopes(&self, _design: &[f64]) -> Option<Vec<Vec<f64>>> {
+        Some(vec![vec![1.0]])
+    }
+
+    fn is_certain(&self) -> bool {
+        false
+    }
+
+    fn drawn(&self, design: &[f64], number: u64) -> Option<Vec<f64>> {
+        let error = 0.2 * (2.0 * SplitMix::stream(7, number).uniform() - 1.0);
+        Some(vec![design[0] + error])
+    }
+}
+
+/// `x` is even from 0 to `b` and may turn out as much as 0.2 larger; below 1 it is good. Of all, `(b - 0.8)²/(0.8 b)` are bad, which
+/// is 5 % at `b = 1`, and 1 % at `b = 0.885`. Without what is not known 5 % are bad at `b = 1.053`.
+#[test]
+fn a_box_counts_what_its_designs_may_turn_out_as() {
+    for (probability, most) in [(0.95, 1.0), (0.99, 0.8848)] {
+        let knobs = vec![knob("x", 0.0, 2.0, 0.5, None)];
+        let task = Task {
+            designs: &Scattered,
+            knobs,
+            // Within three standard deviations of an even distribution.
+            limits: vec![Limit {
+                margin: 0.2 * 3.0_f64.sqrt() / 3.0,
+                ..at_most(0, 1.0)
+            }],
+            couplings: Vec::new(),
+        };
+        let settings = SpaceSettings {
+            probability,
+            ..SpaceSettings::default()
+        };
+        let found = space(&task, &[vec![0.2]], settings, UNTOLD).unwrap();
+        let [low, high] = found.intervals[0];
+        let bad = (high - 0.8_f64).max(0.0).powi(2) / (0.8 * (high - low));
+        assert!(found.at_least >= probability, "{found:?}");
+        // What 95 % confidence allows is wrong once in twenty times, by little.
+        assert!(bad <= 1.3 * (1.0 - probability), "{bad} of {found:?}");
+        assert!(low < 0.1 && high > 0.85 * most, "{found:?}");
+    }
 }

@@ -55,6 +55,12 @@ impl Answer {
         })
     }
 
+    /// Of pairs of estimates.
+    pub fn correlations(&self) -> Vec<((String, String), f64)> {
+        let pairs = self.all_correlations.iter().flatten();
+        pairs.map(|own| (own.between.clone(), own.value)).collect()
+    }
+
     /// How probable other values are: the distribution of all estimates that have an error.
     ///
     /// # Errors

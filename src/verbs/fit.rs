@@ -41,13 +41,13 @@ pub(crate) mod files;
 // The result as a workbook.
 pub(crate) mod workbook;
 // All of that of a nonlinear model.
-mod nonlinear;
+pub(crate) mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
 /// A linear model is fitted to transmissibilities, level after level in one cost. A nonlinear one is fitted to all runs that
-/// it predicts, cleats and K&C curves too: to the first three harmonics of sweeps by harmonic balance, to records sample by
-/// sample, and to what each says by its own uncertainty.
+/// it predicts, cleats, K&C curves and dynamometer tables too: to the first three harmonics of sweeps by harmonic balance, to
+/// records sample by sample, and to what each says by its own uncertainty; `--all-runs` fits a linear model so.
 /// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. Estimated are the parameters
 /// that the campaign wants fitted, and what the model has beside them with a default and a range, but for what it calls
 /// known. A parameter that no fitted channel depends on takes its value from the K&C curve that measures it, where the
@@ -88,7 +88,10 @@ pub struct Choices {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub fix: Vec<String>,
-    /// Find intervals of these parameters of a linear model by their profile likelihoods too; `all` for every one that is fitted
+    /// Fit a linear model as a nonlinear one is: to all runs, each by its own uncertainty
+    #[arg(long)]
+    pub all_runs: bool,
+    /// Find intervals of these parameters by their profile likelihoods too; `all` for every one that is fitted
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub profile: Vec<String>,
 }
@@ -110,7 +113,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     if let Some(folder) = &arguments.out {
         files::check_folder(folder, &campaign.name, &model.about().name)?;
     }
-    if !model.about().linear {
+    if !model.about().linear || arguments.choices.all_runs {
         return nonlinear::run(campaign, arguments);
     }
     let fitted = fit(&arguments.campaign, &arguments.choices)?;
@@ -231,6 +234,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
     campaign.notices.extend(notices::silent_runs(&campaign, &levels));
+    campaign.notices.extend(notices::unused_tables(&campaign));
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
     let profiled = profiled(&plan, model.about(), setup.free(), &choices.profile)?;
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);

@@ -5,10 +5,12 @@ use std::path::PathBuf;
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::Campaign;
+use qcar_runtime::discover::candidate::Workshop;
+use qcar_runtime::discover::posterior;
 use qcar_runtime::error::InputError;
-use qcar_runtime::fit::Plan;
 use qcar_runtime::fit::prospect::{Kind, Prospects, prospects};
 use qcar_runtime::model::About;
+use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 use serde::Serialize;
 
@@ -21,15 +23,16 @@ use crate::table::{Table, counted, noted, number, or_dash};
 use crate::terminal::prose;
 use crate::units;
 use crate::verbs::Format;
-use crate::verbs::fit::{self, Choices, Fitted};
+use crate::verbs::fit::{self, Choices, nonlinear};
 
 /// Print which further sensor, run or level would say most about the parameters of a campaign
 ///
-/// The linear model is fitted, and each measurement that could be added is judged by the rise of the log determinant of the
+/// The model is fitted, and each measurement that could be added is judged by the rise of the log determinant of the
 /// information about the parameters (D-optimality), with the standard errors that a fit with it is expected to have. Added are,
 /// one at a time: a sensor at each output of the model that no fitted run records, a run driven by an excitation that none uses, a
 /// fitted run once more, at its level and at twice of it, and beyond either end of its band. A new sensor is taken to be as noisy as
-/// those that there are.
+/// those that there are. A nonlinear model is fitted to all runs; added are to it sensors, runs once more, sines at twice their level, and a
+/// dynamometer's table of each link.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar plan models/campaigns/axle_a_rig\n  qcar plan models/campaigns/axle_a_rig --parameters c_wheel_z,c_tire --format json"
@@ -49,6 +52,9 @@ pub struct Arguments {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     fix: Vec<String>,
+    /// Fit a linear model as a nonlinear one is: to all runs, each by its own uncertainty
+    #[arg(long)]
+    all_runs: bool,
     /// How to print
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
@@ -88,45 +94,83 @@ struct Further {
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let campaign = Campaign::open(&arguments.campaign)?;
     let model = catalogue::of_campaign(&campaign, arguments.model.as_deref())?;
-    refuse_nonlinear(model.about())?;
     let choices = Choices {
         model: arguments.model.clone(),
         free: arguments.free.clone(),
         fix: arguments.fix.clone(),
         ..Choices::default()
     };
-    let fitted = fit::fit(&arguments.campaign, &choices)?;
-    let plan = fitted.as_plan(&choices)?;
-    check_names(&plan, &arguments.parameters)?;
-    let work = format!("{}: further measurement", fitted.campaign.name);
-    let found = while_counting(work, |told| {
-        prospects(&*fitted.model, &plan, &fitted.levels, &arguments.parameters, told)
-    })?;
-    let planned = planned(&fitted, found, &arguments.parameters);
+    let planned = match model.about().linear && !arguments.all_runs {
+        true => of_channels(arguments, &choices)?,
+        false => of_runs(campaign, arguments, &choices)?,
+    };
     Ok(match arguments.format {
         Format::Text => prose(&planned.text()),
         Format::Json => json::line(&planned),
     })
 }
 
-/// # Errors
-/// A nonlinear model.
-fn refuse_nonlinear(about: &About) -> Result<(), InputError> {
-    let problem = || {
-        let found = format!("`{}`, which is nonlinear", about.name);
-        let remedy = "name a linear model with --model, such as the one that this was made of";
-        flag("--model", found, "a linear model", remedy)
-    };
-    InputError::unless_empty((!about.linear).then(problem).into_iter().collect(), Some(()))
+/// By a fit to transmissibilities.
+fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
+    let fitted = fit::fit(&arguments.campaign, choices)?;
+    let plan = fitted.as_plan(choices)?;
+    let names: Vec<&str> = plan
+        .parameters
+        .iter()
+        .filter(|own| own.fit)
+        .map(|own| &*own.name)
+        .collect();
+    check_names(&names, &arguments.parameters)?;
+    let found = while_counting(work(&fitted.campaign), |told| {
+        prospects(&*fitted.model, &plan, &fitted.levels, &arguments.parameters, told)
+    })?;
+    let (about, values) = (fitted.model.about(), fitted.values());
+    Ok(planned(
+        &fitted.campaign,
+        (about, &values),
+        found,
+        &arguments.parameters,
+    ))
+}
+
+/// By a fit to all runs.
+fn of_runs(campaign: Campaign, arguments: &Arguments, choices: &Choices) -> Result<Planned, Failure> {
+    let fitted = nonlinear::fit(campaign, choices)?;
+    let names: Vec<&str> = fitted
+        .parameters
+        .iter()
+        .filter(|own| own.fitted)
+        .map(|own| &*own.name)
+        .collect();
+    check_names(&names, &arguments.parameters)?;
+    let (bench, refit) = (
+        fitted.bench().clone().with_every_link_alone(),
+        &fitted.found.explanation.refit,
+    );
+    let found = while_counting(work(&fitted.campaign), |told| {
+        posterior::prospects(bench.model(), refit, &fitted.evidence, &arguments.parameters, told)
+    });
+    let found =
+        found.map_err(|error| Failure::Input(format!("{}: {error}\n", fitted.campaign.manifest().display())))?;
+    let about = bench.model().about();
+    Ok(planned(
+        &fitted.campaign,
+        (about, &refit.values),
+        found,
+        &arguments.parameters,
+    ))
+}
+
+fn work(campaign: &Campaign) -> String {
+    format!("{}: further measurement", campaign.name)
 }
 
 /// # Errors
 /// Every name of no parameter that is fitted.
-fn check_names(plan: &Plan, names: &[String]) -> Result<(), InputError> {
-    let fitted = || plan.parameters.iter().filter(|own| own.fit).map(|own| &*own.name);
-    let unknown = names.iter().filter(|name| fitted().all(|own| own != *name));
+fn check_names(fitted: &[&str], names: &[String]) -> Result<(), InputError> {
+    let unknown = names.iter().filter(|name| !fitted.contains(&name.as_str()));
     let problem = |name: &String| {
-        let remedy = spelling::remedy(name, fitted());
+        let remedy = spelling::remedy(name, fitted.iter().copied());
         flag(
             "--parameters",
             format!("`{name}`"),
@@ -137,9 +181,7 @@ fn check_names(plan: &Plan, names: &[String]) -> Result<(), InputError> {
     InputError::unless_empty(unknown.map(problem).collect(), Some(()))
 }
 
-fn planned(fitted: &Fitted, found: Prospects, asked: &[String]) -> Planned {
-    let about = fitted.model.about();
-    let values = fitted.values();
+fn planned(campaign: &Campaign, (about, values): (&About, &Values), found: Prospects, asked: &[String]) -> Planned {
     let name = |place: usize| about.parameters[place].name.to_string();
     let parameter = |(&place, stderr): (&usize, &Option<f64>)| {
         let own = Parameter {
@@ -152,7 +194,7 @@ fn planned(fitted: &Fitted, found: Prospects, asked: &[String]) -> Planned {
     };
     let names: Vec<String> = found.parameters.iter().map(|&place| name(place)).collect();
     Planned {
-        campaign: fitted.campaign.name.clone(),
+        campaign: campaign.name.clone(),
         model: about.name.to_string(),
         parameters: found.parameters.iter().zip(&found.errors).map(parameter).collect(),
         further: found
@@ -165,7 +207,7 @@ fn planned(fitted: &Fitted, found: Prospects, asked: &[String]) -> Planned {
                 stderr: names.iter().cloned().zip(own.errors).collect(),
             })
             .collect(),
-        notices: fitted.campaign.notices.clone(),
+        notices: campaign.notices.clone(),
     }
 }
 

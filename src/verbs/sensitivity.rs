@@ -1,6 +1,5 @@
 //! `qcar sensitivity`: what metrics of an axle depend on, and how sure they are.
 
-use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -25,13 +24,16 @@ use crate::verbs::TableFormat;
 pub(crate) mod subject;
 // Names of metrics and parameters.
 pub(crate) mod chosen;
+// What is not known of the parameters.
+pub(crate) mod doubts;
 // What they say.
 pub(crate) mod gather;
 // As text and CSV.
-mod render;
+pub(crate) mod render;
 // And drawn.
 mod figure;
 
+use doubts::{Doubts, Temperatures};
 use gather::Asked;
 use subject::{Beneath, Subject};
 
@@ -73,6 +75,12 @@ pub struct Arguments {
     /// A part lies within so much of its value, such as k_tire=5%; may be repeated
     #[arg(long, value_name = "NAME=PERCENT")]
     tolerance: Vec<Tolerance>,
+    /// Parts are at a temperature from so many to so many kelvin above that for which the values hold, such as -30..50
+    #[arg(long, value_name = "LOW..HIGH", requires = "per_kelvin", allow_hyphen_values = true)]
+    temperature: Option<Temperatures>,
+    /// A parameter changes by so much of its value per kelvin, such as c_wheel_z=-0.3%; may be repeated
+    #[arg(long, value_name = "NAME=PERCENT", requires = "temperature")]
+    per_kelvin: Vec<PerKelvin>,
     /// Find Sobol indices by so many designs
     #[arg(long, value_name = "DESIGNS", value_parser = clap::value_parser!(u32).range(50..=10_000_000))]
     sobol: Option<u32>,
@@ -127,6 +135,40 @@ impl FromStr for Tolerance {
     }
 }
 
+/// A parameter and what a kelvin makes of it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct PerKelvin {
+    name: String,
+    part: f64,
+}
+
+impl FromStr for PerKelvin {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, part) = text
+            .split_once('=')
+            .ok_or("expected name=percent, such as c_wheel_z=-0.3%")?;
+        Ok(PerKelvin {
+            name: name.trim().into(),
+            part: per_kelvin(part)?,
+        })
+    }
+}
+
+/// A part of a parameter per kelvin, written as percent.
+///
+/// # Errors
+/// What else it could be, in words.
+pub(crate) fn per_kelvin(text: &str) -> Result<f64, String> {
+    const MOST: f64 = 10.0;
+    let number = text.trim().trim_end_matches('%').trim_end().parse::<f64>().ok();
+    let number = number.filter(|number| *number != 0.0 && number.abs() <= MOST);
+    number.map(|number| number / 100.0).ok_or_else(|| {
+        format!("expected percent per kelvin, not zero and between -{MOST} and {MOST}, such as -0.3%, found `{text}`")
+    })
+}
+
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let beneath = Beneath {
@@ -146,7 +188,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         names => chosen::metrics(&ground, names)?,
     };
     let parameters = chosen::parameters(subject.model.about(), &subject.values, &arguments.parameters)?;
-    let tolerances = tolerances(&subject, &parameters, arguments)?;
+    let doubts = doubts(&subject, &parameters, arguments)?;
     let plan = arguments.sobol.map(|designs| Plan {
         designs: designs as usize,
         seed: arguments.seed,
@@ -154,7 +196,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let asked = Asked {
         metrics: &metrics,
         parameters: &parameters,
-        tolerances: &tolerances,
+        doubts: &doubts,
         global: plan.map(|plan| (plan, arguments.spread.0)),
     };
     let found = while_counting(format!("{}: design", subject.name), |told| {
@@ -187,29 +229,35 @@ fn list(ground: &Ground<'_>) -> String {
     table.text()
 }
 
-/// By name, in the unit of the parameter.
-fn tolerances(
-    subject: &Subject,
-    parameters: &[usize],
-    arguments: &Arguments,
-) -> Result<BTreeMap<String, f64>, InputError> {
-    let about = subject.model.about();
-    let (mut tolerances, mut problems) = (BTreeMap::new(), Vec::new());
-    for own in &arguments.tolerance {
-        let problem = |found: &str, expected: &str, remedy: &str| flag("--tolerance", found, expected, remedy);
-        match chosen::parameter(about, &subject.values, &own.name, problem) {
-            Ok(place) if !parameters.contains(&place) => {
-                let found = format!("`{}`, which is not looked at", own.name);
+/// What the user says of it.
+fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Result<Doubts, InputError> {
+    let mut problems = Vec::new();
+    let mut place = |name: &str, option: &'static str| {
+        let problem = |found: &str, expected: &str, remedy: &str| flag(option, found, expected, remedy);
+        match chosen::parameter(subject.model.about(), &subject.values, name, problem) {
+            Ok(place) if parameters.contains(&place) => return Some(place),
+            Ok(_) => {
+                let found = format!("`{name}`, which is not looked at");
                 problems.push(problem(&found, "one of the parameters", "name it in --parameters, too"));
-            }
-            Ok(place) => {
-                let size = (own.part.0 * subject.values.as_slice()[place]).abs();
-                tolerances.insert(own.name.clone(), size);
             }
             Err(error) => problems.extend(error.problems),
         }
+        None
+    };
+    let mut doubts = Doubts {
+        fit: true,
+        temperatures: arguments.temperature.map_or([0.0; 2], |own| own.0),
+        ..Doubts::default()
+    };
+    for own in &arguments.tolerance {
+        let place = place(&own.name, "--tolerance");
+        doubts.tolerances.extend(place.map(|place| (place, own.part.0)));
     }
-    InputError::unless_empty(problems, Some(tolerances))
+    for own in &arguments.per_kelvin {
+        let place = place(&own.name, "--per-kelvin");
+        doubts.per_kelvin.extend(place.map(|place| (place, own.part)));
+    }
+    InputError::unless_empty(problems, Some(doubts))
 }
 
 /// A metric that cannot be measured.

@@ -22,6 +22,8 @@ use crate::verbs::sensitivity::subject::{Beneath, Subject};
 mod file;
 // As a task.
 mod plan;
+// How sure that is.
+mod sure;
 // What it gives.
 mod gather;
 // As text and as values for other verbs.
@@ -76,7 +78,8 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let mut ground = subject.ground();
     let plan = Plan::of(&read, &subject, &mut ground)?;
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
-    let answer = gather::gather(&subject, &ground, &plan, arguments.seed, wanted).ok_or_else(|| {
+    let chance = plan.doubts.chance(&subject)?;
+    let answer = gather::gather((&subject, &ground), &plan, chance, arguments.seed, wanted).ok_or_else(|| {
         let (found, expected) = ("no design in range that can be driven", "ranges with designs that can");
         read.problem(
             &read.file.subject,

@@ -101,10 +101,9 @@ fn what_cannot_be_planned_or_profiled_is_refused() {
     assert_eq!(run_line(folder.path(), bent).status, 0);
     for (line, said) in [
         ("plan AXLE --parameters k_tyre", "did you mean `k_tire`?"),
-        ("plan AXLE --model bent.axle", "which is nonlinear"),
         ("fit AXLE --profile k_tyre", "did you mean `k_tire`?"),
         ("fit AXLE --profile c_wheel_x", "which no fitted channel depends on"),
-        ("fit AXLE --model bent.axle --profile all", "`--profile`: found all"),
+        ("fit AXLE --model bent.axle --profile k_tyre", "did you mean `k_tire`?"),
     ] {
         let ran = run_line(folder.path(), &line.replace("AXLE", AXLE));
         assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{line}");

@@ -22,3 +22,5 @@ pub mod response;
 pub mod describe;
 // What outputs can see.
 pub mod visible;
+// A part of a model on its own.
+pub mod alone;

@@ -27,6 +27,8 @@ pub struct Evaluator {
     parameter_jacobian: Code,
     responses: Vec<ResponseCode>,
     rolling: Option<RollingCode>,
+    /// Links that stand alone, by their places.
+    alone: Vec<(usize, Evaluator)>,
 }
 
 #[derive(Clone, Debug)]
@@ -76,8 +78,17 @@ impl Evaluator {
                 derivative: code(&rolling.derivative),
                 outputs: code(&rolling.outputs),
             }),
+            alone: Vec::new(),
             about: compiled.about.clone(),
         }
+    }
+
+    /// The same with a link that stands alone, too, compiled as a model of its own.
+    pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
+        let mut links = self.about.links.iter();
+        let place = links.position(|own| own.axis == axis && own.name == link);
+        self.alone.extend(place.map(|place| (place, Evaluator::new(compiled))));
+        self
     }
 }
 
@@ -176,6 +187,11 @@ impl Model for Evaluator {
         let contact = entries(contact);
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.derivative).run(&given, dx);
+    }
+
+    fn alone(&self, link: usize) -> Option<&dyn Model> {
+        let found = self.alone.iter().find(|(place, _)| *place == link);
+        found.map(|(_, own)| own as &dyn Model)
     }
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {

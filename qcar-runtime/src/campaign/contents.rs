@@ -229,6 +229,21 @@ pub enum Test {
     },
     /// Any excitation, recorded with its response.
     TimeHistory(Recording),
+    /// One link alone, moved by sines of several peak velocities.
+    Dynamometer(Dynamometer),
+}
+
+/// How a link was tested on a dynamometer.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Dynamometer {
+    /// Its name in the model.
+    pub link: String,
+    /// The axis of the model along which it stands.
+    pub axis: Axis,
+    /// Half the stroke of the sines, m.
+    pub amplitude: f64,
+    /// Standard deviation of every force, N; none where the table has a column of it.
+    pub uncertainty: Option<f64>,
 }
 
 /// How any excitation was recorded with its response.
@@ -328,13 +343,13 @@ impl Test {
             Test::Sweep(sweep) => Some(sweep.sample_rate),
             Test::Cleat { sample_rate, .. } => Some(*sample_rate),
             Test::TimeHistory(recording) => Some(recording.sample_rate),
-            Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal => None,
+            Test::Bounce | Test::DynamicBounce { .. } | Test::Longitudinal | Test::Dynamometer(_) => None,
         }
     }
 
     /// Whether its samples are a curve that needs no times.
     pub fn is_curve(&self) -> bool {
-        matches!(self, Test::Bounce | Test::Longitudinal)
+        matches!(self, Test::Bounce | Test::Longitudinal | Test::Dynamometer(_))
     }
 }
 

@@ -89,7 +89,7 @@ impl Campaign {
     }
 }
 
-fn other_kind(file: &Path, expected: &str) -> InputError {
+pub(super) fn other_kind(file: &Path, expected: &str) -> InputError {
     Problem::new(
         file,
         Place::File,

@@ -23,6 +23,10 @@ mod runs;
 pub(super) const CURVE: &[&str] = &["displacement", "force"];
 /// The columns of a dynamic bounce, s, m, m/s and N.
 pub(super) const DYNAMIC_CURVE: &[&str] = &["time", "displacement", "velocity", "force"];
+/// The columns of a dynamometer's table, m/s and N,
+pub(super) const FORCES: &[&str] = &["velocity", "force"];
+/// and what it may have beside them, N.
+pub(super) const UNCERTAINTY: &[&str] = &["uncertainty"];
 /// The columns of a road, m, m and 1.
 pub(super) const ROAD: &[&str] = &["x", "z"];
 /// What a road may have beside them.
@@ -258,7 +262,7 @@ fn unit_of_column(campaign: &Campaign, name: &str) -> Option<&'static str> {
         "time" => Some("s"),
         "displacement" | "x" | "z" => Some("m"),
         "velocity" => Some("m/s"),
-        "force" => Some("N"),
+        "force" | "uncertainty" => Some("N"),
         "slope" => Some("1"),
         name => campaign.channel(name).map(|channel| channel.quantity.unit()),
     }
@@ -282,6 +286,7 @@ fn tables<'a>(campaign: &'a Campaign, channels: &'a [&str]) -> Vec<(&'a str, &'a
     let runs = plain.map(|run| match run.test {
         Test::Bounce | Test::Longitudinal => (run.file.as_str(), CURVE, &[][..]),
         Test::DynamicBounce { .. } => (run.file.as_str(), DYNAMIC_CURVE, &[][..]),
+        Test::Dynamometer(_) => (run.file.as_str(), FORCES, UNCERTAINTY),
         Test::Sweep(_) | Test::Cleat { .. } | Test::TimeHistory(_) => (run.file.as_str(), &["time"][..], channels),
     });
     let roads = campaign.roads.iter().filter(|road| road.profile == Profile::Table);

@@ -27,6 +27,8 @@ mod cleat;
 mod time_history;
 // The K&C rig: slow cycles and sines.
 mod kc;
+// A link alone: forces over its speed.
+mod dynamometer;
 // Runs through which a parameter changes.
 mod drift;
 // From a campaign to a data set.

@@ -26,6 +26,10 @@ mod linearised;
 mod offset;
 // All of that in one call.
 mod fit;
+// How far its parameters may be off.
+mod profile;
+// What further measurements would say of them.
+mod prospect;
 // With what sweeps show beyond their steady harmonics.
 mod settle;
 // Where records begin that only judge.
@@ -39,5 +43,6 @@ pub use beginning::beginnings;
 pub use explain::{Explanation, Given, Setting};
 pub use fit::{Start, fit, refit, refit_with};
 pub use gap::{Gap, Tile, rms};
+pub use prospect::prospects;
 pub use refit::Refit;
 pub use settle::settle;

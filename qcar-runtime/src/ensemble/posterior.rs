@@ -83,7 +83,7 @@ impl Posterior {
     }
 
     /// The draw of a number: all parameters within their ranges; NaN where ten thousand draws are not.
-    pub(super) fn draw(&self, number: u64, seed: u64, into: &mut [f64]) {
+    pub fn draw(&self, number: u64, seed: u64, into: &mut [f64]) {
         let mut random = SplitMix::stream(seed, number);
         for _ in 0..MOST_DRAWS {
             let normal = DVector::from_fn(self.estimates.len(), |_, _| normal(&mut random));

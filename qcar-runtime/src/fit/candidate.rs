@@ -22,6 +22,8 @@ pub enum Kind {
     Level,
     /// The same run beyond an end of its band.
     Band,
+    /// A link alone, its forces over its speed.
+    Dynamometer,
 }
 
 impl Kind {
@@ -33,6 +35,7 @@ impl Kind {
             Self::Repeat => "repeat",
             Self::Level => "level",
             Self::Band => "band",
+            Self::Dynamometer => "dynamometer",
         }
     }
 }

@@ -90,7 +90,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
 }
 
 /// A cost that is lower by so much of a unit of chi-square is another minimum, not the same found closer.
-const CHANCE: f64 = 0.1;
+pub const CHANCE: f64 = 0.1;
 
 /// The rise of `½ ‖r‖²` that is one unit of chi-square: of a parameter without a standard error that of the others.
 fn unit(uncertainty: &Uncertainty, minimum: &Outcome, variable: usize) -> f64 {

@@ -1,57 +1,105 @@
 //! How sure a metric is, from how sure the parameters are: first-order propagation of their covariance.
+//!
+//! All of it is relative to the parameters' own values, so that it holds wherever a design puts them.
 
 use nalgebra::{DMatrix, DVector};
 
-/// What is not known of parameters.
+/// What is not known of parameters, each in parts of its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Doubt {
-    covariance: DMatrix<f64>,
+    /// By source, in the order of [`Source::ALL`].
+    covariances: [DMatrix<f64>; 3],
+    /// What the mean of the parameters differs from their values by.
+    shift: DVector<f64>,
+}
+
+/// Why a parameter is not known.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Source {
+    /// The errors of a fit.
+    Fit,
+    /// Tolerances of parts.
+    Tolerance,
+    /// The temperature.
+    Temperature,
 }
 
 /// How sure a metric is.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Interval {
+    /// By what its mean differs from its value.
+    pub shift: f64,
     /// Standard deviation.
     pub deviation: f64,
     /// The part of the variance that each parameter contributes, `g_k (C g)_k / gᵀ C g`; negative where its error is
     /// balanced by that of another. Their sum is 1, or 0 where nothing is in doubt.
     pub shares: Vec<f64>,
+    /// The part that each source contributes, in the order of [`Source::ALL`].
+    pub sources: [f64; 3],
+}
+
+impl Source {
+    /// All of them.
+    pub const ALL: [Source; 3] = [Source::Fit, Source::Tolerance, Source::Temperature];
+
+    /// As results call it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Source::Fit => "fit",
+            Source::Tolerance => "tolerance",
+            Source::Temperature => "temperature",
+        }
+    }
 }
 
 impl Doubt {
     /// None at all about `count` parameters.
     pub fn none(count: usize) -> Self {
         Self {
-            covariance: DMatrix::zeros(count, count),
+            covariances: Source::ALL.map(|_| DMatrix::zeros(count, count)),
+            shift: DVector::zeros(count),
         }
     }
 
-    /// Adds standard errors with their correlations.
+    /// Adds standard errors of a fit with their correlations.
     pub fn add_errors(&mut self, errors: &[f64], correlation: impl Fn(usize, usize) -> f64) {
         let count = errors.len();
         let added = DMatrix::from_fn(count, count, |i, j| {
             let shared = if i == j { 1.0 } else { correlation(i, j) };
             errors[i] * errors[j] * shared
         });
-        self.covariance += added;
+        self.covariances[Source::Fit as usize] += added;
     }
 
     /// Adds tolerances: each part lies anywhere within so much of its value, as likely as not, whatever the others do.
     pub fn add_tolerances(&mut self, tolerances: &[f64]) {
         for (k, tolerance) in tolerances.iter().enumerate() {
-            self.covariance[(k, k)] += tolerance * tolerance / 3.0;
+            self.covariances[Source::Tolerance as usize][(k, k)] += tolerance * tolerance / 3.0;
         }
     }
 
-    /// What that means for a metric with these derivatives.
+    /// Adds a temperature that is the same for all parts and lies anywhere from `low` to `high` kelvin above that for which the
+    /// values hold, as likely as not; parameters change by so much of themselves per kelvin.
+    pub fn add_temperature(&mut self, per_kelvin: &[f64], [low, high]: [f64; 2]) {
+        let drift = DVector::from_row_slice(per_kelvin);
+        let variance = (high - low).powi(2) / 12.0;
+        self.covariances[Source::Temperature as usize] += variance * &drift * drift.transpose();
+        self.shift += 0.5 * (low + high) * drift;
+    }
+
+    /// What that means for a metric with these derivatives, by parameters in parts of their values.
     pub fn of(&self, slopes: &[f64]) -> Interval {
         let slopes = DVector::from_row_slice(slopes);
-        let moved = &self.covariance * &slopes;
-        let variance = slopes.dot(&moved);
-        let share = |(slope, moved): (&f64, &f64)| if variance > 0.0 { slope * moved / variance } else { 0.0 };
+        let moved = self.covariances.each_ref().map(|own| own * &slopes);
+        let variances = moved.each_ref().map(|own| slopes.dot(own));
+        let variance: f64 = variances.iter().sum();
+        let of_all = |part: f64| if variance > 0.0 { part / variance } else { 0.0 };
+        let share = |k: usize| of_all(slopes[k] * moved.iter().map(|own| own[k]).sum::<f64>());
         Interval {
+            shift: self.shift.dot(&slopes),
             deviation: variance.max(0.0).sqrt(),
-            shares: slopes.iter().zip(moved.iter()).map(share).collect(),
+            shares: (0..slopes.len()).map(share).collect(),
+            sources: variances.map(of_all),
         }
     }
 }
@@ -70,5 +118,19 @@ mod tests {
         let sum = doubt.of(&[1.0, 1.0]);
         assert!((sum.deviation - 19.0_f64.sqrt()).abs() < 1e-12);
         assert!((sum.shares[0] - 11.0 / 19.0).abs() < 1e-12);
+        assert!((sum.sources[0] - 16.0 / 19.0).abs() < 1e-12);
+    }
+
+    /// One temperature for all: what it adds to one part it takes from another of the opposite drift.
+    #[test]
+    fn a_temperature_moves_all_parts_together() {
+        let mut doubt = Doubt::none(2);
+        doubt.add_temperature(&[0.01, -0.02], [-30.0, 50.0]);
+        assert!(doubt.of(&[2.0, 1.0]).deviation < 1e-12);
+        let own = doubt.of(&[1.0, 0.0]);
+        // Even over 80 K about a mean of 10 K.
+        assert!((own.deviation - 0.01 * 80.0 / 12.0_f64.sqrt()).abs() < 1e-12);
+        assert!((own.shift - 0.1).abs() < 1e-12);
+        assert_eq!(own.sources, [0.0, 0.0, 1.0]);
     }
 }

@@ -22,7 +22,8 @@ pub fn direction(values: &Values, parameter: usize) -> Vec<f64> {
         .collect()
 }
 
-fn size(values: &Values, parameter: usize) -> f64 {
+/// What a parameter's changes are counted in: its own value, or one where that is zero.
+pub fn size(values: &Values, parameter: usize) -> f64 {
     match values.as_slice()[parameter] {
         0.0 => 1.0,
         value => value,

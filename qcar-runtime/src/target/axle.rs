@@ -3,6 +3,7 @@
 use super::task::Designs;
 use crate::metric::Ground;
 use crate::response::parameters::Values;
+use crate::sensitivity::Chance;
 
 /// What a knob does to a parameter: the parameter is the knob times a factor, plus a constant.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +30,8 @@ pub struct Axle<'a> {
     pub knobs: usize,
     /// Means of readings, by their places: further results after the readings.
     pub means: Vec<Vec<usize>>,
+    /// What is not known of the parameters, whatever design is chosen.
+    pub chance: Chance,
 }
 
 impl Axle<'_> {
@@ -55,12 +58,26 @@ impl Axle<'_> {
     }
 }
 
-impl Designs for Axle<'_> {
-    fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
-        let mut values = self.ground.measure(&self.values_of(design)).ok()?;
+impl Axle<'_> {
+    fn results(&self, parameters: &Values) -> Option<Vec<f64>> {
+        let mut values = self.ground.measure(parameters).ok()?;
         let means: Vec<f64> = self.means.iter().map(|of| mean(of, |at| values[at])).collect();
         values.extend(means);
         values.iter().all(|value| value.is_finite()).then_some(values)
+    }
+}
+
+impl Designs for Axle<'_> {
+    fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
+        self.results(&self.values_of(design))
+    }
+
+    fn is_certain(&self) -> bool {
+        self.chance.is_certain()
+    }
+
+    fn drawn(&self, design: &[f64], number: u64) -> Option<Vec<f64>> {
+        self.results(&self.chance.draw(&self.values_of(design), number))
     }
 
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>> {

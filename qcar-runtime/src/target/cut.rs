@@ -24,16 +24,17 @@ pub struct Dot {
     pub broken: Option<usize>,
 }
 
-/// Draws `count` designs.
+/// Draws `count` designs, with results as they may turn out.
 pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed: u64) -> Cut {
     let points = SplitMix::new(seed).hypercube(count, task.knobs.len());
-    let dot = |point: Vec<f64>| {
+    let task = task.without_margins();
+    let dot = |(number, point): (usize, Vec<f64>)| {
         let value = |k: usize| match knobs.contains(&k) {
             true => task.knobs[k].at(point[k]),
             false => space.intervals[k][0] + point[k] * (space.intervals[k][1] - space.intervals[k][0]),
         };
         let design: Vec<f64> = (0..point.len()).map(value).collect();
-        let excess = task.excesses(&design, &task.designs.values(&design)?);
+        let excess = task.excesses(&design, &task.designs.drawn(&design, number as u64)?);
         let most = excess
             .iter()
             .enumerate()
@@ -47,6 +48,6 @@ pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed
     };
     Cut {
         knobs,
-        dots: points.into_par_iter().filter_map(dot).collect(),
+        dots: points.into_par_iter().enumerate().filter_map(dot).collect(),
     }
 }

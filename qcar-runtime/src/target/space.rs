@@ -4,6 +4,9 @@
 //! grows to all sides, designs are drawn in it, and sides are cut off that hold bad ones while as few good ones as possible go
 //! with them; at the end it grows no more. How probable a good design is in the box is then judged by designs that had no part
 //! in finding it.
+//!
+//! Where results are not certain, the box is found with the margins of the limits, in which all is certain, and judged by results as they
+//! may turn out: then the probability is that over designs and results together.
 
 use rayon::prelude::*;
 
@@ -77,7 +80,9 @@ struct Drawn {
 /// The largest box about a good design that was found; none where `known` are not good and no other was met.
 pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told<'_>) -> Option<Space> {
     let mut random = SplitMix::new(settings.seed);
-    let start = start(task, known, &mut random, settings.samples)?;
+    let real = task.without_margins();
+    let start = start(task, known, &mut random, settings.samples);
+    let start = start.or_else(|| self::start(&real, known, &mut random, settings.samples))?;
     let mut sides: Sides = start.iter().map(|place| [*place; 2]).collect();
     let mut evaluated = 2 * settings.samples;
     let rounds = settings.rounds + FINAL_ROUNDS;
@@ -97,20 +102,23 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     let mut best = None;
     for round in 0..FINAL_ROUNDS {
         told(settings.rounds + round, rounds);
-        let drawn = draw(task, &sides, judges, &mut random);
+        let drawn = turned_out(&real, &sides, judges, &mut random);
         evaluated += drawn.len();
-        if judged(task, &sides, &drawn, evaluated).at_least >= settings.probability {
+        if judged(&real, &sides, &drawn, evaluated).at_least >= settings.probability {
             best = Some(sides.clone());
             grow(&mut sides, FINAL_GROWTH);
         } else if best.is_some() {
             break;
-        } else {
+        } else if task.designs.is_certain() {
             sides = trimmed(&sides, &drawn).unwrap_or_else(|| shrunk(&sides));
+        } else {
+            // A bad result says little of its place.
+            sides = shrunk(&shrunk(&sides));
         }
     }
     told(rounds, rounds);
     Some(confirmed(
-        task,
+        &real,
         best.unwrap_or(sides),
         (settings.probability, judges),
         evaluated,
@@ -127,7 +135,7 @@ fn confirmed(
     random: &mut SplitMix,
 ) -> Space {
     loop {
-        let drawn = draw(task, &sides, judges, random);
+        let drawn = turned_out(task, &sides, judges, random);
         evaluated += drawn.len();
         let judged = judged(task, &sides, &drawn, evaluated);
         if judged.at_least >= probability || evaluated > MOST_JUDGED * judges {
@@ -162,27 +170,43 @@ fn shrunk(sides: &Sides) -> Sides {
     sides.iter().map(shrink).collect()
 }
 
-fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
-    let inside = |point: Vec<f64>| {
-        point
-            .iter()
-            .zip(sides)
-            .map(|(u, [low, high])| low + u * (high - low))
-            .collect()
-    };
-    let points = random.hypercube(count, sides.len());
+/// Designs all over a box.
+fn inside(sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Vec<f64>> {
+    let mut points = random.hypercube(count, sides.len());
+    for (u, [low, high]) in points.iter_mut().flat_map(|point| point.iter_mut().zip(sides)) {
+        *u = low + *u * (high - low);
+    }
     points
-        .into_par_iter()
-        .map(|point| drawn_at(task, inside(point)))
-        .collect()
+}
+
+/// Designs with the results that they should have.
+fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
+    let points = inside(sides, count, random).into_par_iter();
+    points.map(|places| drawn_at(task, places)).collect()
+}
+
+/// Designs with results as they may turn out.
+fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
+    if task.designs.is_certain() {
+        return draw(task, sides, count, random);
+    }
+    let points = inside(sides, count, random).into_iter();
+    let numbered: Vec<(Vec<f64>, u64)> = points.map(|places| (places, random.bits())).collect();
+    let own = |(places, number): (Vec<f64>, u64)| {
+        let values = task.designs.drawn(&task.design(&places), number);
+        judged_at(task, places, values)
+    };
+    numbered.into_par_iter().map(own).collect()
 }
 
 fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {
+    let values = task.designs.values(&task.design(&places));
+    judged_at(task, places, values)
+}
+
+fn judged_at(task: &Task<'_>, places: Vec<f64>, values: Option<Vec<f64>>) -> Drawn {
     let design = task.design(&places);
-    let excess = task
-        .designs
-        .values(&design)
-        .map(|values| task.excesses(&design, &values));
+    let excess = values.map(|values| task.excesses(&design, &values));
     let good = excess.as_ref().is_some_and(|excess| task.holds(excess));
     Drawn { places, excess, good }
 }

@@ -7,6 +7,16 @@ pub trait Designs: Sync {
 
     /// For each result its derivative by each knob.
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>>;
+
+    /// Whether a design has but one set of results; else [`Designs::drawn`] gives what they may turn out as.
+    fn is_certain(&self) -> bool {
+        true
+    }
+
+    /// The results of a design as they may turn out, for the draw of a number; none where it has none.
+    fn drawn(&self, design: &[f64], _number: u64) -> Option<Vec<f64>> {
+        self.values(design)
+    }
 }
 
 /// What may move.
@@ -37,6 +47,8 @@ pub struct Limit {
     pub value: f64,
     /// What it costs to miss it by its own size, of a wish; `None` for what must hold.
     pub wish: Option<f64>,
+    /// How far a design's result is kept from it, in its unit, for what is not known of the result.
+    pub margin: f64,
 }
 
 /// Which side of a limit is good.
@@ -66,6 +78,7 @@ pub fn is_met(excess: f64) -> bool {
 }
 
 /// All of it.
+#[derive(Clone)]
 pub struct Task<'a> {
     /// What gives results.
     pub designs: &'a dyn Designs,
@@ -78,9 +91,10 @@ pub struct Task<'a> {
 }
 
 impl Limit {
-    /// By how much a result is beyond the limit, over the size of the limit; at most zero where it is met.
+    /// By how much a result is beyond the limit or nearer to it than its margin, over the size of the limit; at most zero where it is
+    /// met.
     pub fn excess(&self, value: f64) -> f64 {
-        self.sign() * (value - self.value) / self.size()
+        (self.sign() * (value - self.value) + self.margin) / self.size()
     }
 
     /// The derivative of that.
@@ -93,7 +107,8 @@ impl Limit {
         self.result == other.result && self.sense != other.sense && self.wish.is_none() && other.wish.is_none()
     }
 
-    fn sign(&self) -> f64 {
+    /// 1 where a larger result is worse, -1 where it is better.
+    pub fn sign(&self) -> f64 {
         match self.sense {
             Sense::AtMost => 1.0,
             Sense::AtLeast => -1.0,
@@ -157,6 +172,14 @@ impl Coupling {
 }
 
 impl Task<'_> {
+    /// The same with every limit where it is, for results as they turn out.
+    #[must_use]
+    pub fn without_margins(&self) -> Self {
+        let mut own = self.clone();
+        own.limits.iter_mut().for_each(|limit| limit.margin = 0.0);
+        own
+    }
+
     /// A design by the places of its knobs.
     pub fn design(&self, places: &[f64]) -> Vec<f64> {
         self.knobs

@@ -65,5 +65,6 @@ fn kind(run: &Run) -> &'static str {
         Test::Longitudinal => "longitudinal",
         Test::Cleat { .. } => "cleat",
         Test::TimeHistory(_) => "time history",
+        Test::Dynamometer(_) => "dynamometer",
     }
 }

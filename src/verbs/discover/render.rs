@@ -99,6 +99,7 @@ struct Where {
     window_s: Option<(f64, f64)>,
     /// Where they belong to a travel of the wheel.
     travel_m: Option<(f64, f64)>,
+    speed_m_per_s: Option<(f64, f64)>,
     level: f64,
     strength: f64,
 }
@@ -207,6 +208,7 @@ fn place(tile: &Tile) -> Where {
         band_hz: tile.kind.order().map(|_| tile.span),
         window_s: matches!(tile.kind, Kind::Time | Kind::Passage).then_some(tile.span),
         travel_m: matches!(tile.kind, Kind::Travel | Kind::Width).then_some(tile.span),
+        speed_m_per_s: (tile.kind == Kind::Speed).then_some(tile.span),
         level: tile.level,
         strength: tile.strength,
     }
@@ -443,6 +445,7 @@ fn unit_of_span(kind: Kind) -> &'static str {
         Kind::Harmonic(_) | Kind::Cycle(_) => "Hz",
         Kind::Time | Kind::Passage => "s",
         Kind::Travel | Kind::Width => "m",
+        Kind::Speed => "m/s",
     }
 }
 

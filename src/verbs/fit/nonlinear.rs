@@ -13,29 +13,35 @@ use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::News;
 use qcar_runtime::discover::candidate::Workshop;
-use qcar_runtime::discover::posterior::{Explanation, Setting};
+use qcar_runtime::discover::posterior::{Explanation, Refit, Setting};
 use qcar_runtime::discover::select::{self, Alone};
 use qcar_runtime::error::InputError;
+use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
-use qcar_runtime::model::About;
+use qcar_runtime::least_squares::information::Unseen;
+use qcar_runtime::model::{About, Model};
+use qcar_runtime::progress::{self, Told};
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::spelling;
 
 use super::{Arguments, Choices, files, plan};
 use crate::failure::{Failure, flag};
 use crate::files::put;
-use crate::progress::Showing;
+use crate::progress::{Showing, while_counting};
 use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::workshop::{Bench, given};
 
 /// A nonlinear model that was fitted to a campaign.
-struct Nonlinear {
-    campaign: Campaign,
+pub(crate) struct Nonlinear {
+    pub(crate) campaign: Campaign,
+    bench: Bench,
     model: String,
-    evidence: Evidence,
-    parameters: Vec<ParameterFit>,
+    pub(crate) evidence: Evidence,
+    pub(crate) parameters: Vec<ParameterFit>,
     starts: usize,
-    found: Alone,
+    pub(crate) found: Alone,
+    profiles: Vec<ParameterProfile>,
     seconds: f64,
 }
 
@@ -58,28 +64,26 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 }
 
 /// # Errors
-/// Channels, which the cost of a linear fit is made of, and profiles, which are of it.
+/// Channels, which the cost of a linear fit is made of.
 fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     let expected = "a linear model, whose cost is made of channels";
     let remedy = "leave it out: a nonlinear model is fitted to what every sensor shows";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
-    let profiles = (!choices.profile.is_empty()).then(|| {
-        let (expected, remedy) = (
-            "a linear model",
-            "leave it out: standard errors stand beside the values",
-        );
-        flag("--profile", choices.profile.join(","), expected, remedy)
-    });
-    InputError::unless_empty(channels.into_iter().chain(profiles).collect(), Some(()))
+    InputError::unless_empty(channels.into_iter().collect(), Some(()))
 }
 
-fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
+/// Fits.
+///
+/// # Errors
+/// What cannot be read, and a model that says nothing of the runs.
+pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> {
     let begun = Instant::now();
     let bench = Bench::of_campaign(&campaign, choices.model.as_deref())?;
     let about = bench.model().about().clone();
     let plan = plan(&campaign, &about, choices)?;
     let setting = given(&plan.parameters, &campaign);
+    check_profiled(&setting, &about, &choices.profile)?;
     let showing = Showing::new();
     showing.tell(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(&campaign, &about)?;
@@ -88,11 +92,14 @@ fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> 
             showing.tell(format!("{}: {what}", campaign.name));
         }
     };
-    let found = select::alone(Box::new(bench), &setting, &evidence, plan.starts, &told);
+    let found = select::alone(Box::new(bench.clone()), &setting, &evidence, plan.starts, &told);
     drop(showing);
     let found = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     campaign.notices.extend(evidence.notices.iter().cloned());
+    let profiles = profiles(bench.model(), &found.explanation.refit, &evidence, &choices.profile);
     Ok(Nonlinear {
+        profiles,
+        bench,
         model: about.name.to_string(),
         parameters: parameters(&about, &setting, &found.explanation),
         evidence,
@@ -102,6 +109,51 @@ fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear, Failure> 
         campaign,
     })
 }
+
+/// # Errors
+/// Every name of a parameter that is not fitted.
+fn check_profiled(setting: &Setting, about: &About, names: &[String]) -> Result<(), InputError> {
+    let of_model = |name: &str| about.parameters.iter().any(|own| own.name == name);
+    let fitted = || {
+        setting
+            .given
+            .iter()
+            .filter(|own| own.range.is_some() && of_model(&own.name))
+            .map(|own| &*own.name)
+    };
+    let unknown = names
+        .iter()
+        .filter(|own| *own != ALL && !fitted().any(|name| name == **own));
+    let problem = |own: &String| {
+        let remedy = spelling::remedy(own, fitted());
+        flag(
+            "--profile",
+            format!("`{own}`"),
+            "a parameter that is fitted, or `all`",
+            &remedy,
+        )
+    };
+    InputError::unless_empty(unknown.map(problem).collect(), Some(()))
+}
+
+/// Profiles of the parameters that are asked for.
+fn profiles(model: &dyn Model, refit: &Refit, evidence: &Evidence, names: &[String]) -> Vec<ParameterProfile> {
+    let parameters = &model.about().parameters;
+    let is_asked = |k: &usize| {
+        let own = &parameters[refit.free[*k].parameter].name;
+        names.iter().any(|name| name == ALL || *name == **own)
+    };
+    let wanted: Vec<usize> = (0..refit.free.len()).filter(is_asked).collect();
+    if wanted.is_empty() || !refit.stop.converged() {
+        return Vec::new();
+    }
+    let fitted = refit.fitted_of(evidence);
+    let all = |told: Told<'_>| progress::map(&wanted, told, |&k| refit.profile(model, &fitted, k));
+    while_counting("profile".into(), all)
+}
+
+/// In place of all names.
+const ALL: &str = "all";
 
 fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<ParameterFit> {
     let refit = &of.refit;
@@ -124,7 +176,7 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
             _ if leader != place => NoError::Tied,
             (None, _) => NoError::Known,
             (_, Some(_)) => NoError::AtBound,
-            _ => NoError::Undetermined,
+            (Some(free), None) => why_unseen(about, refit, free),
         };
         ParameterFit {
             name: own.name.to_string(),
@@ -147,7 +199,25 @@ fn parameters(about: &About, setting: &Setting, of: &Explanation) -> Vec<Paramet
     about.parameters.iter().enumerate().map(parameter).collect()
 }
 
+/// Why a parameter that was fitted, and is off its bounds, has no standard error.
+fn why_unseen(about: &About, refit: &Refit, free: usize) -> NoError {
+    match &refit.unseen[free] {
+        Some(Unseen::Combination { with }) if !with.is_empty() => {
+            let name = |&other: &usize| about.parameters[refit.free[other].parameter].name.to_string();
+            NoError::OnlyTogether {
+                with: with.iter().map(name).collect(),
+            }
+        }
+        _ => NoError::Undetermined,
+    }
+}
+
 impl Nonlinear {
+    /// What was fitted.
+    pub(crate) fn bench(&self) -> &Bench {
+        &self.bench
+    }
+
     /// Writes values and the answer.
     ///
     /// # Errors

@@ -1,6 +1,6 @@
 //! What is odd about a fit, but no error.
 
-use qcar_runtime::campaign::Campaign;
+use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::fit::{Fit, Level};
 
 /// A sentence where every parameter that was fitted rests on a bound: no minimum of the cost lies within the ranges.
@@ -26,4 +26,16 @@ pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
         format!("{file}: records nothing that the model moves, so no channel is taken from it; check its column names")
     };
     silent.map(say).collect()
+}
+
+/// A sentence for each table of a dynamometer, which the cost of a linear fit does not hold.
+pub(super) fn unused_tables(campaign: &Campaign) -> Vec<String> {
+    let is_unused = |run: &&Run| run.role == Role::Fit && matches!(run.test, Test::Dynamometer(_));
+    let say = |run: &Run| {
+        let name = &run.name;
+        format!(
+            "{name}: the table of a dynamometer has no part in a fit to transmissibilities; --all-runs fits to it too"
+        )
+    };
+    campaign.runs.iter().filter(is_unused).map(say).collect()
 }

@@ -125,7 +125,7 @@ pub(super) fn remark(of: &ParameterFit) -> String {
     }
 }
 
-fn profiles(of: &[ParameterProfile]) -> String {
+pub(super) fn profiles(of: &[ParameterProfile]) -> String {
     if of.is_empty() {
         return String::new();
     }

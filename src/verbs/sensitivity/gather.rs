@@ -1,14 +1,16 @@
 //! Sensitivities as the verb prints them: each metric over all of its runs.
 
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 use qcar_runtime::metric::{Ground, MetricError, Reading};
 use qcar_runtime::progress::Told;
 use qcar_runtime::response::parameters::Values;
-use qcar_runtime::sensitivity::{Doubt, Elasticities, Index, Indices, Interval, Plan, elasticities, indices};
+use qcar_runtime::sensitivity::{
+    Doubt, Elasticities, Index, Indices, Interval, Plan, Source, elasticities, indices, size,
+};
 use serde::Serialize;
 
+use super::doubts::Doubts;
 use super::subject::Subject;
 use crate::json::Ordered;
 
@@ -40,6 +42,8 @@ pub(crate) struct Parameter {
     pub stderr: Option<f64>,
     /// Tolerance of the part, where the user gives it.
     pub tolerance: Option<f64>,
+    /// The part of its value by which it changes per kelvin, where the user gives it.
+    pub per_kelvin: Option<f64>,
 }
 
 /// A metric; all that is said of it is said of the mean of its relative values over the runs.
@@ -69,9 +73,11 @@ pub(crate) struct MetricResult {
 pub(crate) struct Doubted {
     /// Standard deviation.
     pub deviation: f64,
-    /// 95 % of a normal distribution.
+    /// 95 % of a normal distribution, about the value at the mean temperature.
     pub interval: [f64; 2],
-    /// What each parameter contributes to the variance: those asked for, then all others of which errors are known.
+    /// What the fit, tolerances and the temperature contribute to the variance.
+    pub sources: Ordered<f64>,
+    /// What each parameter contributes to it: those asked for, then all others of which errors are known.
     pub shares: Ordered<f64>,
 }
 
@@ -90,8 +96,7 @@ pub(crate) struct Asked<'a> {
     pub metrics: &'a [usize],
     /// Places of parameters.
     pub parameters: &'a [usize],
-    /// By name, in the unit of the parameter.
-    pub tolerances: &'a BTreeMap<String, f64>,
+    pub doubts: &'a Doubts,
     /// Designs of the indices, and how far their parameters spread.
     pub global: Option<(Plan, f64)>,
 }
@@ -114,12 +119,19 @@ pub(crate) fn gather(
     let about = ground.about();
     let names: Vec<String> = moved.iter().map(|&k| about.parameters[k].name.to_string()).collect();
     let shown = &names[..asked.parameters.len()];
-    let doubt = doubt(subject, asked, &names);
+    let doubt = asked.doubts.doubt(subject, &moved);
+    let sizes_of: Vec<f64> = moved.iter().map(|&k| size(&subject.values, k)).collect();
     let mut first = 0;
     let mut metric = |(&metric, &size): (&usize, &usize)| {
         let range = first..first + size;
         first = range.end;
-        result(ground, &local, (metric, range), (shown, &names), doubt.as_ref())
+        result(
+            ground,
+            &local,
+            (metric, range),
+            (shown, &names),
+            (doubt.as_ref(), &sizes_of),
+        )
     };
     let metrics = asked.metrics.iter().zip(&sizes).map(&mut metric).collect();
     let mut found = Sensitivity {
@@ -142,17 +154,9 @@ pub(crate) fn gather(
 /// The parameters that are asked for, and after them all others of which errors are known: what they leave in doubt is so
 /// whoever is asked for.
 fn moved(subject: &Subject, asked: &Asked<'_>) -> Vec<usize> {
-    let doubted = |name: &str| subject.errors.deviations.get(name).is_some_and(|error| *error > 0.0);
-    let all = subject.model.about().parameters.iter().enumerate();
-    let others = all.filter(|(place, own)| {
-        doubted(&own.name) && subject.values.leader(*place) == *place && !asked.parameters.contains(place)
-    });
-    asked
-        .parameters
-        .iter()
-        .copied()
-        .chain(others.map(|(place, _)| place))
-        .collect()
+    let others = asked.doubts.places(subject).into_iter();
+    let others = others.filter(|place| !asked.parameters.contains(place));
+    asked.parameters.iter().copied().chain(others).collect()
 }
 
 /// A metric over the readings in a range of places; elasticities are of the parameters that are shown, what is in doubt by all.
@@ -161,7 +165,7 @@ fn result(
     local: &Elasticities,
     (metric, range): (usize, Range<usize>),
     (shown, names): (&[String], &[String]),
-    doubt: Option<&Doubt>,
+    (doubt, sizes): (Option<&Doubt>, &[f64]),
 ) -> MetricResult {
     let own = &ground.metrics()[metric];
     let run = |at: usize| {
@@ -172,7 +176,7 @@ fn result(
     let by_parameter =
         |of: &dyn Fn(usize, usize) -> f64| (0..names.len()).map(|k| mean(&|at| of(at, k))).collect::<Vec<_>>();
     let value = mean(&|at| local.values[at]);
-    let relative = by_parameter(&|at, k| local.slopes[at][k] / local.values[at]);
+    let slopes = by_parameter(&|at, k| value * local.slopes[at][k] * sizes[k] / local.values[at]);
     let elastic = by_parameter(&|at, k| local.elasticities[at][k])
         .into_iter()
         .map(rounded);
@@ -187,7 +191,7 @@ fn result(
             .clone()
             .map(|at| (run(at), local.elasticities[at][..shown.len()].to_vec()))
             .collect(),
-        doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&relative))),
+        doubt: doubt.map(|doubt| doubted(value, names, &doubt.of(&slopes))),
         sobol: None,
         spread: None,
     }
@@ -204,42 +208,26 @@ fn parameters(subject: &Subject, asked: &Asked<'_>, names: &[String], ground: &G
         unit: ground.about().parameters[k].unit.to_string(),
         value: subject.values.as_slice()[k],
         stderr: subject.errors.deviations.get(name).copied(),
-        tolerance: asked.tolerances.get(name).copied(),
+        tolerance: (asked.doubts.tolerances.get(&k)).map(|part| (part * subject.values.as_slice()[k]).abs()),
+        per_kelvin: asked.doubts.per_kelvin.get(&k).copied(),
     };
     asked.parameters.iter().zip(names).map(own).collect()
 }
 
-/// What is not known of the parameters; none where nothing is said of it.
-fn doubt(subject: &Subject, asked: &Asked<'_>, names: &[String]) -> Option<Doubt> {
-    let of = |known: &BTreeMap<String, f64>| -> Vec<f64> {
-        names
-            .iter()
-            .map(|name| known.get(name).copied().unwrap_or(0.0))
-            .collect()
-    };
-    let (errors, tolerances) = (of(&subject.errors.deviations), of(asked.tolerances));
-    if errors.iter().chain(&tolerances).all(|own| *own == 0.0) {
-        return None;
-    }
-    let mut doubt = Doubt::none(names.len());
-    let correlation = |i: usize, j: usize| {
-        let pair = (names[i].clone(), names[j].clone());
-        subject.errors.correlations.get(&pair).copied().unwrap_or(0.0)
-    };
-    doubt.add_errors(&errors, correlation);
-    doubt.add_tolerances(&tolerances);
-    Some(doubt)
-}
-
-/// Of a metric with a value, from what is not known of it relative to that.
-fn doubted(value: f64, names: &[String], relative: &Interval) -> Doubted {
+/// Of a metric with a value, from what is not known of it.
+pub(crate) fn doubted(value: f64, names: &[String], of: &Interval) -> Doubted {
     /// Of a normal distribution, 95 % lie within so many standard deviations.
     const NORMAL: f64 = 1.96;
-    let deviation = (relative.deviation * value).abs();
+    let (mean, reach) = (value + of.shift, NORMAL * of.deviation);
     Doubted {
-        deviation,
-        interval: [value - NORMAL * deviation, value + NORMAL * deviation],
-        shares: names.iter().cloned().zip(relative.shares.iter().copied()).collect(),
+        deviation: of.deviation,
+        interval: [mean - reach, mean + reach],
+        sources: Source::ALL
+            .iter()
+            .zip(of.sources)
+            .map(|(source, share)| (source.name().into(), share))
+            .collect(),
+        shares: names.iter().cloned().zip(of.shares.iter().copied()).collect(),
     }
 }
 

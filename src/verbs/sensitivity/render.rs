@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use super::gather::{MetricResult, Sensitivity};
+use super::gather::{Doubted, MetricResult, Sensitivity};
 use crate::table::{Table, counted, noted, number};
 use crate::units;
 
@@ -94,11 +94,28 @@ fn values(of: &Sensitivity) -> Table {
             metric.name.clone(),
             shown(metric.value),
             units::name(metric.unit).into(),
-            doubt.map_or("-".into(), |doubt| shown(doubt.interval[1] - metric.value)),
+            doubt.map_or("-".into(), |doubt| reach(metric.value, doubt, metric.unit)),
             doubt.map_or("-".into(), |doubt| largest(&doubt.shares.0)),
         ]);
     }
     table
+}
+
+/// How far a value may be off, with what its mean differs from it where that is to be seen.
+pub(crate) fn reach(value: f64, doubt: &Doubted, unit: &str) -> String {
+    const SEEN: f64 = 0.02;
+    let [low, high] = doubt.interval;
+    let (shift, reach) = (0.5 * (low + high) - value, 0.5 * (high - low));
+    let shown = |value: f64| number(units::value(value, unit), 2);
+    match shift.abs() > SEEN * reach {
+        true => format!(
+            "{}{} ± {}",
+            if shift < 0.0 { "−" } else { "+" },
+            shown(shift.abs()),
+            shown(reach)
+        ),
+        false => shown(reach),
+    }
 }
 
 /// The two parameters with the largest shares.

@@ -13,7 +13,7 @@ use crate::catalogue::{self, Loaded};
 use crate::failure::{Failure, flag};
 use crate::parameters::{self, Beside, Setting, out_of_range};
 use crate::roads::{Asked, courses};
-use crate::verbs::fit::{self, Choices};
+use crate::verbs::fit::{self, Choices, nonlinear};
 
 /// A model with values on its tyre.
 pub(crate) struct Subject {
@@ -59,6 +59,16 @@ pub(crate) struct Beneath<'a> {
     pub roads: &'a [Asked],
 }
 
+impl Errors {
+    /// Adds correlations, each in both orders.
+    fn correlate(&mut self, pairs: impl IntoIterator<Item = ((String, String), f64)>) {
+        for ((a, b), value) in pairs {
+            self.correlations.insert((a.clone(), b.clone()), value);
+            self.correlations.insert((b, a), value);
+        }
+    }
+}
+
 impl Subject {
     /// A model by name or path, a campaign's folder, or what a fit has written.
     ///
@@ -95,7 +105,7 @@ impl Subject {
             )
             .into())
         } else {
-            of_model(text, text, &[], Errors::default(), beneath)
+            of_model(text, text, &[], beneath)
         }
     }
 
@@ -125,20 +135,10 @@ fn of_answer(text: &str, answer: &Path, beneath: &Beneath<'_>) -> Result<Subject
         )
         .into());
     };
-    let errors = Errors {
-        deviations: beside.errors,
-        ..Errors::default()
-    };
-    of_model(text, &model, &[answer.to_path_buf()], errors, beneath)
+    of_model(text, &model, &[answer.to_path_buf()], beneath)
 }
 
-fn of_model(
-    name: &str,
-    model: &str,
-    own: &[PathBuf],
-    mut errors: Errors,
-    beneath: &Beneath<'_>,
-) -> Result<Subject, Failure> {
+fn of_model(name: &str, model: &str, own: &[PathBuf], beneath: &Beneath<'_>) -> Result<Subject, Failure> {
     let (source, model) = (model, catalogue::load(model)?);
     let folder = beneath.campaign.map(|folder| folder.join("campaign.toml"));
     let files: Vec<PathBuf> = folder
@@ -148,11 +148,12 @@ fn of_model(
         .collect();
     let campaign = beneath.campaign.map(Campaign::open).transpose()?;
     let values = resolved(&model, &files, campaign.as_ref(), beneath.set)?;
-    let mut facts = BTreeMap::new();
+    let (mut facts, mut errors) = (BTreeMap::new(), Errors::default());
     for file in &files {
         let beside = Beside::read(file)?;
         facts.extend(beside.vehicle);
         errors.deviations.extend(beside.errors);
+        errors.correlate(beside.correlations);
     }
     finish((name, source), model, values, facts, campaign, errors)
 }
@@ -185,40 +186,35 @@ fn of_campaign(folder: &Path, beneath: &Beneath<'_>) -> Result<Subject, Failure>
         return Err(flag("--campaign", "a second campaign", "one campaign", remedy).into());
     }
     let campaign = Campaign::open(folder)?;
-    let is_rig = |test: &Test| matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
-    let is_fitted = campaign
-        .runs
-        .iter()
-        .any(|run| run.role == Role::Fit && is_rig(&run.test));
     let model = catalogue::named_by(&campaign, None)?;
+    let loaded = catalogue::load(&model)?;
+    let linear = loaded.about().linear;
+    let says = |test: &Test| !linear || matches!(test, Test::Sweep(_) | Test::TimeHistory(_));
+    let is_fitted = campaign.runs.iter().any(|run| run.role == Role::Fit && says(&run.test));
     if beneath.params.is_some() || !beneath.set.is_empty() || !is_fitted {
         let beneath = Beneath {
             campaign: Some(folder),
             ..*beneath
         };
-        return of_model(&folder.display().to_string(), &model, &[], Errors::default(), &beneath);
+        return of_model(&folder.display().to_string(), &model, &[], &beneath);
     }
-    let fitted = fit::fit(folder, &Choices::of_model(None))?;
-    let own = fitted.fit.parameters.iter();
-    let pairs = fitted.fit.all_correlations.iter();
-    let errors = Errors {
-        deviations: own.filter_map(|own| Some((own.name.clone(), own.stderr?))).collect(),
-        correlations: pairs
-            .flat_map(|pair| {
-                let (a, b) = pair.between.clone();
-                [((a.clone(), b.clone()), pair.value), ((b, a), pair.value)]
-            })
-            .collect(),
+    let facts = campaign.vehicle.iter().cloned().collect();
+    let (values, parameters, pairs) = if linear {
+        let fitted = fit::fit(folder, &Choices::default())?;
+        (fitted.values(), fitted.fit.parameters, fitted.fit.all_correlations)
+    } else {
+        let fitted = nonlinear::fit(campaign.clone(), &Choices::default())?;
+        let (values, pairs) = (fitted.found.explanation.refit.values.clone(), fitted.correlations());
+        (values, fitted.parameters, pairs)
     };
-    let (values, facts) = (fitted.values(), campaign.vehicle.iter().cloned().collect());
-    finish(
-        (&folder.display().to_string(), &model),
-        fitted.model,
-        values,
-        facts,
-        Some(campaign),
-        errors,
-    )
+    let deviations = parameters.into_iter().filter_map(|own| Some((own.name, own.stderr?)));
+    let mut errors = Errors {
+        deviations: deviations.collect(),
+        ..Errors::default()
+    };
+    errors.correlate(pairs.into_iter().map(|pair| (pair.between, pair.value)));
+    let name = folder.display().to_string();
+    finish((&name, &model), loaded, values, facts, Some(campaign), errors)
 }
 
 fn finish(

@@ -66,6 +66,7 @@ pub fn patches(of: &Study, tiles: &[Tile]) -> Vec<Patch> {
             Kind::Passage => "passage",
             Kind::Travel => "travel",
             Kind::Width => "width",
+            Kind::Speed => "speed",
             Kind::Cycle(_) => "cycle",
         },
         harmonic: tile.kind.order(),

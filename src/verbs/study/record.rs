@@ -107,6 +107,7 @@ fn listed(run: &Run) -> Listed {
         ),
         Test::Longitudinal => ("quasi-static longitudinal", Vec::new()),
         Test::Cleat { speed, cleat, .. } => ("cleat", vec![drive(&format!("over {cleat} at"), 3.6 * speed, "km/h")]),
+        Test::Dynamometer(test) => ("dynamometer", vec![drive("amplitude", test.amplitude, "m")]),
         Test::TimeHistory(recording) => ("time history", vec![drive("sampled at", recording.sample_rate, "Hz")]),
     };
     Listed {

@@ -33,6 +33,7 @@ pub(super) struct File {
     pub couplings: Vec<Coupling>,
     pub front: Option<Front>,
     pub space: Option<Space>,
+    pub uncertainty: Option<Uncertainty>,
 }
 
 /// A limit or a wish.
@@ -96,6 +97,24 @@ pub(super) struct Space {
     /// Pairs of parameters whose plane is drawn.
     #[serde(default)]
     pub cuts: Vec<Spanned<[String; 2]>>,
+}
+
+/// What is not known of the parameters.
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Uncertainty {
+    /// Whether the errors of the subject's fit count; they do where it has some.
+    pub fit: Option<Spanned<bool>>,
+    /// Parts that lie evenly within so many percent of their values.
+    #[serde(default)]
+    pub tolerances: BTreeMap<String, Spanned<String>>,
+    /// What changes by so many percent of its value per kelvin.
+    #[serde(default)]
+    pub per_kelvin: BTreeMap<String, Spanned<String>>,
+    /// Kelvin above the temperature for which the values hold.
+    pub temperature: Option<Spanned<[f64; 2]>>,
+    /// With which each target is to hold at the design.
+    pub probability: Option<Spanned<f64>>,
 }
 
 /// A number in SI, or a text of a number with its unit or with `%`.

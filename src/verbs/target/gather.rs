@@ -2,16 +2,17 @@
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::sensitivity::{Chance, Interval};
 use qcar_runtime::target::{
-    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, is_met,
-    search, space,
+    Axle, Cut, Designs, Dot, Found, Front, FrontSettings, Sense, Space, SpaceSettings, Task, cut, front, is_met, space,
 };
 use serde::Serialize;
 
 use super::plan::Plan;
+use super::sure::{self, Sureness};
 use crate::json::Ordered;
 use crate::progress::while_counting;
-use crate::verbs::sensitivity::gather::rounded;
+use crate::verbs::sensitivity::gather::{Doubted, doubted, rounded};
 use crate::verbs::sensitivity::subject::Subject;
 
 /// All that was found.
@@ -31,6 +32,7 @@ pub(super) struct Answer {
     pub sensitivity: Vec<Sensitivity>,
     pub front: Option<FrontAnswer>,
     pub space: Option<SpaceAnswer>,
+    pub uncertainty: Option<Sureness>,
 }
 
 /// A parameter that may move.
@@ -67,6 +69,10 @@ pub(super) struct Target {
     /// By how much the cost falls for a limit that is looser by its own size; where not all is met, how much of what stands
     /// in the way it is.
     pub multiplier: f64,
+    /// How sure the design's value is, where something of the parameters is not known,
+    pub doubt: Option<Doubted>,
+    /// and the share of draws in which the design meets it.
+    pub holds: Option<f64>,
     /// Share of the designs in the solution space that meet it.
     pub in_space: Option<f64>,
 }
@@ -134,9 +140,9 @@ const DOTS: usize = 250;
 
 /// Looks for a design and, where asked, for a front and a box. None where no design can be driven.
 pub(super) fn gather(
-    subject: &Subject,
-    ground: &Ground<'_>,
+    (subject, ground): (&Subject, &Ground<'_>),
     plan: &Plan,
+    chance: Chance,
     seed: u64,
     wanted: [bool; 2],
 ) -> Option<Answer> {
@@ -146,16 +152,16 @@ pub(super) fn gather(
         moves: plan.moves.clone(),
         knobs: plan.knobs.len(),
         means: plan.means.clone(),
+        chance,
     };
-    let task = Task {
+    let mut task = Task {
         designs: &axle,
         knobs: plan.knobs.clone(),
         limits: plan.limits.clone(),
         couplings: plan.couplings.clone(),
     };
-    let found = while_counting("the design of least cost: step".into(), |told| {
-        search(&task, seed, told)
-    })?;
+    let intervals = |design: &[f64]| sure::intervals(subject, (ground, &axle), plan, design);
+    let found = sure::design(&mut task, &axle, seed, plan.sure)?;
     let known = [found.design.clone()];
     let front = wanted[0].then(|| {
         let aims: Vec<(usize, Sense)> = plan.aims.iter().map(|aim| (aim.result, aim.sense)).collect();
@@ -168,7 +174,11 @@ pub(super) fn gather(
             front(&task, &aims, &known, settings, told)
         })
     });
+    let doubts = intervals(&found.design);
+    let sureness = sure::sureness(subject, plan, &task, &axle, &found.design);
     let space = if wanted[1] && found.met {
+        let mut task = task.clone();
+        sure::keep_away(&mut task, &axle, &found, plan.probability);
         let settings = SpaceSettings {
             probability: plan.probability,
             seed,
@@ -193,7 +203,14 @@ pub(super) fn gather(
         cost: found.cost,
         notices: subject.notes.clone(),
         parameters: parameters(plan, &found, space.as_ref()),
-        targets: targets(plan, &task, &found, space.as_ref()),
+        targets: targets(
+            (subject, plan),
+            &task,
+            &found,
+            space.as_ref(),
+            sureness.as_ref().zip(doubts),
+        ),
+        uncertainty: sureness,
         sensitivity: sensitivity(plan, &axle, &found),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
@@ -262,7 +279,18 @@ pub(super) fn design(plan: &Plan, answer: &Answer, subject: &Subject) -> Values 
     values
 }
 
-fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -> Vec<Target> {
+fn targets(
+    (subject, plan): (&Subject, &Plan),
+    task: &Task<'_>,
+    found: &Found,
+    space: Option<&Space>,
+    sure: Option<(&Sureness, Vec<Interval>)>,
+) -> Vec<Target> {
+    let places = plan.doubts.places(subject);
+    let names: Vec<String> = places
+        .iter()
+        .map(|&place| subject.model.about().parameters[place].name.to_string())
+        .collect();
     let today: Vec<f64> = plan.knobs.iter().map(|knob| knob.today).collect();
     let sum = |coupling: usize, design: &[f64]| {
         let factors = &plan.couplings[coupling].factors;
@@ -294,6 +322,11 @@ fn targets(plan: &Plan, task: &Task<'_>, found: &Found, space: Option<&Space>) -
             met: is_met(found.excess[at]),
             excess: found.excess[at],
             multiplier: found.multipliers[at],
+            doubt: sure
+                .as_ref()
+                .zip(plan.limits.get(at))
+                .map(|((_, intervals), limit)| doubted(values[1], &names, &intervals[limit.result])),
+            holds: sure.as_ref().map(|(sureness, _)| sureness.each[at]),
             in_space: space.map(|space| space.each[at]),
         }
     };

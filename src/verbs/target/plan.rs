@@ -6,6 +6,8 @@ mod knobs;
 mod couplings;
 // What must hold of metrics.
 mod limits;
+// What is not known.
+mod uncertainty;
 // What else is asked for: the front, and the solution space.
 mod questions;
 
@@ -18,6 +20,7 @@ use toml::Spanned;
 use super::file::{Amount, Meant, Read};
 use crate::failure::Failure;
 use crate::verbs::sensitivity::chosen;
+use crate::verbs::sensitivity::doubts::Doubts;
 use crate::verbs::sensitivity::refused;
 use crate::verbs::sensitivity::subject::Subject;
 use limits::Sought;
@@ -41,6 +44,9 @@ pub(super) struct Plan {
     pub probability: f64,
     pub cuts: Vec<[usize; 2]>,
     pub generations: usize,
+    pub doubts: Doubts,
+    /// With which probability each target is to hold at the design, where the file says one.
+    pub sure: Option<f64>,
 }
 
 /// A limit in words.
@@ -85,6 +91,7 @@ impl Plan {
         let sought = planner.sought();
         let fronts = planner.fronts();
         let (probability, cuts) = planner.space(&knobs);
+        let (doubts, sure) = planner.uncertainty();
         planner.finish(Some(()))?;
         let Planner { ground, .. } = &mut planner;
         let means = choose(ground, &sought, &fronts);
@@ -123,6 +130,8 @@ impl Plan {
             today,
             probability,
             cuts,
+            doubts,
+            sure,
             generations: read
                 .file
                 .front

@@ -8,8 +8,10 @@ use qcar_runtime::model::About;
 use qcar_runtime::response::parameters::Values;
 
 use super::gather::{Answer, FrontAnswer, SpaceAnswer, Target};
+use super::sure::Sureness;
 use crate::table::{Table, counted, noted, number, or_dash};
 use crate::units;
+use crate::verbs::sensitivity::render::reach;
 
 /// For people.
 pub(super) fn text(of: &Answer) -> String {
@@ -17,6 +19,7 @@ pub(super) fn text(of: &Answer) -> String {
     out += &noted(&of.notices);
     out += "\n";
     out += &verdict(of);
+    out += &of.uncertainty.as_ref().map_or(String::new(), sureness);
     out += "\n";
     out += &targets(of).text();
     out += "\n";
@@ -65,18 +68,31 @@ fn verdict(of: &Answer) -> String {
     out
 }
 
+/// How often the design meets its targets when parameters turn out as they may.
+fn sureness(of: &Sureness) -> String {
+    let words = of.parameters.0.iter().filter(|(_, names)| !names.is_empty());
+    let words: Vec<String> = words
+        .map(|(source, names)| format!("{source} ({})", names.join(", ")))
+        .collect();
+    let wanted = of.wanted.map_or(String::new(), |wanted| {
+        format!(" Each was to hold with {} %.", number(100.0 * wanted, 3))
+    });
+    format!(
+        "With what is not known of parameters, the design meets all that must hold in {} % of {} draws.{wanted} In doubt by {}.\n",
+        number(100.0 * of.all, 3),
+        of.draws,
+        words.join(", ")
+    )
+}
+
 fn targets(of: &Answer) -> Table {
-    let mut table = Table::new([
-        "target",
-        "run",
-        "limit",
-        "unit",
-        "today",
-        "design",
-        "met",
-        "multiplier",
-        "in space %",
-    ]);
+    let in_doubt = of.uncertainty.is_some();
+    let doubt: &[&str] = if in_doubt { &["± (95 %)", "holds %"] } else { &[] };
+    let headings = ["target", "run", "limit", "unit", "today", "design"]
+        .iter()
+        .chain(doubt);
+    let headings = headings.chain(&["met", "multiplier", "in space %"]);
+    let mut table = Table::with_headings(headings.map(|own| own.to_string()).collect());
     for own in &of.targets {
         let shown = |value: f64| number(units::value(value, &own.unit), 4);
         let sign = if own.sense == "at_most" { "≤" } else { "≥" };
@@ -86,17 +102,25 @@ fn targets(of: &Answer) -> Table {
             (false, None) => "no",
             (false, Some(_)) => "wish missed",
         };
-        table.row(vec![
+        let mut row = vec![
             own.metric.clone(),
             own.run.clone().unwrap_or_default(),
             format!("{sign} {}", shown(own.limit)),
             units::name(&own.unit).into(),
             shown(own.today),
             shown(own.design),
+        ];
+        if in_doubt {
+            let doubt = own.doubt.as_ref();
+            row.push(doubt.map_or("-".into(), |doubt| reach(own.design, doubt, &own.unit)));
+            row.push(or_dash(own.holds.map(|share| 100.0 * share), 3));
+        }
+        row.extend([
             met.into(),
             number(own.multiplier, 2),
             or_dash(own.in_space.map(|share| 100.0 * share), 3),
         ]);
+        table.row(row);
     }
     table
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use qcar_runtime::error::InputError;
 use rust_xlsxwriter::{Workbook, XlsxError};
 
-use super::gather::{Answer, FrontAnswer};
+use super::gather::{Answer, FrontAnswer, Target};
 use crate::files::put;
 use crate::spreadsheet::{Cell, filled, table};
 use crate::units;
@@ -38,6 +38,9 @@ fn targets(workbook: &mut Workbook, of: &Answer) -> Result<(), XlsxError> {
         "beyond_%",
         "multiplier",
         "in_space_%",
+        "lower_95_%",
+        "upper_95_%",
+        "holds_%",
     ];
     let rows = of.targets.iter().map(|own| {
         let shown = |value: f64| Cell::from(units::value(value, &own.unit));
@@ -53,9 +56,18 @@ fn targets(workbook: &mut Workbook, of: &Answer) -> Result<(), XlsxError> {
             Cell::from(100.0 * own.excess),
             Cell::from(own.multiplier),
             Cell::Number(own.in_space.map(|share| 100.0 * share)),
+            end(own, 0),
+            end(own, 1),
+            Cell::Number(own.holds.map(|share| 100.0 * share)),
         ]
     });
     table(workbook, "Targets", &headings.map(String::from), rows).map(drop)
+}
+
+/// An end of what the design's value may be.
+fn end(of: &Target, side: usize) -> Cell {
+    let ends = of.doubt.as_ref().map(|doubt| doubt.interval[side]);
+    Cell::Number(ends.map(|value| units::value(value, &of.unit)))
 }
 
 fn parameters(workbook: &mut Workbook, of: &Answer) -> Result<(), XlsxError> {

@@ -2,12 +2,12 @@
 
 use std::path::Path;
 
-use super::super::contents::{Recording, Road, Role, Run, Spacing, Sweep, Tap, Test};
+use super::super::contents::{Axis, Dynamometer, Recording, Road, Role, Run, Spacing, Sweep, Tap, Test};
 use super::super::fields::Section;
 use super::super::recorded::{self, Files};
 use super::super::tap;
 use super::sensors::Sensor;
-use super::{CURVE, DYNAMIC_CURVE};
+use super::{CURVE, DYNAMIC_CURVE, FORCES};
 use crate::spelling;
 
 /// What a run is read beside.
@@ -99,6 +99,7 @@ const KINDS: &[(&str, (ReadTest, &[&str]))] = &[
     ("longitudinal", (|_, _, _| Some(Test::Longitudinal), CURVE)),
     ("cleat", (cleat, &[])),
     ("time_history", (time_history, &[])),
+    ("dynamometer", (|section, _, _| dynamometer(section), FORCES)),
 ];
 
 fn sweep(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {
@@ -149,6 +150,24 @@ fn dynamic_bounce(section: &Section<'_>) -> Option<Test> {
         peak_velocity: peak_velocity?,
         amplitude: amplitude?,
     })
+}
+
+fn dynamometer(section: &Section<'_>) -> Option<Test> {
+    let (link, amplitude) = (section.text("link"), section.positive("amplitude", "m"));
+    let axis = match section.has("axis") {
+        true => section.choice("axis", Axis::NAMES),
+        false => Some(Axis::Z),
+    };
+    let uncertainty = section.has("uncertainty").then(|| section.positive("uncertainty", "N"));
+    Some(Test::Dynamometer(Dynamometer {
+        link: link?,
+        axis: axis?,
+        amplitude: amplitude?,
+        uncertainty: match uncertainty {
+            Some(stated) => Some(stated?),
+            None => None,
+        },
+    }))
 }
 
 fn cleat(section: &Section<'_>, known: &Known<'_>, file: Option<&String>) -> Option<Test> {

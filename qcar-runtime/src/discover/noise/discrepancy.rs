@@ -22,6 +22,7 @@ use std::mem::discriminant;
 
 use crate::campaign::Role;
 use crate::discover::observe::{Evidence, Kind};
+use crate::mean::mean;
 use crate::transmissibility::Point;
 use group::{Group, Key};
 use value::{Value, values};
@@ -83,6 +84,18 @@ impl Discrepancy {
             }
         }
         carried
+    }
+
+    /// The same with groups that are new here: of each as much as of the sensors beside it, on average.
+    pub fn expected_of(&self, evidence: &Evidence, role: Role) -> Self {
+        let mut expected = self.carried_to(evidence, role);
+        for group in &mut expected.groups {
+            let beside = || self.groups.iter().filter(|known| known.key.is_beside(&group.key));
+            if beside().all(|known| known.key != group.key) && beside().next().is_some() {
+                group.set(mean(beside().map(|known| known.tau)));
+            }
+        }
+        expected
     }
 
     /// Turns residuals of the data, in units of their noise, into independent ones of unit variance.

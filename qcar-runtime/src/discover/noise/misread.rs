@@ -92,7 +92,7 @@ impl Nuisance {
                 suspects(&series.sensor, 1.0).chain(input).collect()
             }
             (Kind::Time, _) => suspects(&series.sensor, 1.0).collect(),
-            (Kind::Harmonic(_) | Kind::Travel | Kind::Width | Kind::Cycle(_), _) => Vec::new(),
+            (Kind::Harmonic(_) | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_), _) => Vec::new(),
         }
     }
 }

@@ -92,7 +92,7 @@ impl Nuisance {
                 slopes
             }
             // Over a wide band the mean gain is what counts.
-            Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => {
+            Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => {
                 let own = self.coefficient(&series.sensor, Form::Gain(0));
                 own.into_iter()
                     .chain(self.suspected(&series.sensor, Form::Gain(0)))

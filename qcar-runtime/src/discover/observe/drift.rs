@@ -50,7 +50,7 @@ fn length(stimulus: &Stimulus) -> f64 {
         Stimulus::Sweep { time, .. } => time.iter().copied().fold(0.0, f64::max),
         Stimulus::History { inputs, rate, .. } => inputs.samples as f64 / rate,
         Stimulus::Cleat(passage) => passage.duration,
-        Stimulus::Travel { .. } | Stimulus::Sine { .. } => 0.0,
+        Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => 0.0,
     }
 }
 
@@ -70,7 +70,7 @@ fn moments(series: &Series, run: &Run) -> Vec<f64> {
     match series.kind {
         Kind::Harmonic(_) => series.at.iter().map(swept).collect(),
         Kind::Time | Kind::Passage => series.at.iter().map(|at| at - start).collect(),
-        Kind::Travel | Kind::Width | Kind::Cycle(_) => vec![0.0; series.at.len()],
+        Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => vec![0.0; series.at.len()],
     }
 }
 

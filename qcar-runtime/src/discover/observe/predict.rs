@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::dataset::Evidence;
 use super::prediction::{Free, Misread, PredictError, Prediction};
 use super::run::{Run, Stimulus};
-use super::{cleat, drift, kc, sweep, time_history};
+use super::{cleat, drift, dynamometer, kc, sweep, time_history};
 use crate::campaign::Role;
 use crate::model::Model;
 use crate::response::parameters::Values;
@@ -79,7 +79,7 @@ pub fn replayed(
     match &evidence.runs[run].stimulus {
         Stimulus::Sweep { .. } => sweep::replayed(model, values, evidence, run),
         Stimulus::History { .. } => time_history::replayed(model, values, misread, evidence, run),
-        Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => Ok(Vec::new()),
+        _ => Ok(Vec::new()),
     }
 }
 
@@ -118,5 +118,6 @@ fn of_unchanging(
             time_history::history(model, values, misread, (free, !free.is_empty()), evidence, run)
         }
         Stimulus::Travel { .. } | Stimulus::Sine { .. } => kc::travel(model, values, free, evidence, run),
+        Stimulus::Dynamometer { .. } => dynamometer::forces(model, values, free, evidence, run),
     }
 }

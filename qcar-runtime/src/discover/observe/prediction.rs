@@ -107,6 +107,21 @@ pub enum PredictError {
         /// The run's file.
         run: String,
     },
+    /// A link that was measured alone is none of the model, or cannot stand alone.
+    #[error(
+        "model `{model}` has no link `{link}` along {axis} that could stand on a dynamometer by itself; choose a model that has it, or \
+         leave {run} out"
+    )]
+    NoLink {
+        /// The model's name.
+        model: String,
+        /// The link.
+        link: String,
+        /// Its axis.
+        axis: &'static str,
+        /// The run's file.
+        run: String,
+    },
     /// The model cannot roll over the road.
     #[error("{run}: {reason}")]
     Ride {

@@ -48,6 +48,7 @@ impl Evidence {
                 peak_velocity,
                 amplitude,
             } => self.add_sine(campaign, about, run, (*amplitude, *peak_velocity)),
+            Test::Dynamometer(test) => self.add_dynamometer(campaign, about, run, test),
         }
     }
 }

@@ -30,7 +30,8 @@ pub struct Run {
     /// What it may be used for.
     pub role: Role,
     /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a
-    /// history's input, height (m) of an obstacle, largest travel (m) of a K&C cycle.
+    /// history's input, height (m) of an obstacle, largest travel (m) of a K&C cycle,
+    /// highest speed (m/s) of a dynamometer.
     pub level: f64,
     /// What drove it.
     pub stimulus: Stimulus,
@@ -95,6 +96,15 @@ pub enum Stimulus {
         /// Hz.
         frequency: f64,
     },
+    /// A dynamometer that moved a link alone, as sines of several peak velocities.
+    Dynamometer {
+        /// Its name in the model.
+        link: String,
+        /// The axis of the model along which it stands.
+        axis: Axis,
+        /// m.
+        amplitude: f64,
+    },
 }
 
 /// Signals of one record.
@@ -146,7 +156,7 @@ impl Stimulus {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),
             Stimulus::History { inputs, .. } => inputs.signals.first().map(|(sensor, _)| sensor),
-            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } => None,
+            Stimulus::Cleat(_) | Stimulus::Travel { .. } | Stimulus::Sine { .. } | Stimulus::Dynamometer { .. } => None,
         }
     }
 }

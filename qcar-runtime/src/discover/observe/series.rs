@@ -41,6 +41,8 @@ pub enum Kind {
     Travel,
     /// Half of what the force is larger at that travel while it grows than while it falls.
     Width,
+    /// Forces at a speed (m/s) of a link alone, both positive as it gets longer.
+    Speed,
     /// Forces at `order` times the frequency (Hz) of a sine of travel at which they stand, over its amplitude.
     Cycle(usize),
 }
@@ -58,7 +60,7 @@ impl Kind {
     pub fn complex(self) -> bool {
         match self {
             Kind::Harmonic(_) | Kind::Cycle(_) => true,
-            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width => false,
+            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed => false,
         }
     }
 
@@ -66,7 +68,7 @@ impl Kind {
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
-            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Cycle(_) => None,
+            Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => None,
         }
     }
 }

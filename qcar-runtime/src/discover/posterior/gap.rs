@@ -138,7 +138,7 @@ enum Scale {
 fn scale(series: &Series) -> Scale {
     match series.kind {
         Kind::Harmonic(_) | Kind::Cycle(_) => Scale::Octaves,
-        Kind::Time | Kind::Passage | Kind::Travel | Kind::Width => {
+        Kind::Time | Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed => {
             let (first, last) = (series.at[0], series.at[series.at.len() - 1]);
             Scale::Even(first, ((last - first) / PER_RECORD).max(f64::MIN_POSITIVE))
         }

@@ -7,7 +7,7 @@ use nalgebra::DMatrix;
 use super::prior::SIDE;
 use super::problem::Posterior;
 use super::refit::Refit;
-use crate::least_squares::information::Information;
+use crate::least_squares::information::{Information, Unseen};
 use crate::least_squares::{Outcome, Problem};
 
 impl Posterior<'_> {
@@ -28,6 +28,7 @@ impl Posterior<'_> {
             estimate: outcome.x[..count].to_vec(),
             covariance: spread(&information, 0..count),
             coefficient_stderr: self.coefficient_stderr(&information),
+            unseen: (0..count).map(|k| unseen(&information, k, count)).collect(),
             at_bound: outcome.at_bound[..count].to_vec(),
             free: self.free.clone(),
             coefficients: outcome.x[count..][..self.nuisance.len()].to_vec(),
@@ -73,6 +74,16 @@ impl Posterior<'_> {
             .cholesky()
             .map_or(f64::NAN, |own| own.l_dirty().diagonal().map(f64::ln).sum());
         -outcome.cost - discrepancy.cost() - determinant
+    }
+}
+
+/// Why one of the first `count` variables is not seen, by those among them.
+fn unseen(information: &Information, variable: usize, count: usize) -> Option<Unseen> {
+    match information.unseen(variable)? {
+        Unseen::Nowhere => Some(Unseen::Nowhere),
+        Unseen::Combination { with } => Some(Unseen::Combination {
+            with: with.iter().copied().filter(|&other| other < count).collect(),
+        }),
     }
 }
 

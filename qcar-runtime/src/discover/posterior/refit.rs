@@ -6,6 +6,7 @@ use crate::campaign::Role;
 use crate::discover::noise::{Beginning, Discrepancy, Nuisance};
 use crate::discover::observe::{Evidence, Free, Prediction};
 use crate::least_squares::Stop;
+use crate::least_squares::information::Unseen;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
 
@@ -22,6 +23,8 @@ pub struct Refit {
     pub estimate: Vec<f64>,
     /// Covariance of the free parameters, sensor errors allowed for; NaN for one at a bound or not seen.
     pub covariance: DMatrix<f64>,
+    /// Why a free parameter off its bounds is not seen by itself; places of others are those in `free`.
+    pub unseen: Vec<Option<Unseen>>,
     /// For each free parameter: -1 on its lower bound, 1 on its upper bound, 0 between.
     pub at_bound: Vec<i8>,
     /// The sensors.

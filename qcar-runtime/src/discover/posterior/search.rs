@@ -30,6 +30,14 @@ impl Posterior<'_> {
             step: 1e-6,
             evaluations,
         };
+        let bounds = self.bounds();
+        self.start = start.to_vec();
+        let outcome = minimize(self, start, &bounds, &options);
+        self.refused.take().map_or(Ok(outcome), Err)
+    }
+
+    /// Ranges of the parameters, and how far errors of sensors and factors of a side may be from their priors.
+    pub fn bounds(&self) -> Bounds {
         let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
         let sides = sides.iter().map(|sigma| MOST * sigma);
         // Beside a discrepancy a prior alone holds the errors of sensors.
@@ -37,13 +45,10 @@ impl Posterior<'_> {
         let priors: Vec<f64> = sensors.iter().map(|sigma| strained * sigma).chain(sides).collect();
         let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
         let upper = self.free.iter().map(|f| f.upper).chain(priors.iter().copied());
-        let bounds = Bounds {
+        Bounds {
             lower: lower.collect(),
             upper: upper.collect(),
-        };
-        self.start = start.to_vec();
-        let outcome = minimize(self, start, &bounds, &options);
-        self.refused.take().map_or(Ok(outcome), Err)
+        }
     }
 
     /// Searches and learns the discrepancy in turn.

@@ -11,6 +11,7 @@ function wanted(data) {
     ['limit', 'number'],
     ['today', 'number'],
     ['design', 'number'],
+    ...(data.uncertainty ? [['95 %', 'text'], ['holds', 'number']] : []),
     ['', 'text'],
     ['beyond the limit', 'number'],
     ['multiplier', 'number'],
@@ -23,6 +24,7 @@ function wanted(data) {
       `${own.sense === 'at_most' ? '≤' : '≥'} ${quantity(own.limit, own.unit)}`,
       h('span', { class: 'before' }, quantity(own.today, own.unit)),
       h('span', { class: 'after' }, quantity(own.design, own.unit)),
+      ...(data.uncertainty ? [interval(own), own.holds === null ? '–' : percent(own.holds, 3)] : []),
       judgedWord(own),
       signed(own.excess),
       number(own.multiplier, 2),
@@ -46,6 +48,7 @@ function wanted(data) {
         : '. A multiplier is the share that a target has in what stands in the way.',
     ),
     table('Targets', columns, data.targets.map(row)),
+    data.uncertainty ? h('p', {}, doubts(data.uncertainty)) : null,
   );
   return { element };
 }
@@ -53,4 +56,17 @@ function wanted(data) {
 function judgedWord(own) {
   if (own.met) return 'met';
   return own.wish === null ? h('strong', {}, 'missed') : 'wish missed';
+}
+
+function interval(own) {
+  return own.doubt ? own.doubt.interval.map((value) => quantity(value, own.unit)).join(' … ') : '–';
+}
+
+// What is not known of the parameters, and how often the design is good for it.
+function doubts({ all, draws, wanted, parameters }) {
+  const by = Object.entries(parameters)
+    .filter(([, names]) => names.length)
+    .map(([source, names]) => `${source} (${names.join(', ')})`);
+  const asked = wanted === null ? '' : ` Each target was to hold with ${percent(wanted, 3)}; beyond the limit counts the margin for that.`;
+  return `With what is not known of the parameters, the design meets all that must hold in ${percent(all, 3)} of ${draws} draws.${asked} In doubt by ${by.join(', ')}.`;
 }

@@ -1,6 +1,7 @@
 //! The fit of a nonlinear model as text and JSON.
 
 use qcar_runtime::discover::select::Minimum;
+use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Correlation, ParameterFit};
 use serde::Serialize;
 
@@ -20,6 +21,7 @@ struct Fitted<'a> {
     model: &'a str,
     parameters: Ordered<&'a ParameterFit>,
     all_correlations: Vec<Correlation>,
+    profiles: &'a [ParameterProfile],
     gap: Of<Option<f64>>,
     left: Vec<Left>,
     stopped: &'a str,
@@ -62,6 +64,7 @@ impl Nonlinear {
             model: &self.model,
             parameters: named.collect(),
             all_correlations: self.correlations(),
+            profiles: &self.profiles,
             gap: Of {
                 fit: finite(self.found.explanation.gap.fit),
                 held_out: finite(self.found.explanation.gap.held_out),
@@ -87,7 +90,7 @@ impl Nonlinear {
     }
 
     /// Of every two parameters that the runs see.
-    fn correlations(&self) -> Vec<Correlation> {
+    pub(crate) fn correlations(&self) -> Vec<Correlation> {
         let refit = &self.found.explanation.refit;
         let name = |k: usize| self.parameters[refit.free[k].parameter].name.clone();
         let seen = |k: &usize| self.parameters[refit.free[*k].parameter].stderr.is_some();
@@ -141,7 +144,15 @@ impl Nonlinear {
         for left in self.left() {
             table.row(vec![left.channel, left.kind.into(), number(left.percent, 3)]);
         }
-        format!("{out}\n{}\n{}", render::parameters(&self.parameters), table.text())
+        let profiles = match &self.profiles[..] {
+            [] => String::new(),
+            some => format!("\n{}", render::profiles(some)),
+        };
+        format!(
+            "{out}\n{}{profiles}\n{}",
+            render::parameters(&self.parameters),
+            table.text()
+        )
     }
 
     fn other_minima(&self) -> String {

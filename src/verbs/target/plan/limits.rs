@@ -128,6 +128,7 @@ impl<'a> Planner<'a, '_> {
                         sense,
                         value,
                         wish: target.wish.as_ref().map(|wish| *wish.get_ref()),
+                        margin: 0.0,
                     };
                     if let Some(other) = limits.iter().find(|other| contradict(other, &limit)) {
                         let of = run.as_ref().map_or(String::new(), |run| format!(" on {run}"));

@@ -37,7 +37,7 @@ fn places(series: &Series, numbers: &Numbers) -> Vec<f64> {
             let octaves = series.at.iter().map(|at| at.log2());
             return octaves.map(|at| at / numbers.correlation_octaves).collect();
         }
-        Kind::Travel | Kind::Width => (series.at[series.at.len() - 1] - series.at[0]) / 4.0,
+        Kind::Travel | Kind::Width | Kind::Speed => (series.at[series.at.len() - 1] - series.at[0]) / 4.0,
         Kind::Time | Kind::Passage => series.half_a_period(),
     };
     let distance = distance.max(f64::MIN_POSITIVE);
@@ -75,7 +75,7 @@ fn signal(evidence: &Evidence, series: &Series) -> Vec<f64> {
             }
             None => own,
         },
-        Kind::Time | Kind::Travel | Kind::Width => vec![rms(&own); own.len()],
+        Kind::Time | Kind::Travel | Kind::Width | Kind::Speed => vec![rms(&own); own.len()],
         Kind::Passage => {
             let around = |k: usize| rms(&own[k.saturating_sub(AROUND)..(k + AROUND + 1).min(own.len())]);
             (0..own.len()).map(around).collect()

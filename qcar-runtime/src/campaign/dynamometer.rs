@@ -1,0 +1,118 @@
+//! Tables of a link's force over its speed, as a dynamometer gives them.
+
+use std::path::{Path, PathBuf};
+
+use super::contents::{Campaign, Dynamometer, Run, Test};
+use super::curve::{other_kind, read};
+use super::manifest::{FORCES, UNCERTAINTY};
+use crate::error::{InputError, Place, Problem};
+
+/// Forces of a link at its speeds, all positive as it gets longer; one of each for each row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ForceTable {
+    /// Where it was read, to be named in errors.
+    pub file: PathBuf,
+    /// m/s, none of them zero.
+    pub velocity: Vec<f64>,
+    /// N.
+    pub force: Vec<f64>,
+    /// Standard deviation of each force, N, above zero.
+    pub uncertainty: Vec<f64>,
+}
+
+/// A force that pushes along with the motion by more than so many of its standard deviations, and by more than this part of the
+/// largest force, has the wrong sign: no damper does that.
+const PUSHES: f64 = 3.0;
+const NOTABLE: f64 = 0.05;
+
+impl Campaign {
+    /// Reads the table of a dynamometer.
+    ///
+    /// # Errors
+    /// Where `run` is none, its file holds anything but finite numbers, a speed is zero, a force pushes along with the motion, or
+    /// the uncertainty is stated nowhere, twice, or not above zero.
+    pub fn force_table(&self, run: &Run) -> Result<ForceTable, InputError> {
+        let file = self.folder.join(&run.file);
+        let Test::Dynamometer(test) = &run.test else {
+            return Err(other_kind(&file, "a dynamometer's table"));
+        };
+        let (velocity, force, each, lines) = match self.recorded(run) {
+            Some(recorded) => (recorded.column("velocity"), recorded.column("force"), None, None),
+            None => {
+                let mut table = read(&file, FORCES, UNCERTAINTY)?;
+                let has_each = table.names.iter().any(|name| name == UNCERTAINTY[0]);
+                let each = has_each.then(|| table.take(UNCERTAINTY[0]));
+                (table.take("velocity"), table.take("force"), each, Some(table.lines))
+            }
+        };
+        let read = ForceTable {
+            uncertainty: stated(test, each, velocity.len(), &file)?,
+            file,
+            velocity,
+            force,
+        };
+        let problems = read.problems(lines.as_deref());
+        InputError::unless_empty(problems, Some(read))
+    }
+}
+
+/// What the run says of all forces, or its file of each.
+fn stated(test: &Dynamometer, each: Option<Vec<f64>>, rows: usize, file: &Path) -> Result<Vec<f64>, InputError> {
+    let problem = |found: &str, remedy: &str| {
+        let expected = "the standard deviation of a force (N), in the run or in a column";
+        Problem::new(file, Place::Name("uncertainty".into()), found, expected, remedy)
+    };
+    match (test.uncertainty, each) {
+        (Some(all), None) => Ok(vec![all; rows]),
+        (None, Some(each)) => Ok(each),
+        (None, None) => Err(problem(
+            "no uncertainty",
+            "add `uncertainty = \"10 N\"` to the run, or a column `uncertainty` to the table",
+        )
+        .into()),
+        (Some(_), Some(_)) => Err(problem("an uncertainty in the run and a column of it", "remove one of them").into()),
+    }
+}
+
+impl ForceTable {
+    /// What is wrong with its rows, whose `lines` in the file are known of a plain table.
+    fn problems(&self, lines: Option<&[u64]>) -> Vec<Problem> {
+        let place = |row: usize, name: &str| match lines {
+            Some(lines) => Place::Cell(lines[row], name.into()),
+            None => Place::Name(name.into()),
+        };
+        let most = self.force.iter().fold(0.0, |most: f64, force| most.max(force.abs()));
+        let mut problems = Vec::new();
+        let mut turned = Vec::new();
+        for row in 0..self.velocity.len() {
+            let (velocity, force, uncertainty) = (self.velocity[row], self.force[row], self.uncertainty[row]);
+            let problem = |name, found: f64, expected, remedy| {
+                Problem::new(&self.file, place(row, name), format!("{found}"), expected, remedy)
+            };
+            if velocity == 0.0 {
+                let expected = "the speed with which the rod passes the middle of its travel, above or below zero";
+                problems.push(problem("velocity", velocity, expected, "remove the row"));
+            }
+            if uncertainty <= 0.0 {
+                let expected = "a standard deviation above zero (N)";
+                problems.push(problem("uncertainty", uncertainty, expected, "correct it"));
+            }
+            if force * velocity < 0.0 && force.abs() > (PUSHES * uncertainty).max(NOTABLE * most) {
+                turned.push(row);
+            }
+        }
+        if let Some(&row) = turned.first() {
+            let found = format!(
+                "a force of {} N at {} m/s, which pushes along with the motion, and {} such rows in all",
+                self.force[row],
+                self.velocity[row],
+                turned.len()
+            );
+            let expected =
+                "velocity and force both positive as the damper gets longer (rebound), both negative in compression";
+            let remedy = "turn one of the columns, such as by `force = { source = \"force\", unit = \"N\", sign = -1 }` in the run";
+            problems.push(Problem::new(&self.file, place(row, "force"), found, expected, remedy));
+        }
+        problems
+    }
+}

@@ -1,0 +1,108 @@
+//! Profile intervals of a fit by evidence: how far each parameter may be moved until the posterior of all others, maximised anew, has
+//! fallen too far to be chance.
+//!
+//! The rise of the cost is counted in units of what the fit's own standard error says near the maximum, as the
+//! [profiles](crate::fit::profile) of a linear fit are. What the range of the profiled parameter says beforehand is left out, so that an
+//! end is where the data put it.
+
+use super::problem::Posterior;
+use super::refit::Refit;
+use crate::campaign::Role;
+use crate::discover::observe::Evidence;
+use crate::fit::profile::{CHANCE, ParameterProfile, QUANTILE};
+use crate::least_squares::profile::{Profiled, profile};
+use crate::least_squares::{Options, Problem, minimize};
+use crate::model::Model;
+
+/// What each search for the other variables is held to.
+const OPTIONS: Options = Options {
+    gradient: 1e-5,
+    cost: 1e-6,
+    logarithm: 0.0,
+    step: 1e-6,
+    evaluations: 20,
+};
+/// The first step without a standard error, in parts of the range.
+const FIRST: f64 = 0.02;
+
+impl Refit {
+    /// What was fitted of the evidence: the runs that may be, less what the model shows beyond what a search predicts.
+    pub fn fitted_of(&self, evidence: &Evidence) -> Evidence {
+        let steady = evidence.less(&self.unsteady);
+        steady.only(|run| steady.runs[run].role == Role::Fit)
+    }
+
+    /// The profile of a free parameter, by its place among these, with the `model` that was fitted and what was
+    /// [fitted](Self::fitted_of).
+    pub fn profile(&self, model: &dyn Model, fitted: &Evidence, free: usize) -> ParameterProfile {
+        let mut posterior = Posterior::of(self, model, fitted);
+        let (start, bounds) = (posterior.place(self), posterior.bounds());
+        posterior.start.clone_from(&start);
+        let row = posterior.residuals + posterior.sigmas.len() + free;
+        let mut open = Open {
+            posterior,
+            row,
+            variable: free,
+        };
+        let minimum = minimize(&mut open, &start, &bounds, &OPTIONS);
+        let (error, variance) = (self.stderr()[free], self.covariance[(free, free)]);
+        let inflation = error * error / variance;
+        let unit = 0.5
+            * if inflation.is_finite() {
+                inflation
+            } else {
+                self.scatter()
+            };
+        let width = bounds.upper[free] - bounds.lower[free];
+        let of = Profiled {
+            variable: free,
+            rise: QUANTILE * unit,
+            step: if error.is_finite() {
+                error.min(width)
+            } else {
+                FIRST * width
+            },
+        };
+        let found = profile(&mut open, &minimum, &bounds, of, &OPTIONS);
+        let least = found.points.iter().min_by(|a, b| a[1].total_cmp(&b[1]));
+        let parameter = &model.about().parameters[self.free[free].parameter];
+        ParameterProfile {
+            name: parameter.name.to_string(),
+            unit: parameter.unit.to_string(),
+            value: minimum.x[free],
+            interval: found.ends,
+            lower_at: least.filter(|least| least[1] < -CHANCE * unit).map(|least| least[0]),
+            points: found.points.iter().map(|[value, rise]| [*value, rise / unit]).collect(),
+        }
+    }
+}
+
+/// A posterior without what is known beforehand of one parameter.
+struct Open<'a> {
+    posterior: Posterior<'a>,
+    /// Of its prior.
+    row: usize,
+    variable: usize,
+}
+
+impl Problem for Open<'_> {
+    fn variables(&self) -> usize {
+        self.posterior.variables()
+    }
+
+    fn residuals(&self) -> usize {
+        self.posterior.residuals()
+    }
+
+    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
+        self.posterior.evaluate(x, residual, jacobian);
+        jacobian[self.variable * residual.len() + self.row] = 0.0;
+        residual[self.row] = 0.0;
+    }
+
+    fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
+        let answered = self.posterior.evaluate_residual(x, residual);
+        residual[self.row] = 0.0;
+        answered
+    }
+}

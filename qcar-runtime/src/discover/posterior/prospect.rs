@@ -1,0 +1,117 @@
+//! What further measurements would say of the parameters of a fit by evidence: a D-optimal choice among sensors, runs, levels and
+//! dynamometers.
+//!
+//! The criterion is that of the [prospects](crate::fit::prospect) of a linear fit: the rise of the log determinant of the information about
+//! some parameters, all other unknowns being estimated, too. The information is that of the residuals of the fit, whitened by what the
+//! model misses; what is added is what the fitted model predicts, and a model that misses something of a sensor is taken to miss as much
+//! of others beside it.
+
+// What else could be measured.
+mod further;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::problem::Posterior;
+use super::refit::Refit;
+use crate::campaign::Role;
+use crate::discover::noise::Nuisance;
+use crate::discover::observe::{Evidence, PredictError};
+use crate::fit::prospect::{Prospect, Prospects};
+use crate::least_squares::Problem;
+use crate::least_squares::information::Information;
+use crate::model::Model;
+use crate::progress::{self, Told};
+
+/// What each further measurement would say of the parameters of a refit of `model`; `matter` are names of those that count, all where
+/// there are none. Measurement by measurement `told` hears how far it is.
+///
+/// # Errors
+/// Where the model says nothing of the evidence.
+pub fn prospects(
+    model: &dyn Model,
+    refit: &Refit,
+    evidence: &Evidence,
+    matter: &[String],
+    told: Told<'_>,
+) -> Result<Prospects, PredictError> {
+    let fitted = refit.fitted_of(evidence);
+    let name = |k: usize| &*model.about().parameters[refit.free[k].parameter].name;
+    let counts = |k: &usize| matter.is_empty() || matter.iter().any(|own| *own == name(*k));
+    let counted: Vec<usize> = (0..refit.free.len()).filter(counts).collect();
+    let now = Said::by(refit, model, &fitted, &counted)?;
+    let all = further::measurements(refit, model, &fitted)?;
+    let further = progress::map(&all, told, |own| {
+        let said = Said::by(refit, model, &own.evidence, &counted)?;
+        Ok(Prospect {
+            kind: own.kind,
+            what: own.what.clone(),
+            rise: said.information - now.information,
+            errors: said.errors,
+        })
+    });
+    let mut further = further.into_iter().collect::<Result<Vec<_>, PredictError>>()?;
+    further.retain(|own| own.rise.is_finite());
+    further.sort_by(|a, b| b.rise.total_cmp(&a.rise));
+    Ok(Prospects {
+        parameters: refit.free.iter().map(|free| free.parameter).collect(),
+        errors: now.errors,
+        further,
+    })
+}
+
+/// What evidence says of the parameters.
+struct Said {
+    /// Log determinant of the information about those that count, what is known beforehand included.
+    information: f64,
+    /// Standard errors as the fit prints them; `None` of what nothing determines, or rests on a bound.
+    errors: Vec<Option<f64>>,
+}
+
+impl Said {
+    fn by(refit: &Refit, model: &dyn Model, evidence: &Evidence, counted: &[usize]) -> Result<Self, PredictError> {
+        let mut nuisance = Nuisance::of(evidence).beginning(model.about(), evidence);
+        nuisance.without_offset.clone_from(&refit.nuisance.without_offset);
+        let mut posterior = Posterior::new(model, refit.values.clone(), &refit.free, evidence, nuisance);
+        let known = refit.discrepancy.as_ref();
+        posterior.discrepancy = known.map(|known| known.expected_of(evidence, Role::Fit));
+        posterior.by_evidence = posterior.discrepancy.is_some();
+        posterior.centre = refit.centre.clone();
+        // Sensors are right, and records begin as they are seen: that changes derivatives by as little as errors are small.
+        let mut place = refit.estimate.clone();
+        place.resize(posterior.variables(), 0.0);
+        posterior.start.clone_from(&place);
+        let mut residual = DVector::zeros(posterior.residuals());
+        let mut jacobian = DMatrix::zeros(posterior.residuals(), posterior.variables());
+        posterior.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
+        posterior.refused.take().map_or(Ok(()), Err)?;
+        let data = posterior.residuals + posterior.sigmas.len();
+        let is_inside = |k: usize| refit.at_bound.get(k).is_none_or(|side| *side == 0);
+        let inside: Vec<bool> = (0..posterior.variables()).map(is_inside).collect();
+        let information = Information::new(&jacobian.rows(0, data).into_owned(), &inside);
+        let error = |k: usize| {
+            let place = information.seen().iter().position(|&seen| seen == k)?;
+            let variance = refit.scatter() * information.inverse()[(place, place)];
+            Some((variance + (refit.made * refit.estimate[k]).powi(2)).sqrt())
+        };
+        Ok(Self {
+            errors: (0..refit.free.len()).map(error).collect(),
+            information: log_information(&jacobian, counted),
+        })
+    }
+}
+
+/// Log determinant of the information about some of the variables; not a number where there is none.
+fn log_information(jacobian: &DMatrix<f64>, counted: &[usize]) -> f64 {
+    let lengths = DVector::from_iterator(jacobian.ncols(), jacobian.column_iter().map(|column| column.norm()));
+    let mut scaled = jacobian.clone();
+    for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
+        column /= *length;
+    }
+    let Some(inverse) = scaled.tr_mul(&scaled).cholesky().map(|own| own.inverse()) else {
+        return f64::NAN;
+    };
+    let covariance = DMatrix::from_fn(counted.len(), counted.len(), |i, j| inverse[(counted[i], counted[j])]);
+    let determinant = covariance.cholesky();
+    let determinant = determinant.map_or(f64::NAN, |own| 2.0 * own.l_dirty().diagonal().map(f64::ln).sum());
+    2.0 * counted.iter().map(|&k| lengths[k].ln()).sum::<f64>() - determinant
+}

@@ -1,0 +1,230 @@
+//! What else could be measured: the evidence with a sensor, a run, more drive or a dynamometer added.
+
+use nalgebra::Complex;
+
+use crate::campaign::{Axis, Quantity, Role};
+use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Run, Series, Stimulus, predict_sides};
+use crate::discover::posterior::Refit;
+use crate::fit::prospect::Kind as Added;
+use crate::mean::rms;
+use crate::model::{Link, Model, Output, SignalKind};
+use crate::transmissibility::Point;
+
+/// Evidence to which something was added.
+pub struct Measurement {
+    pub kind: Added,
+    /// In words.
+    pub what: String,
+    pub evidence: Evidence,
+}
+
+/// Peak velocities (m/s) of the sines of a dynamometer, half their stroke (m), and the uncertainty of a force in parts of their RMS value.
+const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
+const AMPLITUDE: f64 = 0.05;
+const UNCERTAINTY: f64 = 0.01;
+/// A stroke that tells how far a law remembers.
+const SHORTER: f64 = 0.1;
+
+/// All that could be added to what was fitted.
+///
+/// # Errors
+/// Where the model says nothing of it.
+pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Result<Vec<Measurement>, PredictError> {
+    let mut found = Vec::new();
+    for run in 0..fitted.runs.len() {
+        let name = &fitted.runs[run].name;
+        found.push((Added::Repeat, format!("{name} once more"), again(fitted, run, 1.0)));
+        if is_steady(&fitted.runs[run].stimulus) {
+            let what = format!("{name} once more at twice its level");
+            found.push((Added::Level, what, again(fitted, run, 2.0)));
+        }
+    }
+    for (run, own) in fitted.runs.iter().enumerate() {
+        if let Stimulus::Dynamometer { link, axis, .. } = &own.stimulus
+            && remembers(model, link, *axis)
+        {
+            let what = format!("{} once more with a tenth of its stroke", own.name);
+            found.push((Added::Level, what, shorter(fitted, run)));
+        }
+    }
+    for output in model.about().outputs.iter() {
+        let added = with_sensor(fitted, output).map(|(what, evidence)| (Added::Sensor, what, evidence));
+        found.extend(added.filter(|(_, what, _)| found.iter().all(|(_, other, _)| other != what)));
+    }
+    for (place, link) in model.about().links.iter().enumerate() {
+        if model.alone(place).is_some() && says_something(refit, link) && !is_measured(fitted, link) {
+            let what = format!("a dynamometer's table of {}", link.name);
+            found.push((Added::Dynamometer, what, with_dynamometer(fitted, link)));
+        }
+    }
+    let expected = |(kind, what, evidence): (Added, String, Evidence)| {
+        Ok(Measurement {
+            kind,
+            what,
+            evidence: expected(refit, model, fitted, evidence)?,
+        })
+    };
+    found.into_iter().map(expected).collect()
+}
+
+/// True of a run whose prediction is of a steady sine, and so can be asked for at any level.
+fn is_steady(stimulus: &Stimulus) -> bool {
+    matches!(stimulus, Stimulus::Sweep { .. } | Stimulus::Sine { .. })
+}
+
+/// With a run once more, driven so many times as hard: its noise stays what it is, and ratios to the drive have less of it.
+fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
+    let mut more = fitted.clone();
+    let own = &fitted.runs[run];
+    let mut added = Run {
+        name: format!("{} again", own.name),
+        level: own.level * times,
+        ..own.clone()
+    };
+    if let Stimulus::Sweep { signal, amplitude, .. } = &mut added.stimulus {
+        signal.iter_mut().chain(amplitude).for_each(|value| *value *= times);
+    }
+    let place = more.runs.len();
+    let repeated = fitted.series.iter().filter(|series| series.run == run);
+    more.series.extend(repeated.map(|series| Series {
+        run: place,
+        sigma: series.sigma.iter().map(|sigma| sigma / times).collect(),
+        noise: series.noise.iter().map(|noise| noise / times).collect(),
+        ..series.clone()
+    }));
+    more.runs.push(added);
+    more
+}
+
+/// Whether the law of a link has inner states, so that its force depends on how far it has come.
+fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
+    let links = model.about().links.iter();
+    let place = links
+        .clone()
+        .position(|own| own.name == link && own.axis == axis.name());
+    let alone = place.and_then(|place| model.alone(place));
+    alone.is_some_and(|alone| !alone.about().states.is_empty())
+}
+
+/// With the table of a dynamometer once more, driven at the same speeds with shorter strokes.
+fn shorter(fitted: &Evidence, run: usize) -> Evidence {
+    let mut more = again(fitted, run, 1.0);
+    if let Some(Stimulus::Dynamometer { amplitude, .. }) = more.runs.last_mut().map(|run| &mut run.stimulus) {
+        *amplitude *= SHORTER;
+    }
+    more
+}
+
+/// With a sensor at an output, in every sweep and record that has sensors along its axis and none there; as noisy as those of its kind
+/// in the same run. None where no run is without.
+fn with_sensor(fitted: &Evidence, output: &Output) -> Option<(String, Evidence)> {
+    let signal = &output.signal;
+    let (quantity, word) = match signal.kind {
+        SignalKind::Motion(_) => (Quantity::Acceleration, "acceleration"),
+        SignalKind::Force => (Quantity::Force, "force"),
+        SignalKind::Stretch => (Quantity::Displacement, "stretch"),
+    };
+    let axis = [Axis::Z, Axis::X].into_iter().find(|axis| axis.name() == signal.axis)?;
+    let sensor = Point::new(&signal.location, axis, quantity);
+    let mut more = fitted.clone();
+    for (run, own) in fitted.runs.iter().enumerate() {
+        if !matches!(own.stimulus, Stimulus::Sweep { .. } | Stimulus::History { .. }) {
+            continue;
+        }
+        let there = || {
+            fitted
+                .series
+                .iter()
+                .filter(|series| series.run == run && series.sensor.axis == axis)
+        };
+        if there().any(|series| series.sensor.location == sensor.location && series.sensor.quantity == quantity) {
+            continue;
+        }
+        let like = there()
+            .find(|series| series.sensor.quantity == quantity)
+            .or(there().next());
+        let Some(like) = like.map(|series| &series.sensor) else {
+            continue;
+        };
+        more.series
+            .extend(there().filter(|series| series.sensor == *like).map(|series| Series {
+                sensor: sensor.clone(),
+                ..series.clone()
+            }));
+    }
+    let what = format!("{word} of {} along {}", signal.location, signal.axis);
+    (more.series.len() > fitted.series.len()).then_some((what, more))
+}
+
+/// Whether the law of a link has a parameter that was fitted.
+fn says_something(refit: &Refit, link: &Link) -> bool {
+    let mut free = refit.free.iter();
+    free.any(|free| link.parameters.iter().any(|&own| usize::from(own) == free.parameter))
+}
+
+fn is_measured(fitted: &Evidence, link: &Link) -> bool {
+    fitted.runs.iter().any(|run| match &run.stimulus {
+        Stimulus::Dynamometer { link: own, axis, .. } => *own == link.name && axis.name() == link.axis,
+        _ => false,
+    })
+}
+
+fn with_dynamometer(fitted: &Evidence, link: &Link) -> Evidence {
+    let axis = if link.axis == Axis::X.name() { Axis::X } else { Axis::Z };
+    let out = SPEEDS.iter().copied();
+    let speeds: Vec<f64> = out.clone().rev().map(|speed| -speed).chain(out).collect();
+    let mut more = fitted.clone();
+    more.series.push(Series {
+        run: more.runs.len(),
+        sensor: Point::new(&format!("{}_on_dynamometer", link.name), axis, Quantity::Force),
+        kind: Kind::Speed,
+        value: vec![Complex::ONE; speeds.len()],
+        sigma: vec![UNCERTAINTY; speeds.len()],
+        noise: vec![UNCERTAINTY; speeds.len()],
+        at: speeds,
+        least_discrepancy: 0.0,
+    });
+    more.runs.push(Run {
+        name: format!("{} on a dynamometer", link.name),
+        role: Role::Fit,
+        level: SPEEDS[SPEEDS.len() - 1],
+        stimulus: Stimulus::Dynamometer {
+            link: link.name.to_string(),
+            axis,
+            amplitude: AMPLITUDE,
+        },
+    });
+    more
+}
+
+/// With what the fitted model predicts of all that is new.
+fn expected(refit: &Refit, model: &dyn Model, fitted: &Evidence, mut more: Evidence) -> Result<Evidence, PredictError> {
+    let new: Vec<usize> = more.series[fitted.series.len()..]
+        .iter()
+        .map(|series| series.run)
+        .collect();
+    let names: Vec<String> = new.iter().map(|&run| more.runs[run].name.clone()).collect();
+    let wanted = |run: &Run| names.contains(&run.name);
+    let sides = [&refit.values, &refit.side];
+    let predicted = predict_sides(model, sides, &Misread::default(), &[], &more, &wanted)?;
+    for own in predicted.into_iter().filter(|own| own.series >= fitted.series.len()) {
+        let series = &mut more.series[own.series];
+        let size = |values: &[Complex<f64>]| rms(values.iter().map(|value| value.norm()));
+        let (before, after) = (size(&series.value), size(&own.value));
+        let same = fitted
+            .series
+            .iter()
+            .any(|other| other.run == series.run && other.sensor.quantity == series.sensor.quantity);
+        // Of another quantity than those that there are, a sensor has their relative noise.
+        if series.run < fitted.runs.len() && !same || series.kind == Kind::Speed {
+            let times = after / before.max(f64::MIN_POSITIVE);
+            series
+                .sigma
+                .iter_mut()
+                .chain(&mut series.noise)
+                .for_each(|sigma| *sigma *= times);
+        }
+        series.value = own.value;
+    }
+    Ok(more)
+}

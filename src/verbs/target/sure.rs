@@ -1,0 +1,137 @@
+//! How sure the results of a design are, and how often it meets its targets when all turns out as it may.
+
+use qcar_runtime::metric::Ground;
+use qcar_runtime::sensitivity::{Interval, Source, direction};
+use qcar_runtime::target::{Axle, Designs, Found, Task, is_met, search};
+use rayon::prelude::*;
+use serde::Serialize;
+
+use super::plan::Plan;
+use crate::json::Ordered;
+use crate::progress::while_counting;
+use crate::verbs::sensitivity::subject::Subject;
+
+/// Draws that say how often targets hold.
+const DRAWS: usize = 200;
+/// The design and the margins of its limits are found in turn, so often at most, until margins change by less than this part.
+const TURNS: usize = 4;
+const SETTLED: f64 = 0.02;
+
+/// What is not known of the parameters, and what that means for the design.
+#[derive(Serialize)]
+pub(super) struct Sureness {
+    /// With which probability each target was to hold, where the file says one.
+    pub wanted: Option<f64>,
+    /// The share of draws in which all targets hold that must.
+    pub all: f64,
+    pub draws: usize,
+    /// In doubt, by source.
+    pub parameters: Ordered<Vec<String>>,
+    /// Of each limit the share of draws in which it holds.
+    #[serde(skip)]
+    pub each: Vec<f64>,
+}
+
+/// The results of a design with what is not known of them; none where nothing is in doubt.
+pub(super) fn intervals(
+    subject: &Subject,
+    (ground, axle): (&Ground<'_>, &Axle<'_>),
+    plan: &Plan,
+    design: &[f64],
+) -> Option<Vec<Interval>> {
+    let places = plan.doubts.places(subject);
+    let doubt = plan.doubts.doubt(subject, &places)?;
+    let values = axle.values_of(design);
+    let directions: Vec<Vec<f64>> = places.iter().map(|&place| direction(&values, place)).collect();
+    let found = ground.measure_with(&values, &directions).ok()?;
+    Some(found.slopes.iter().map(|slopes| doubt.of(slopes)).collect())
+}
+
+/// The design of least cost whose targets each hold with a probability: the margins of limits are those that draws about the last design
+/// need, and so on (after Du and Chen, J. Mech. Des. 126, 2004, who find them to first order).
+pub(super) fn design(task: &mut Task<'_>, axle: &Axle<'_>, seed: u64, probability: Option<f64>) -> Option<Found> {
+    let searched =
+        |task: &Task<'_>| while_counting("the design of least cost: step".into(), |told| search(task, seed, told));
+    let mut found = searched(task)?;
+    let Some(probability) = probability else {
+        return Some(found);
+    };
+    for _ in 0..TURNS {
+        if !keep_away(task, axle, &found, probability) {
+            break;
+        }
+        found = searched(task)?;
+    }
+    Some(found)
+}
+
+/// Gives each limit the margin with which it holds with a probability about a design; false where that changes little.
+pub(super) fn keep_away(task: &mut Task<'_>, axle: &Axle<'_>, about: &Found, probability: f64) -> bool {
+    if axle.is_certain() {
+        return false;
+    }
+    let drawn = draws(axle, &about.design, 0);
+    let last = ((probability * DRAWS as f64).ceil() as usize).min(DRAWS) - 1;
+    let mut changes = false;
+    for limit in task.limits.iter_mut().filter(|limit| limit.wish.is_none()) {
+        let worse = |own: &Option<Vec<f64>>| match own {
+            Some(own) => limit.sign() * (own[limit.result] - about.values[limit.result]),
+            None => f64::INFINITY,
+        };
+        let mut worse: Vec<f64> = drawn.iter().map(worse).collect();
+        worse.sort_by(f64::total_cmp);
+        let margin = worse[last].max(0.0);
+        changes |= (margin - limit.margin).abs() > SETTLED * margin;
+        limit.margin = margin;
+    }
+    changes
+}
+
+/// Results of a design as they may turn out, from the draw of a number on.
+fn draws(axle: &Axle<'_>, design: &[f64], first: u64) -> Vec<Option<Vec<f64>>> {
+    let numbers = (0..DRAWS as u64).into_par_iter();
+    numbers.map(|number| axle.drawn(design, first + number)).collect()
+}
+
+/// How often targets hold at a design.
+pub(super) fn sureness(
+    subject: &Subject,
+    plan: &Plan,
+    task: &Task<'_>,
+    axle: &Axle<'_>,
+    design: &[f64],
+) -> Option<Sureness> {
+    if axle.is_certain() {
+        return None;
+    }
+    let real = task.without_margins();
+    let excess = |values: Option<Vec<f64>>| Some(real.excesses(design, &values?));
+    // Others than those that the margins are of.
+    let drawn: Vec<_> = draws(axle, design, DRAWS as u64).into_iter().map(excess).collect();
+    let share = |holds: &dyn Fn(&Vec<f64>) -> bool| {
+        drawn.iter().filter(|own| own.as_ref().is_some_and(holds)).count() as f64 / DRAWS as f64
+    };
+    Some(Sureness {
+        wanted: plan.sure,
+        all: share(&|excess| real.holds(excess)),
+        draws: DRAWS,
+        parameters: sources(subject, plan),
+        each: (0..plan.wanted.len())
+            .map(|at| share(&|excess| is_met(excess[at])))
+            .collect(),
+    })
+}
+
+fn sources(subject: &Subject, plan: &Plan) -> Ordered<Vec<String>> {
+    let doubts = &plan.doubts;
+    let name = |place: usize| subject.model.about().parameters[place].name.to_string();
+    let fitted = doubts.fitted(subject).into_iter().map(name).collect();
+    let tolerances = doubts.tolerances.keys().map(|&place| name(place)).collect();
+    let per_kelvin = doubts.per_kelvin.keys().map(|&place| name(place)).collect();
+    let lists: [Vec<String>; 3] = [fitted, tolerances, per_kelvin];
+    Source::ALL
+        .iter()
+        .map(|source| source.name().to_string())
+        .zip(lists)
+        .collect()
+}
