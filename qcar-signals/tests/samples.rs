@@ -95,7 +95,7 @@ fn agree_in_channel(file: &str, channel: &Json, recording: &Recording) {
     if channel["last"].is_string() {
         agree_in_labels(&what, channel, signal);
     } else {
-        agree_in_numbers(&what, channel, &signal.samples);
+        agree_in_numbers(&what, channel, &signal.samples.to_vec());
     }
     if let Some(invalid) = channel["invalid_samples"].as_array() {
         let missing = signal.samples.iter().enumerate().filter(|(_, value)| value.is_nan());
@@ -137,7 +137,7 @@ fn agree_in_time(what: &str, channel: &Json, signal: &Signal) {
 
 fn agree_in_labels(what: &str, channel: &Json, signal: &Signal) {
     let label = |value: f64| &signal.labels.iter().find(|(code, _)| *code == value).unwrap().1;
-    let first: Vec<_> = signal.samples[..3].iter().map(|&value| label(value).as_str()).collect();
+    let first: Vec<_> = signal.samples.range(0..3).map(|value| label(value).as_str()).collect();
     let expected: Vec<_> = channel["first3"]
         .as_array()
         .unwrap()
@@ -146,7 +146,7 @@ fn agree_in_labels(what: &str, channel: &Json, signal: &Signal) {
         .collect();
     assert_eq!(first, expected, "{what}");
     assert_eq!(
-        label(*signal.samples.last().unwrap()),
+        label(signal.samples.iter().next_back().unwrap()),
         channel["last"].as_str().unwrap(),
         "{what}"
     );

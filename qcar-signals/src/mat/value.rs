@@ -1,6 +1,8 @@
 //! What a variable of a MAT-file is, however the file stores it.
 
 use crate::error::Place;
+use crate::find::Wanted;
+use crate::units::is_time;
 
 /// A variable with its name.
 pub(super) struct Variable {
@@ -25,7 +27,14 @@ pub(super) enum Value {
 #[derive(Clone, Debug)]
 pub(super) struct Array {
     pub(super) dimensions: Vec<u64>,
+    /// None where it was not read.
     pub(super) numbers: Vec<f64>,
+}
+
+/// Whether the numbers of a variable are to be read: those of a wanted channel, what may be its times, and a single value.
+pub(super) fn is_read(variable: &str, dimensions: &[u64], wanted: &Wanted) -> bool {
+    let single = dimensions.iter().all(|&size| size == 1);
+    single || is_time(variable) || wanted.has("", variable) || wanted.may_begin(&format!("{variable}["))
 }
 
 pub(super) type Fields = Vec<(String, Value)>;
@@ -91,6 +100,20 @@ impl Value {
 }
 
 impl Array {
+    /// One whose numbers are not read.
+    pub(super) fn unread(dimensions: Vec<u64>) -> Self {
+        Array {
+            dimensions,
+            numbers: Vec::new(),
+        }
+    }
+
+    /// How many numbers it has, whether they were read or not.
+    pub(super) fn len(&self) -> usize {
+        let all = self.dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
+        all.map_or(usize::MAX, |all| all as usize)
+    }
+
     pub(super) fn is_vector(&self) -> bool {
         self.dimensions.iter().filter(|&&size| size != 1).count() <= 1
     }
