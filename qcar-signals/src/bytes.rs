@@ -69,7 +69,11 @@ impl<'a> Bytes<'a> {
         }
         let there = self.length.saturating_sub(at);
         let found = format!("{there} bytes to the end");
-        Err(Fault::cut_off(self.place(at), found, format!("{count} bytes of {what}")))
+        Err(Fault::cut_off(
+            self.place(at),
+            found,
+            format!("{count} bytes of {what}"),
+        ))
     }
 
     fn unreadable(&self, at: u64, what: &str) -> impl FnOnce(io::Error) -> Box<Fault> {

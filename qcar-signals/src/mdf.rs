@@ -197,7 +197,8 @@ fn add_group(
     }
     let is_wanted = |channel: &Channel| channel.role == Role::Values && wanted.has(group, &channel.name);
     let is_any = channels.iter().any(is_wanted);
-    let is_read = |channel: &Channel| is_wanted(channel) || (is_any && channel.role == Role::Time && !channel.is_even());
+    let is_read =
+        |channel: &Channel| is_wanted(channel) || (is_any && channel.role == Role::Time && !channel.is_even());
     let readable = |channel: &Channel| channel.field.is_ok() && channel.conversion.is_ok();
     let fields = channels
         .iter()
@@ -256,7 +257,10 @@ fn add_group(
 impl Channel {
     /// Whether its values are no part of a record but follow from the number of it.
     fn is_even(&self) -> bool {
-        matches!((&self.field, &self.conversion), (Ok(Field::Index), Ok(Conversion::Linear { .. })))
+        matches!(
+            (&self.field, &self.conversion),
+            (Ok(Field::Index), Ok(Conversion::Linear { .. }))
+        )
     }
 }
 

@@ -33,7 +33,10 @@ pub fn read(file: &Path) -> Result<Recording, ReadError> {
             return channels(&content, &Wanted::All);
         }
         let packed = content.take(0, content.length()).map_err(|error| unreadable(&error))?;
-        channels(&Content::of_bytes(whole(unpacked(&packed[..]), packed.len())?), &Wanted::All)
+        channels(
+            &Content::of_bytes(whole(unpacked(&packed[..]), packed.len())?),
+            &Wanted::All,
+        )
     });
     recognised.map_err(|fault| ReadError {
         file: file.into(),

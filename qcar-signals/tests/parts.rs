@@ -13,10 +13,16 @@ fn files() -> Vec<PathBuf> {
     let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/samples");
     let elsewhere = std::env::var_os("QCAR_FORMAT_SAMPLES").map(PathBuf::from);
     let samples = [Some(own), elsewhere].into_iter().flatten();
-    let folders = samples.flat_map(|folder| fs::read_dir(folder).unwrap()).map(|entry| entry.unwrap().path());
-    let files = folders.filter(|path| path.is_dir()).flat_map(|folder| fs::read_dir(folder).unwrap());
+    let folders = samples
+        .flat_map(|folder| fs::read_dir(folder).unwrap())
+        .map(|entry| entry.unwrap().path());
+    let files = folders
+        .filter(|path| path.is_dir())
+        .flat_map(|folder| fs::read_dir(folder).unwrap());
     let files = files.map(|entry| entry.unwrap().path());
-    files.filter(|path| path.extension().is_none_or(|end| end != "gz")).collect()
+    files
+        .filter(|path| path.extension().is_none_or(|end| end != "gz"))
+        .collect()
 }
 
 fn on_disk(file: &Path, wanted: &Wanted<'_>) -> Recording {
@@ -39,13 +45,23 @@ fn bits(signal: &Signal) -> (Vec<u64>, Option<Vec<u64>>) {
 fn what_is_read_from_the_disk_is_what_is_read_from_memory() {
     let mut read = 0;
     for file in files() {
-        let Ok(memory) = recognise(&fs::read(&file).unwrap()) else { continue };
+        let Ok(memory) = recognise(&fs::read(&file).unwrap()) else {
+            continue;
+        };
         let disk = on_disk(&file, &Wanted::All);
-        let about = |recording: &Recording| format!("{} {:?} {:?}", recording.format, recording.scalars, recording.passed_over);
+        let about = |recording: &Recording| {
+            format!(
+                "{} {:?} {:?}",
+                recording.format, recording.scalars, recording.passed_over
+            )
+        };
         assert_eq!(about(&disk), about(&memory), "{}", file.display());
         assert_eq!(disk.signals.len(), memory.signals.len());
         for (a, b) in disk.signals.iter().zip(&memory.signals) {
-            assert_eq!((&a.name, &a.unit, &a.source, &a.labels), (&b.name, &b.unit, &b.source, &b.labels));
+            assert_eq!(
+                (&a.name, &a.unit, &a.source, &a.labels),
+                (&b.name, &b.unit, &b.source, &b.labels)
+            );
             assert_eq!(bits(a), bits(b), "{}, {}", file.display(), a.name);
         }
         read += 1;
@@ -57,12 +73,16 @@ fn what_is_read_from_the_disk_is_what_is_read_from_memory() {
 fn a_channel_that_is_read_alone_has_the_same_samples_and_times() {
     let mut alone = 0;
     for file in files() {
-        let Ok(all) = recognise(&fs::read(&file).unwrap()) else { continue };
+        let Ok(all) = recognise(&fs::read(&file).unwrap()) else {
+            continue;
+        };
         for signal in all.signals.iter().take(4).chain(all.signals.last()) {
             let name = [signal.full_name()];
             let Ok(expected) = all.find(&name[0]) else { continue };
             let recording = on_disk(&file, &Wanted::These(&name));
-            let own = recording.find(&name[0]).unwrap_or_else(|fault| panic!("{}: {fault}", file.display()));
+            let own = recording
+                .find(&name[0])
+                .unwrap_or_else(|fault| panic!("{}: {fault}", file.display()));
             assert_eq!(bits(own), bits(expected), "{}, {}", file.display(), name[0]);
             alone += 1;
         }
@@ -75,14 +95,24 @@ fn a_channel_that_is_read_alone_has_the_same_samples_and_times() {
 fn what_is_not_wanted_is_listed_without_samples() {
     let nobody = ["no channel is called so".to_string()];
     for end in ["mf4", "mdf", "rsp", "drv", "rpc", "tim", "tdms", "mat"] {
-        let of_kind = || files().into_iter().filter(|file| file.extension().is_some_and(|own| own == end));
+        let of_kind = || {
+            files()
+                .into_iter()
+                .filter(|file| file.extension().is_some_and(|own| own == end))
+        };
         assert!(of_kind().count() > 0, "no sample ends in .{end}");
         for file in of_kind() {
-            let Ok(all) = recognise(&fs::read(&file).unwrap()) else { continue };
+            let Ok(all) = recognise(&fs::read(&file).unwrap()) else {
+                continue;
+            };
             let none = on_disk(&file, &Wanted::These(&nobody));
             let matlab = end == "mat";
             assert!(matlab || none.signals.len() == all.signals.len(), "{}", file.display());
-            assert!(none.signals.iter().all(|signal| signal.samples.is_empty()), "{}", file.display());
+            assert!(
+                none.signals.iter().all(|signal| signal.samples.is_empty()),
+                "{}",
+                file.display()
+            );
         }
     }
 }

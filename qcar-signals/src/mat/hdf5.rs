@@ -26,7 +26,10 @@ const DEEPEST: usize = 16;
 pub(super) fn superblock(file: &Bytes) -> Option<u64> {
     let places = std::iter::once(0).chain((9..24).map(|power| 1 << power));
     let mut places = places.take_while(|&at| at < file.len());
-    let stands_at = |at: u64| file.part(at, file.len() - at, "a superblock").is_ok_and(|rest| rest.starts_with(SIGNATURE));
+    let stands_at = |at: u64| {
+        file.part(at, file.len() - at, "a superblock")
+            .is_ok_and(|rest| rest.starts_with(SIGNATURE))
+    };
     places.find(|&at| stands_at(at))
 }
 
@@ -49,7 +52,9 @@ pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Vari
     for (name, address) in reader.members(&header)? {
         // Names of MATLAB's own begin with #.
         if !name.starts_with('#') {
-            let value = reader.variable(&name, address, wanted).map_err(|fault| fault.of(&name))?;
+            let value = reader
+                .variable(&name, address, wanted)
+                .map_err(|fault| fault.of(&name))?;
             variables.push(Variable {
                 name,
                 value,

@@ -105,13 +105,7 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
 
 /// `X`, of which an element holds the times, and `Y`, each element a channel with `Name`, `Data` and `Unit`; `XIndex` says
 /// which element of `X` is meant, from 1.
-fn dspace(
-    recording: &mut Recording,
-    variable: &str,
-    mut value: Value,
-    place: &Place,
-    wanted: &Wanted,
-) -> Read<()> {
+fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &Place, wanted: &Wanted) -> Read<()> {
     let mut elements = |name: &str| value.take(name).map(Value::into_elements).unwrap_or_default();
     let times = elements("X")
         .iter()
@@ -132,7 +126,11 @@ fn dspace(
             let found = format!("{} samples at {} times", samples.len(), times.len());
             return Err(Fault::damaged(place.clone(), found, "as many samples as times").of(&name));
         }
-        let samples = if wanted.has(variable, &name) { samples } else { Vec::new() };
+        let samples = if wanted.has(variable, &name) {
+            samples
+        } else {
+            Vec::new()
+        };
         recording.signals.push(Signal {
             name,
             unit: channel.text(&["Unit"]).unwrap_or("").into(),

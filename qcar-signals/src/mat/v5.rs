@@ -143,7 +143,9 @@ fn matrix(data: &Bytes, depth: usize, wanted: &Wanted) -> Read<(String, Value)> 
         2 => structs(data, at, depth).map(Value::Structs),
         4 => element(data, at).and_then(|element| Ok(Value::Text(characters(&element)?))),
         6..=15 if complex => Ok(Value::Other("complex numbers")),
-        6..=15 if depth == DEEPEST && !is_read(&name, &dimensions, wanted) => Ok(Value::Numbers(Array::unread(dimensions))),
+        6..=15 if depth == DEEPEST && !is_read(&name, &dimensions, wanted) => {
+            Ok(Value::Numbers(Array::unread(dimensions)))
+        }
         6..=15 => numbers(data, at, dimensions).map(Value::Numbers),
         3 => Ok(Value::Other("an object")),
         5 => Ok(Value::Other("a sparse matrix")),

@@ -110,7 +110,10 @@ impl Array {
 
     /// How many numbers it has, whether they were read or not.
     pub(super) fn len(&self) -> usize {
-        let all = self.dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
+        let all = self
+            .dimensions
+            .iter()
+            .try_fold(1_u64, |all, &size| all.checked_mul(size));
         all.map_or(usize::MAX, |all| all as usize)
     }
 

@@ -86,13 +86,7 @@ impl<'a> Data<'a> {
     }
 }
 
-fn gather<'a>(
-    file: &File<'a>,
-    block: &Block<'a>,
-    depth: usize,
-    visited: &mut Visited,
-    all: &mut Data<'a>,
-) -> Read<()> {
+fn gather<'a>(file: &File<'a>, block: &Block<'a>, depth: usize, visited: &mut Visited, all: &mut Data<'a>) -> Read<()> {
     visited.first_time(block.at)?;
     match &block.id {
         b"##DT" | b"##SD" => all.add(Part::Plain(block.data)),
@@ -152,7 +146,8 @@ impl Pieces<'_> {
         let whole = (count - lacking) / unit * unit;
         part.pieces(lacking, whole, unit, "records", &mut self.show)?;
         let after = lacking + whole;
-        self.rest.extend_from_slice(&part.take(after, count - after, "records")?);
+        self.rest
+            .extend_from_slice(&part.take(after, count - after, "records")?);
         Ok(())
     }
 }
@@ -167,7 +162,10 @@ mod tests {
         for cuts in [&[][..], &[50], &[1, 2, 3], &[10, 10, 11, 97], &[99]] {
             let ends = cuts.iter().copied().chain([100]);
             let begins = [0].into_iter().chain(cuts.iter().copied());
-            let contents: Vec<Content<'_>> = begins.zip(ends).map(|(from, to)| Content::of_bytes(&bytes[from..to])).collect();
+            let contents: Vec<Content<'_>> = begins
+                .zip(ends)
+                .map(|(from, to)| Content::of_bytes(&bytes[from..to]))
+                .collect();
             let mut data = Data::default();
             for content in &contents {
                 data.add(Part::Plain(Bytes::of_file(content, Order::Little)));

@@ -90,7 +90,9 @@ fn add_data_group(
     let promised = promised.fold(0, u64::saturating_add);
     let data = file.part(start.into(), promised, "records")?;
     match groups.as_slice() {
-        [_] => groups.remove(0).add_to(recording, &Data::plain(data), [before, around], wanted),
+        [_] => groups
+            .remove(0)
+            .add_to(recording, &Data::plain(data), [before, around], wanted),
         _ => {
             let sorted = sorted(&groups, &data.all("records")?, around, start)?;
             for (group, own) in groups.into_iter().zip(sorted) {
@@ -105,13 +107,7 @@ fn add_data_group(
 
 impl Group {
     /// Adds the channels, whose records have so many bytes of an id before them and around them.
-    fn add_to(
-        self,
-        recording: &mut Recording,
-        data: &Data,
-        [before, around]: [usize; 2],
-        wanted: &Wanted,
-    ) -> Read<()> {
+    fn add_to(self, recording: &mut Recording, data: &Data, [before, around]: [usize; 2], wanted: &Wanted) -> Read<()> {
         let stride = self.length + around;
         let records = Records::checked(data, before, stride, self.records.into(), &self.name, &self.place)?;
         add_group(recording, &self.name, self.channels, &records, wanted)

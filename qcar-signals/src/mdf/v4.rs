@@ -81,7 +81,9 @@ fn add_data_group(
 
 impl Group {
     fn is_wanted(&self, wanted: &Wanted) -> bool {
-        self.channels.iter().any(|channel| wanted.has(&self.name, &channel.name))
+        self.channels
+            .iter()
+            .any(|channel| wanted.has(&self.name, &channel.name))
     }
 
     /// Adds the channels, whose records stand in `data` with so many bytes of an id before each.
