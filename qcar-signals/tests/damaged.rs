@@ -118,6 +118,7 @@ fn mat() {
         3000,
     );
     survives(&["mat/testlab_v73.mat", "mat/matlab74_double_v73.mat"], 3000);
+    survives(&["mat/h5py_v114.mat"], 2000);
 }
 
 #[test]

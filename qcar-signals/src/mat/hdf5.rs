@@ -1,12 +1,15 @@
 //! HDF5, as far as MATLAB uses it for version 7.3: groups of symbol tables, object headers of version 1, data in one piece or
 //! in chunks, deflated or not.
 //!
-//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. A file written for the latest version only is refused.
+//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. Files of superblock versions 2 and 3 are read by the crate that
+//! writes them here.
 
 // What the messages of an object header say.
 mod messages;
 // The bytes of a dataset.
 mod storage;
+// Newer versions.
+mod latest;
 
 use std::collections::HashSet;
 
@@ -14,7 +17,7 @@ use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::error::{Fault, Read};
 use crate::find::Wanted;
 
-use super::value::{Array, Fields, Value, Variable, is_read};
+use super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 
 use messages::{Class, Header};
 
@@ -37,6 +40,9 @@ pub(super) fn superblock(file: &Bytes) -> Option<u64> {
 pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
     let file = file.part(at, file.len() - at, "HDF5")?;
     let version = file.u8(8, "the superblock")?;
+    if matches!(version, 2 | 3) {
+        return latest::variables(&file, wanted);
+    }
     let sizes = (file.u8(13, "the superblock")?, file.u8(14, "the superblock")?);
     if version > 1 || sizes != (8, 8) {
         let found = format!("a superblock of version {version}");
@@ -135,35 +141,14 @@ impl<'a> Reader<'a> {
         Ok(Value::Numbers(Array { dimensions, numbers }))
     }
 
-    /// A group as a structure. Where every field is a list of references, it is a structure array of as many elements.
+    /// A group as a structure or a structure array.
     fn structure(&mut self, header: &Header<'a>, depth: usize) -> Read<Value> {
         let mut fields = Fields::new();
-        let mut elements = 1;
-        let mut all_lists = true;
         for (name, address) in self.members(header)? {
             let value = self.value(address, depth).map_err(|fault| fault.of(&name))?;
-            match &value {
-                Value::Cells(cells) => elements = elements.max(cells.len()),
-                _ => all_lists = false,
-            }
             fields.push((name, value));
         }
-        if !all_lists || fields.is_empty() {
-            return Ok(Value::Structs(vec![fields]));
-        }
-        let mut lists: Vec<(String, std::vec::IntoIter<Value>)> = Vec::new();
-        for (name, value) in fields {
-            if let Value::Cells(cells) = value {
-                lists.push((name, cells.into_iter()));
-            }
-        }
-        let element = |_| {
-            lists
-                .iter_mut()
-                .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
-                .collect()
-        };
-        Ok(Value::Structs((0..elements).map(element).collect()))
+        Ok(of_fields(fields))
     }
 
     fn cells(&mut self, header: &Header<'a>, depth: usize) -> Read<Vec<Value>> {

@@ -39,6 +39,28 @@ pub(super) fn is_read(variable: &str, dimensions: &[u64], wanted: &Wanted) -> bo
 
 pub(super) type Fields = Vec<(String, Value)>;
 
+/// A group of HDF5 as a structure. Where every field is a list of references, it is a structure array of as many elements.
+pub(super) fn of_fields(fields: Fields) -> Value {
+    if fields.is_empty() || fields.iter().any(|(_, value)| !matches!(value, Value::Cells(_))) {
+        return Value::Structs(vec![fields]);
+    }
+    let mut elements = 1;
+    let mut lists: Vec<(String, std::vec::IntoIter<Value>)> = Vec::new();
+    for (name, value) in fields {
+        if let Value::Cells(cells) = value {
+            elements = elements.max(cells.len());
+            lists.push((name, cells.into_iter()));
+        }
+    }
+    let element = |_| {
+        let fields = lists.iter_mut();
+        fields
+            .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
+            .collect()
+    };
+    Value::Structs((0..elements).map(element).collect())
+}
+
 impl Value {
     /// What lies at a path of fields, through structures of one element.
     pub(super) fn at(&self, path: &[&str]) -> Option<&Value> {
