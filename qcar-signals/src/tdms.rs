@@ -208,6 +208,7 @@ impl File {
                     let size = number.size() as u64 * index.count;
                     if object.wanted {
                         let own = object.raw_of(None);
+                        own.reserve(index.count as usize);
                         chunk.pieces(at, size, number.size() as u64, "raw data", |piece| {
                             number.extend(own, piece, number.size(), order);
                         })?;
