@@ -451,7 +451,8 @@ fn a_cell_that_is_no_number_is_named() {
 #[test]
 fn hdf5_as_newer_libraries_write_it_is_read() {
     let recording = read(&sample("mat/h5py_v114.mat").unwrap()).unwrap_or_else(|error| panic!("{error}"));
-    let expected: [(&str, fn(f64) -> f64); 4] = [
+    type Formula = (&'static str, fn(f64) -> f64);
+    let expected: [Formula; 4] = [
         ("one_piece", |at| 0.25 * at),
         ("packed", |at| at * at),
         ("growing", |at| -at),
