@@ -116,7 +116,7 @@ pub fn simulate_campaign<'py>(
     let simulated = long(py, || simulate::simulate(&campaign, &choices))?.map_err(errors::of_campaign)?;
     let histories = simulated.histories().into_iter().map(|own| {
         let signals = own.channels.into_iter();
-        let signals = signals.map(|signal| (signal.name, signal.unit, signal.samples.into_pyarray(py)));
+        let signals = signals.map(|signal| (signal.name, signal.unit, signal.samples.to_vec().into_pyarray(py)));
         (own.name, own.time.into_pyarray(py), signals.collect())
     });
     Ok((simulated.json(), histories.collect()))

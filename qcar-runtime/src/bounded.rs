@@ -4,6 +4,7 @@ use std::fs::{self, File};
 use std::io::{self, BufReader, ErrorKind, Read};
 use std::path::Path;
 
+use qcar_signals::content::Content;
 use qcar_signals::read::{is_packed, unpacked};
 
 use crate::error::{InputError, Place, Problem};
@@ -44,30 +45,22 @@ fn limit() -> Option<u64> {
     Some(given.saturating_mul(1 << 20))
 }
 
-/// The content of a measured file, which gzip may have packed.
+/// The content of a measured file, which gzip may have packed; what is not packed stays on the disk until it is wanted.
 ///
 /// # Errors
 /// As [`open`]; more than 4 GiB, or more than 256 MiB unpacked, unless another limit is set; too little memory.
-fn measured(path: &Path) -> io::Result<Vec<u8>> {
+fn measured(path: &Path) -> io::Result<Content<'static>> {
     let file = open(path)?;
-    let size = file.metadata()?.len();
-    let left = limit().unwrap_or(MOST_PLAIN);
-    if size > left {
+    if file.metadata()?.len() > limit().unwrap_or(MOST_PLAIN) {
         return Err(too_large());
     }
-    // All of its place at once: a vector that grows takes up to twice as much.
-    let mut bytes = Vec::new();
-    bytes.try_reserve_exact(size as usize)?;
-    file.take(left.saturating_add(1)).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > left {
-        return Err(too_large());
-    }
-    if !is_packed(&bytes) {
-        return Ok(bytes);
+    let content = Content::of_file(file)?;
+    if !is_packed(&content.beginning()?) {
+        return Ok(content);
     }
     let mut whole = Vec::new();
-    limited(unpacked(&bytes[..])).read_to_end(&mut whole)?;
-    Ok(whole)
+    limited(unpacked(BufReader::new(open(path)?))).read_to_end(&mut whole)?;
+    Ok(Content::of_bytes(whole))
 }
 
 /// What to do about an error of [`measured`]: raise the limit, or what `else_do` says.
@@ -83,7 +76,7 @@ fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
 ///
 /// # Errors
 /// A file that cannot be read.
-pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Vec<u8>, InputError> {
+pub fn measured_file(path: &Path, wrong_path: &str) -> Result<Content<'static>, InputError> {
     measured(path).map_err(|error| {
         let remedy = remedy(&error, wrong_path);
         Problem::new(path, Place::File, error.to_string(), "a readable file", remedy).into()

@@ -1,5 +1,9 @@
 //! Checked access to the bytes of a file: an access beyond its end is an error with its place, never a panic.
 
+use std::borrow::Cow;
+use std::io;
+
+use crate::content::Content;
 use crate::error::{Fault, Place, Read};
 
 /// The order of the bytes of a number.
@@ -9,74 +13,128 @@ pub(crate) enum Order {
     Big,
 }
 
-/// A run of bytes, from a file or unpacked from it.
+/// A run of bytes, of a file or unpacked from it.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes<'a> {
-    pub(crate) data: &'a [u8],
+    content: &'a Content<'a>,
+    /// Where the run begins in the content.
+    start: u64,
+    length: u64,
     pub(crate) order: Order,
-    /// Where `data` begins in the file; where it was packed, the place of the packed block.
-    pub(crate) origin: Origin,
+    /// The place in the file of the packed block that the content was unpacked from.
+    packed_at: Option<u64>,
 }
 
-/// Where a run of bytes comes from.
-#[derive(Clone, Copy)]
-pub(crate) enum Origin {
-    At(u64),
-    PackedAt(u64),
-}
+/// Bytes that are shown at once of a long run, so that they stay in the cache.
+const PIECE: u64 = 1 << 18;
 
 impl<'a> Bytes<'a> {
-    /// The bytes of a file.
-    pub(crate) fn of_file(data: &'a [u8], order: Order) -> Self {
+    /// All bytes of a file.
+    pub(crate) fn of_file(content: &'a Content<'a>, order: Order) -> Self {
         Bytes {
-            data,
+            content,
+            start: 0,
+            length: content.length(),
             order,
-            origin: Origin::At(0),
+            packed_at: None,
         }
     }
 
+    /// All bytes that a block of the file at `at` was unpacked to.
+    pub(crate) fn unpacked(content: &'a Content<'a>, order: Order, at: u64) -> Self {
+        Bytes {
+            packed_at: Some(at),
+            ..Bytes::of_file(content, order)
+        }
+    }
+
+    /// The same with numbers in another order.
+    pub(crate) fn in_order(self, order: Order) -> Self {
+        Bytes { order, ..self }
+    }
+
     pub(crate) fn len(&self) -> u64 {
-        self.data.len() as u64
+        self.length
     }
 
     /// The place of a byte, for a message.
     pub(crate) fn place(&self, at: u64) -> Place {
-        match self.origin {
-            Origin::At(origin) => Place::Byte(origin.saturating_add(at)),
-            Origin::PackedAt(origin) => Place::Byte(origin),
+        Place::Byte(self.packed_at.unwrap_or(self.start.saturating_add(at)))
+    }
+
+    /// Checks that `count` bytes from `at` on are there, which hold `what`.
+    fn check(&self, at: u64, count: u64, what: &str) -> Read<()> {
+        if at.checked_add(count).is_some_and(|end| end <= self.length) {
+            return Ok(());
+        }
+        let there = self.length.saturating_sub(at);
+        let found = format!("{there} bytes to the end");
+        Err(Fault::cut_off(
+            self.place(at),
+            found,
+            format!("{count} bytes of {what}"),
+        ))
+    }
+
+    fn unreadable(&self, at: u64, what: &str) -> impl FnOnce(io::Error) -> Box<Fault> {
+        let (place, what) = (self.place(at), what.to_string());
+        move |error| {
+            let remedy = "look after the disk or the network, and try again";
+            Fault::new(place, format!("an error of the system: {error}"), what, remedy)
         }
     }
 
     /// `count` bytes from `at` on, which hold `what`.
-    pub(crate) fn take(&self, at: u64, count: u64, what: &str) -> Read<&'a [u8]> {
-        let end = at.checked_add(count).filter(|&end| end <= self.len());
-        match end {
-            Some(end) => Ok(&self.data[at as usize..end as usize]),
-            None => {
-                let there = self.len().saturating_sub(at);
-                let expected = format!("{count} bytes of {what}");
-                Err(Fault::cut_off(
-                    self.place(at),
-                    format!("{there} bytes to the end"),
-                    expected,
-                ))
-            }
+    pub(crate) fn take(&self, at: u64, count: u64, what: &str) -> Read<Cow<'a, [u8]>> {
+        self.check(at, count, what)?;
+        self.content
+            .take(self.start + at, count)
+            .map_err(self.unreadable(at, what))
+    }
+
+    /// All of them.
+    pub(crate) fn all(&self, what: &str) -> Read<Cow<'a, [u8]>> {
+        self.take(0, self.length, what)
+    }
+
+    /// `count` bytes from `at` on, shown one piece after the other, each of a whole number of `unit` bytes.
+    pub(crate) fn pieces(&self, at: u64, count: u64, unit: u64, what: &str, mut show: impl FnMut(&[u8])) -> Read<()> {
+        self.check(at, count, what)?;
+        let unit = unit.max(1);
+        let size = (PIECE / unit).max(1) * unit;
+        let mut done = 0;
+        while done < count {
+            let own = size.min(count - done);
+            self.content
+                .show(self.start + at + done, own, &mut show)
+                .map_err(self.unreadable(at + done, what))?;
+            done += own;
         }
+        Ok(())
     }
 
     /// The same as a run of bytes that knows its place.
     pub(crate) fn part(&self, at: u64, count: u64, what: &str) -> Read<Bytes<'a>> {
-        let data = self.take(at, count, what)?;
-        let origin = match self.origin {
-            Origin::At(origin) => Origin::At(origin + at),
-            packed => packed,
-        };
-        Ok(Bytes { data, origin, ..*self })
+        self.check(at, count, what)?;
+        Ok(Bytes {
+            start: self.start + at,
+            length: count,
+            ..*self
+        })
+    }
+
+    /// Whether the run begins so.
+    pub(crate) fn starts_with(&self, beginning: &[u8]) -> bool {
+        let own = self.take(0, self.length.min(beginning.len() as u64), "a beginning");
+        own.is_ok_and(|own| *own == *beginning)
     }
 
     fn array<const N: usize>(&self, at: u64, what: &str) -> Read<[u8; N]> {
+        self.check(at, N as u64, what)?;
         let mut array = [0; N];
-        array.copy_from_slice(self.take(at, N as u64, what)?);
+        self.content
+            .show(self.start + at, N as u64, |own| array.copy_from_slice(own))
+            .map_err(self.unreadable(at, what))?;
         if self.order == Order::Big {
             array.reverse();
         }
@@ -130,23 +188,15 @@ impl Number {
         }
     }
 
-    /// The numbers that begin every `stride` bytes of `data`, as many as are whole. `data` begins with the first of them.
-    pub(crate) fn strided(self, data: &[u8], stride: usize, order: Order) -> Vec<f64> {
+    /// The numbers that begin every `stride` bytes of `data`, as many as are whole, behind those of `into`. `data` begins with the
+    /// first of them.
+    pub(crate) fn extend(self, into: &mut Vec<f64>, data: &[u8], stride: usize, order: Order) {
         macro_rules! each {
             ($kind:ty) => {{
-                let chunks = data.chunks_exact(stride.max(self.size()));
-                let last = chunks.remainder();
-                let last = last.get(..self.size()).into_iter();
-                let numbers = chunks
-                    .chain(last)
-                    .map(|chunk| chunk.first_chunk().copied().unwrap_or_default());
+                let numbers = heads(data, stride);
                 match order {
-                    Order::Little => numbers
-                        .map(|bytes| <$kind>::from_le_bytes(bytes) as f64)
-                        .collect(),
-                    Order::Big => numbers
-                        .map(|bytes| <$kind>::from_be_bytes(bytes) as f64)
-                        .collect(),
+                    Order::Little => into.extend(numbers.map(|bytes| <$kind>::from_le_bytes(bytes) as f64)),
+                    Order::Big => into.extend(numbers.map(|bytes| <$kind>::from_be_bytes(bytes) as f64)),
                 }
             }};
         }
@@ -164,10 +214,35 @@ impl Number {
         }
     }
 
+    /// The same alone.
+    pub(crate) fn strided(self, data: &[u8], stride: usize, order: Order) -> Vec<f64> {
+        let mut all = Vec::with_capacity(data.len() / stride.max(self.size()) + 1);
+        self.extend(&mut all, data, stride, order);
+        all
+    }
+
     /// The numbers that lie one after the other in `data`.
     pub(crate) fn all(self, data: &[u8], order: Order) -> Vec<f64> {
         self.strided(data, self.size(), order)
     }
+
+    /// The same of a run of bytes, which are never all in memory beside the numbers.
+    pub(crate) fn all_of(self, bytes: &Bytes, what: &str) -> Read<Vec<f64>> {
+        let mut all = Vec::with_capacity(bytes.len() as usize / self.size());
+        bytes.pieces(0, bytes.len(), self.size() as u64, what, |piece| {
+            self.extend(&mut all, piece, self.size(), bytes.order);
+        })?;
+        Ok(all)
+    }
+}
+
+/// The `N` bytes with which every `stride` bytes of `data` begin, as many as are whole.
+pub(crate) fn heads<const N: usize>(data: &[u8], stride: usize) -> impl Iterator<Item = [u8; N]> {
+    let chunks = data.chunks_exact(stride.max(N).max(1));
+    let last = chunks.remainder().get(..N).into_iter();
+    chunks
+        .chain(last)
+        .map(|chunk| chunk.first_chunk().copied().unwrap_or([0; N]))
 }
 
 /// Text of unknown coding: UTF-8 where it is that, else Windows-1252, of which Latin-1 is a part.

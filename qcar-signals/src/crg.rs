@@ -64,7 +64,7 @@ fn along(name: &str, samples: Vec<f64>, place: Place) -> Signal {
         name: name.into(),
         unit: "m".into(),
         time: TimeBase::Unknown,
-        samples,
+        samples: samples.into(),
         labels: Vec::new(),
         source: Source {
             group: String::new(),

@@ -3,10 +3,41 @@
 use std::collections::BTreeSet;
 
 use crate::error::{Fault, Place};
-use crate::signal::{Recording, Signal};
+use crate::signal::{Recording, Signal, full_name, is_called};
 
 /// How many channels an error lists.
 const LISTED: usize = 6;
+
+/// Which channels of a file are to be read.
+pub enum Wanted<'a> {
+    /// All of them.
+    All,
+    /// Those that one of these patterns may mean, as [`Recording::find`] takes them.
+    These(&'a [String]),
+}
+
+impl Wanted<'_> {
+    /// Whether a channel is to be read.
+    pub(crate) fn has(&self, group: &str, name: &str) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::These(patterns) => patterns
+                .iter()
+                .any(|pattern| is_called(pattern, group, name) || is_meant(pattern, group, name)),
+        }
+    }
+
+    /// Whether a channel whose name begins so may be to be read.
+    pub(crate) fn may_begin(&self, beginning: &str) -> bool {
+        match self {
+            Wanted::All => true,
+            Wanted::These(patterns) => patterns.iter().any(|pattern| {
+                let plain = pattern.split(['*', '?']).next().unwrap_or("");
+                plain.starts_with(beginning) || (plain.len() < pattern.len() && beginning.starts_with(plain))
+            }),
+        }
+    }
+}
 
 impl Recording {
     /// The channel that `pattern` means: a name, `group/name`, or either with `*` for any characters and `?` for one. A
@@ -20,7 +51,7 @@ impl Recording {
         if exact || passed_over {
             return self.signal(pattern);
         }
-        let fitting: Vec<&Signal> = self.signals.iter().filter(|signal| is_meant(pattern, signal)).collect();
+        let fitting: Vec<&Signal> = self.signals.iter().filter(|signal| signal.fits(pattern)).collect();
         match fitting.as_slice() {
             [signal] => Ok(signal),
             [] => Err(self.missing(pattern)),
@@ -36,7 +67,7 @@ impl Recording {
     pub fn has(&self, pattern: &str) -> bool {
         let passed_over = self.passed_over.iter().any(|passed| passed.name == pattern);
         let mut signals = self.signals.iter();
-        passed_over || signals.any(|signal| signal.is_called(pattern) || is_meant(pattern, signal))
+        passed_over || signals.any(|signal| signal.is_called(pattern) || signal.fits(pattern))
     }
 
     fn missing(&self, pattern: &str) -> Box<Fault> {
@@ -67,8 +98,14 @@ impl Recording {
     }
 }
 
-fn is_meant(pattern: &str, signal: &Signal) -> bool {
-    fits(pattern, &signal.name) || fits(pattern, &signal.full_name())
+impl Signal {
+    fn fits(&self, pattern: &str) -> bool {
+        is_meant(pattern, &self.source.group, &self.name)
+    }
+}
+
+fn is_meant(pattern: &str, group: &str, name: &str) -> bool {
+    fits(pattern, name) || fits(pattern, &full_name(group, name))
 }
 
 fn listed(signals: &[&Signal]) -> String {

@@ -6,6 +6,8 @@
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
 pub mod error;
+// Values as narrow as they are stored.
+pub mod samples;
 // What all formats are read into.
 pub mod signal;
 // Which of its channels a name means.
@@ -14,7 +16,9 @@ pub mod find;
 pub mod resample;
 // What is wrong with them.
 pub mod health;
-// Checked access to the bytes of a file.
+// The bytes of a file, in memory or on the disk.
+pub mod content;
+// Checked access to them.
 mod bytes;
 // Which texts are units.
 mod units;

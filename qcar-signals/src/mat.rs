@@ -11,8 +11,9 @@ pub mod write;
 // Channels, from the shapes in which programs store them.
 mod layout;
 
-use crate::bytes::field;
+use crate::bytes::{Bytes, field};
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::Recording;
 
 /// Where the header of version 5 says its version and its byte order.
@@ -27,21 +28,21 @@ pub(crate) fn is_mat(bytes: &[u8]) -> bool {
 
 /// Whether a file is HDF5 without the header of MATLAB.
 pub(crate) fn is_hdf5(bytes: &[u8]) -> bool {
-    hdf5::superblock(bytes) == Some(0)
+    bytes.starts_with(hdf5::SIGNATURE)
 }
 
 /// Reads a file that begins with a header of MATLAB, or is HDF5.
-pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
-    if let Some(at) = hdf5::superblock(bytes) {
+pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
+    if let Some(at) = hdf5::superblock(&file) {
         let name = if at == 0 { "HDF5" } else { "MAT 7.3" };
-        return layout::recording(name, hdf5::variables(bytes, at)?);
+        return layout::recording(name, hdf5::variables(&file, at, wanted)?, wanted);
     }
-    match field(&bytes[..VERSION]) {
+    match field(&file.take(0, VERSION as u64, "the header")?) {
         text if text.contains("7.3") => Err(Fault::cut_off(
-            Place::Byte(bytes.len() as u64),
+            Place::Byte(file.len()),
             "a header of version 7.3 and nothing of HDF5",
             "the data after the header",
         )),
-        _ => layout::recording("MAT 5", v5::variables(bytes)?),
+        _ => layout::recording("MAT 5", v5::variables(file, wanted)?, wanted),
     }
 }

@@ -7,8 +7,10 @@ mod conversion;
 mod field;
 // The blocks of version 4.
 mod block;
-// Unpacked.
+// Blocks that are packed.
 mod packed;
+// Records in pieces.
+mod data;
 // Groups and channels.
 mod v4;
 // Version 3.
@@ -20,9 +22,11 @@ use std::collections::HashSet;
 
 use crate::bytes::Bytes;
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 
 use conversion::Conversion;
+use data::Data;
 use field::Field;
 
 /// What an MDF file begins with.
@@ -31,8 +35,8 @@ pub(crate) const MAGIC: &[u8] = b"MDF     ";
 pub(crate) const UNFINISHED: &[u8] = b"UnFinMF ";
 
 /// Reads a file that begins with one of the two.
-pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
-    if bytes.starts_with(UNFINISHED) {
+pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
+    if file.starts_with(UNFINISHED) {
         let remedy = "finish it in the program that recorded it, or export it again";
         return Err(Fault::new(
             Place::Byte(0),
@@ -41,11 +45,10 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
             remedy,
         ));
     }
-    let head = Bytes::of_file(bytes, crate::bytes::Order::Little);
-    let version = crate::bytes::field(head.take(8, 8, "the version")?);
+    let version = crate::bytes::field(&file.take(8, 8, "the version")?);
     match version.split('.').next() {
-        Some("4") => v4::read(head, &version),
-        Some("3") => v3::read(head, &version),
+        Some("4") => v4::read(file, &version, wanted),
+        Some("3") => v3::read(file, &version, wanted),
         _ => {
             let remedy = "export it as MDF 4";
             Err(Fault::new(
@@ -94,62 +97,71 @@ struct Channel {
 
 /// Records of a group, one after the other.
 struct Records<'a> {
-    bytes: &'a [u8],
+    data: &'a Data<'a>,
     /// From record to record, bytes.
     stride: usize,
     /// Bytes of the id before each record.
+    before: usize,
+    count: usize,
+}
+
+/// Some of them, in memory.
+struct Piece<'a> {
+    bytes: &'a [u8],
+    stride: usize,
     before: usize,
     /// The number of the first, from 0.
     first: usize,
     count: usize,
 }
 
-/// Bytes of the records that are read channel by channel: block size, so that records stay in the cache.
-const BLOCK: usize = 1 << 18;
-
 impl<'a> Records<'a> {
     /// The records that a group promises, if they are there.
-    fn checked(bytes: &'a [u8], before: usize, stride: usize, promised: u64, group: &str, place: &Place) -> Read<Self> {
-        let there = bytes.len().checked_div(stride).unwrap_or(0);
-        if promised > there as u64 {
+    fn checked(
+        data: &'a Data<'a>,
+        before: usize,
+        stride: usize,
+        promised: u64,
+        group: &str,
+        place: &Place,
+    ) -> Read<Self> {
+        let there = data.len().checked_div(stride as u64).unwrap_or(0);
+        if promised > there {
             let found = format!("{there} whole records of {stride} bytes");
             let expected = format!("{promised} records, as the group `{group}` promises");
             return Err(Fault::cut_off(place.clone(), found, expected));
         }
-        let count = promised as usize;
         Ok(Records {
-            bytes: &bytes[..count * stride],
+            data,
             stride,
             before,
-            first: 0,
-            count,
+            count: promised as usize,
         })
     }
 
-    /// The same in parts, one after the other.
-    fn parts(&self) -> impl Iterator<Item = Records<'a>> {
-        let most = (BLOCK / self.stride.max(1)).max(1);
-        let firsts = (0..self.count).step_by(most);
-        firsts.map(move |first| {
-            let count = most.min(self.count - first);
-            Records {
-                bytes: &self.bytes[first * self.stride..(first + count) * self.stride],
-                first: self.first + first,
-                count,
-                ..*self
-            }
-        })
-    }
-
-    /// The stored values of several fields.
-    fn columns(&self, fields: &[&Field]) -> Vec<Vec<f64>> {
-        let mut columns: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(self.count)).collect();
-        for part in self.parts() {
-            for (column, field) in columns.iter_mut().zip(fields) {
-                column.extend(field.values(&part));
-            }
+    /// The stored values of several fields. The records are read once, and channel by channel while they are in the cache.
+    fn columns(&self, fields: &[&Field]) -> Read<Vec<Vec<f64>>> {
+        let capacity = if self.data.is_there() { self.count } else { 0 };
+        let mut columns: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(capacity)).collect();
+        if fields.is_empty() || self.count == 0 {
+            return Ok(columns);
         }
-        columns
+        let mut first = 0;
+        self.data
+            .pieces((self.count * self.stride) as u64, self.stride, |bytes| {
+                let piece = Piece {
+                    bytes,
+                    stride: self.stride,
+                    before: self.before,
+                    first,
+                    count: bytes.len() / self.stride,
+                };
+                for (column, field) in columns.iter_mut().zip(fields) {
+                    field.values(&piece, column);
+                }
+                first += piece.count;
+            })?;
+        Ok(columns)
     }
 }
 
@@ -158,7 +170,13 @@ impl<'a> Records<'a> {
 const MOST_USES: usize = 16;
 
 /// Adds the channels of a group to a recording.
-fn add_group(recording: &mut Recording, group: &str, channels: Vec<Channel>, records: &Records) -> Read<()> {
+fn add_group(
+    recording: &mut Recording,
+    group: &str,
+    channels: Vec<Channel>,
+    records: &Records,
+    wanted: &Wanted,
+) -> Read<()> {
     let used: usize = channels
         .iter()
         .filter_map(|channel| Some(channel.field.as_ref().ok()?.bits()))
@@ -177,9 +195,30 @@ fn add_group(recording: &mut Recording, group: &str, channels: Vec<Channel>, rec
             "channels that lie beside each other",
         ));
     }
+    let is_wanted = |channel: &Channel| channel.role == Role::Values && wanted.has(group, &channel.name);
+    let is_any = channels.iter().any(is_wanted);
+    let is_read =
+        |channel: &Channel| is_wanted(channel) || (is_any && channel.role == Role::Time && !channel.is_even());
+    let readable = |channel: &Channel| channel.field.is_ok() && channel.conversion.is_ok();
+    let fields = channels
+        .iter()
+        .filter(|channel| is_read(channel) && readable(channel))
+        .filter_map(|channel| channel.field.as_ref().ok());
+    let mut columns = records.columns(&fields.collect::<Vec<_>>())?.into_iter();
+    let mut of_each: Vec<Vec<f64>> = Vec::new();
+    for channel in &channels {
+        let column = match is_read(channel) && readable(channel) {
+            true => columns.next().unwrap_or_default(),
+            false => Vec::new(),
+        };
+        of_each.push(column);
+    }
     let mut time = TimeBase::Unknown;
-    for master in channels.iter().filter(|channel| channel.role == Role::Time) {
-        match times(master, records) {
+    for (master, column) in channels.iter().zip(&mut of_each) {
+        if master.role != Role::Time || !is_any {
+            continue;
+        }
+        match times(master, std::mem::take(column)) {
             Ok(base) => time = base,
             Err(why) => {
                 let all = channels.iter().filter(|channel| channel.role == Role::Values);
@@ -190,35 +229,43 @@ fn add_group(recording: &mut Recording, group: &str, channels: Vec<Channel>, rec
             }
         }
     }
-    let (mut known, mut fields) = (Vec::new(), Vec::new());
-    for channel in channels.iter().filter(|channel| channel.role == Role::Values) {
-        match (&channel.field, &channel.conversion) {
-            (Ok(field), Ok(conversion)) => {
-                known.push((channel, conversion));
-                fields.push(field);
+    for (channel, stored) in channels.into_iter().zip(of_each) {
+        match (channel.role, &channel.field, &channel.conversion) {
+            (Role::Time, ..) => {}
+            (Role::Values, Ok(_), Ok(conversion)) => {
+                let (samples, labels) = conversion.apply(stored);
+                recording.signals.push(Signal {
+                    time: time.clone(),
+                    samples: samples.into(),
+                    labels,
+                    source: Source {
+                        group: group.into(),
+                        place: channel.place,
+                    },
+                    name: channel.name,
+                    unit: channel.unit,
+                });
             }
-            (Err(why), _) | (_, Err(why)) => recording.pass_over(&channel.name, channel.place.clone(), why),
+            (Role::Values, Err(why), _) | (Role::Values, _, Err(why)) => {
+                recording.pass_over(&channel.name, channel.place.clone(), why);
+            }
         }
-    }
-    for ((channel, conversion), samples) in known.into_iter().zip(records.columns(&fields)) {
-        let (samples, labels) = conversion.apply(samples);
-        recording.signals.push(Signal {
-            name: channel.name.clone(),
-            unit: channel.unit.clone(),
-            time: time.clone(),
-            samples,
-            labels,
-            source: Source {
-                group: group.into(),
-                place: channel.place.clone(),
-            },
-        });
     }
     Ok(())
 }
 
-/// The times of a group in seconds, or why it has none.
-fn times(master: &Channel, records: &Records) -> Result<TimeBase, String> {
+impl Channel {
+    /// Whether its values are no part of a record but follow from the number of it.
+    fn is_even(&self) -> bool {
+        matches!(
+            (&self.field, &self.conversion),
+            (Ok(Field::Index), Ok(Conversion::Linear { .. }))
+        )
+    }
+}
+
+/// The times of a group in seconds from what is stored, or why it has none.
+fn times(master: &Channel, stored: Vec<f64>) -> Result<TimeBase, String> {
     let (field, conversion) = match (&master.field, &master.conversion) {
         (Ok(field), Ok(conversion)) => (field, conversion),
         (Err(why), _) | (_, Err(why)) => return Err(why.clone()),
@@ -226,7 +273,6 @@ fn times(master: &Channel, records: &Records) -> Result<TimeBase, String> {
     if let (Field::Index, Conversion::Linear { offset, factor }) = (field, conversion) {
         return evenly(*offset, *factor, master.place.clone()).map_err(|fault| fault.found);
     }
-    let raw = field.values(records);
-    let (times, _) = conversion.apply(raw);
+    let (times, _) = conversion.apply(stored);
     TimeBase::from_times(times).map_err(|(at, found)| format!("{found} in sample {}", at + 1))
 }

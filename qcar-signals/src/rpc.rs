@@ -7,8 +7,10 @@
 
 use std::collections::HashMap;
 
-use crate::bytes::{Bytes, Number, Order, field};
+use crate::bytes::{Bytes, Order, field, heads};
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
+use crate::samples::Samples;
 use crate::signal::{Recording, Signal, Source, evenly};
 
 const BLOCK: u64 = 512;
@@ -22,37 +24,26 @@ pub(crate) fn is_rpc(bytes: &[u8]) -> bool {
 }
 
 /// Reads a file whose first parameter is `FORMAT`.
-pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
-    let header = Header::read(bytes)?;
+pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
+    let header = Header::read(&file)?;
     let shape = Shape::of(&header)?;
-    let number = shape.number;
-    let data = Bytes::of_file(bytes, Order::Little);
-    let data = data.part(header.end, data.len() - header.end, "samples")?;
-    let group = shape.check(&data)?;
-    let size = number.size();
+    let data = file.part(header.end, file.len() - header.end, "samples")?;
+    shape.check(&data)?;
     let mut recording = Recording::new("RPC III");
+    let mut columns = Vec::new();
     for channel in 0..shape.channels {
         let name = header.text(&format!("DESC.CHAN_{}", channel + 1));
         let name = name.map_or_else(|| format!("channel {}", channel + 1), unquoted);
-        let own = |group: &[u8]| match shape.multiplexed {
-            true => number.strided(&group[channel * size..], shape.channels * size, shape.order),
-            false => {
-                let length = shape.points_of_group * size;
-                number.all(&group[channel * length..(channel + 1) * length], shape.order)
-            }
-        };
-        let scale = header.scale(channel, number).map_err(|fault| fault.of(&name))?;
-        let mut samples = Vec::with_capacity(shape.groups() * shape.points_of_group);
-        for group in data.data.chunks_exact(group).take(shape.groups()) {
-            samples.extend(own(group).into_iter().map(|sample| sample * scale));
-        }
-        samples.truncate(shape.samples);
+        let scale = header.scale(channel, shape.kind).map_err(|fault| fault.of(&name))?;
         let unit = header.text(&format!("UNITS.CHAN_{}", channel + 1));
+        if wanted.has("", &name) {
+            columns.push(Column::new(channel, &shape, scale));
+        }
         recording.signals.push(Signal {
             name,
             unit: unit.map_or_else(String::new, unquoted),
             time: evenly(0.0, shape.step, Place::Item("DELTA_T".into()))?,
-            samples,
+            samples: Samples::default(),
             labels: Vec::new(),
             source: Source {
                 group: String::new(),
@@ -60,7 +51,58 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
             },
         });
     }
+    shape.fill(&data, &mut columns)?;
+    for column in columns {
+        let channel = column.channel;
+        recording.signals[channel].samples = column.samples(shape.samples);
+    }
     Ok(recording)
+}
+
+/// The samples of a channel as far as they are read, as they are stored.
+struct Column {
+    channel: usize,
+    stored: Stored,
+}
+
+enum Stored {
+    Shorts(Vec<i16>, f64),
+    Singles(Vec<f32>),
+}
+
+impl Column {
+    fn new(channel: usize, shape: &Shape, scale: f64) -> Self {
+        let count = shape.groups() * shape.points_of_group;
+        let stored = match shape.kind {
+            Kind::Short => Stored::Shorts(Vec::with_capacity(count), scale),
+            Kind::Single => Stored::Singles(Vec::with_capacity(count)),
+        };
+        Column { channel, stored }
+    }
+
+    /// Adds the samples that begin every `stride` bytes of `data`.
+    fn add(&mut self, data: &[u8], stride: usize, order: Order) {
+        match (&mut self.stored, order) {
+            (Stored::Shorts(own, _), Order::Little) => own.extend(heads(data, stride).map(i16::from_le_bytes)),
+            (Stored::Shorts(own, _), Order::Big) => own.extend(heads(data, stride).map(i16::from_be_bytes)),
+            (Stored::Singles(own), Order::Little) => own.extend(heads(data, stride).map(f32::from_le_bytes)),
+            (Stored::Singles(own), Order::Big) => own.extend(heads(data, stride).map(f32::from_be_bytes)),
+        }
+    }
+
+    /// The first of them.
+    fn samples(self, count: usize) -> Samples {
+        match self.stored {
+            Stored::Shorts(mut own, scale) => {
+                own.truncate(count);
+                Samples::shorts(own, scale)
+            }
+            Stored::Singles(mut own) => {
+                own.truncate(count);
+                Samples::singles(own)
+            }
+        }
+    }
 }
 
 fn unquoted(text: &str) -> String {
@@ -75,15 +117,14 @@ struct Header {
 
 impl Header {
     /// The number of blocks of the header is the second parameter.
-    fn read(bytes: &[u8]) -> Read<Header> {
-        let file = Bytes::of_file(bytes, Order::Little);
+    fn read(file: &Bytes) -> Read<Header> {
         let first = file.take(0, BLOCK, "the first block of the header")?;
         let mut header = Header {
-            parameters: parameters(first),
+            parameters: parameters(&first),
             end: 0,
         };
         header.end = header.whole::<u64>("NUM_HEADER_BLOCKS")?.saturating_mul(BLOCK);
-        header.parameters = parameters(file.take(0, header.end, "the header")?);
+        header.parameters = parameters(&file.take(0, header.end, "the header")?);
         Ok(header)
     }
 
@@ -111,9 +152,9 @@ impl Header {
     }
 
     /// Units in a step of a channel. Stored floating-point numbers are physical values.
-    fn scale(&self, channel: usize, number: Number) -> Read<f64> {
+    fn scale(&self, channel: usize, kind: Kind) -> Read<f64> {
         let name = format!("SCALE.CHAN_{}", channel + 1);
-        if number == Number::I16 {
+        if kind == Kind::Short {
             return self.number(&name, "a number");
         }
         match self.text(&name).map_or(Ok(1.0), |_| self.number(&name, "a number"))? {
@@ -134,6 +175,24 @@ fn parameters(header: &[u8]) -> HashMap<String, String> {
     entries.filter(|(name, _)| !name.is_empty()).collect()
 }
 
+/// How a sample is stored.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    /// A step of the channel's scale.
+    Short,
+    Single,
+}
+
+impl Kind {
+    /// Bytes.
+    fn size(self) -> usize {
+        match self {
+            Kind::Short => 2,
+            Kind::Single => 4,
+        }
+    }
+}
+
 /// How the samples lie.
 struct Shape {
     channels: usize,
@@ -143,16 +202,16 @@ struct Shape {
     /// Of a channel.
     samples: usize,
     step: f64,
-    number: Number,
+    kind: Kind,
     order: Order,
     multiplexed: bool,
 }
 
 impl Shape {
     fn of(header: &Header) -> Read<Shape> {
-        let number = match header.text("DATA_TYPE") {
-            None | Some("SHORT_INTEGER") => Number::I16,
-            Some("FLOATING_POINT") => Number::F32,
+        let kind = match header.text("DATA_TYPE") {
+            None | Some("SHORT_INTEGER") => Kind::Short,
+            Some("FLOATING_POINT") => Kind::Single,
             Some(other) => {
                 let expected = "SHORT_INTEGER or FLOATING_POINT";
                 return Err(Fault::damaged(
@@ -189,7 +248,7 @@ impl Shape {
             points_of_group: header.whole("PTS_PER_GROUP")?,
             samples,
             step: header.number("DELTA_T", "a time in seconds")?,
-            number,
+            kind,
             order,
             multiplexed: header.text("TIME_TYPE").is_some_and(|kind| kind.starts_with("MULT")),
         })
@@ -202,8 +261,8 @@ impl Shape {
             .map_or(0, |_| points.div_ceil(self.points_of_group))
     }
 
-    /// Bytes of a group, once all groups are known to be there.
-    fn check(&self, data: &Bytes) -> Read<usize> {
+    /// Checks that all groups are there.
+    fn check(&self, data: &Bytes) -> Read<()> {
         let Shape {
             channels,
             frames,
@@ -211,7 +270,7 @@ impl Shape {
             points_of_group,
             ..
         } = self;
-        let sizes = [*channels, *points_of_group, self.number.size()];
+        let sizes = [*channels, *points_of_group, self.kind.size()];
         let group = sizes
             .iter()
             .try_fold(1_usize, |all, &size| all.checked_mul(size))
@@ -223,9 +282,9 @@ impl Shape {
             return Err(Fault::damaged(Place::File, found, "at least one sample of one channel"));
         }
         if promised as u64 <= data.len() {
-            return Ok(group);
+            return Ok(());
         }
-        let whole = data.data.len() / group;
+        let whole = data.len() as usize / group;
         let found = format!(
             "{} bytes of samples, in which {whole} groups are whole: the first {} samples of each channel",
             data.len(),
@@ -234,5 +293,28 @@ impl Shape {
         let expected =
             format!("{groups} groups ({frames} frames of {points_of_frame}, {channels} channels, {promised} bytes)");
         Err(Fault::cut_off(data.place(data.len()), found, expected))
+    }
+
+    /// Reads the samples of channels, group by group.
+    fn fill(&self, data: &Bytes, columns: &mut [Column]) -> Read<()> {
+        let size = self.kind.size();
+        let (row, part) = (self.channels * size, self.points_of_group * size);
+        let group = (row * self.points_of_group) as u64;
+        if self.multiplexed && !columns.is_empty() {
+            return data.pieces(0, self.groups() as u64 * group, row as u64, "samples", |rows| {
+                for column in &mut *columns {
+                    column.add(&rows[column.channel * size..], row, self.order);
+                }
+            });
+        }
+        for at in (0..self.groups() as u64).map(|number| number * group) {
+            for column in &mut *columns {
+                let from = at + (column.channel * part) as u64;
+                data.pieces(from, part as u64, size as u64, "samples", |own| {
+                    column.add(own, size, self.order);
+                })?;
+            }
+        }
+        Ok(())
     }
 }

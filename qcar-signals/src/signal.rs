@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use crate::error::{Fault, Place, Read};
+use crate::samples::Samples;
 
 /// All that a file holds.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,8 +27,8 @@ pub struct Signal {
     pub unit: String,
     /// When the samples were taken.
     pub time: TimeBase,
-    /// Physical values in `unit`; not a number where the file has no valid one.
-    pub samples: Vec<f64>,
+    /// Physical values in `unit`. None where the channel was not [`Wanted`](crate::find::Wanted); then its time may be unknown, too.
+    pub samples: Samples,
     /// Texts that stand for values of a channel of states, such as gears.
     pub labels: Vec<(f64, String)>,
     /// Where in the file it comes from.
@@ -140,21 +141,31 @@ impl Recording {
 
 impl Signal {
     pub(crate) fn is_called(&self, name: &str) -> bool {
-        let with_group = name.strip_suffix(&self.name).and_then(|group| group.strip_suffix('/'));
-        self.name == name || with_group.is_some_and(|group| group == self.source.group && !group.is_empty())
+        is_called(name, &self.source.group, &self.name)
     }
 
     /// `group/name`, or the name where there is no group.
     pub fn full_name(&self) -> String {
-        match self.source.group.as_str() {
-            "" => self.name.clone(),
-            group => format!("{group}/{}", self.name),
-        }
+        full_name(&self.source.group, &self.name)
     }
 
     /// The same with the place in the file.
     fn qualified(&self) -> String {
         format!("`{}` at {}", self.full_name(), self.source.place)
+    }
+}
+
+/// Whether `text` is the name of a channel or `group/name`.
+pub(crate) fn is_called(text: &str, group: &str, name: &str) -> bool {
+    let with_group = text.strip_suffix(name).and_then(|before| before.strip_suffix('/'));
+    name == text || with_group.is_some_and(|before| before == group && !group.is_empty())
+}
+
+/// `group/name`, or the name where there is no group.
+pub(crate) fn full_name(group: &str, name: &str) -> String {
+    match group {
+        "" => name.into(),
+        group => format!("{group}/{name}"),
     }
 }
 

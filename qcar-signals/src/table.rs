@@ -154,7 +154,7 @@ impl Filled {
                 name: column.name,
                 unit: column.unit,
                 time: time.clone(),
-                samples,
+                samples: samples.into(),
                 labels: Vec::new(),
                 source: Source {
                     group: group.into(),

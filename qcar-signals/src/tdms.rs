@@ -12,6 +12,7 @@ use std::collections::HashMap;
 
 use crate::bytes::{Bytes, Order};
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
 use crate::units::{in_seconds, is_time, seconds};
 
@@ -30,13 +31,13 @@ const INTERLEAVED: u32 = 1 << 5;
 const BIG_ENDIAN: u32 = 1 << 6;
 
 /// Reads all segments of a file.
-pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
+pub(crate) fn read(bytes: Bytes, wanted: &Wanted) -> Read<Recording> {
     let mut file = File::default();
     let mut at = 0;
     let mut number = 1;
-    while at < bytes.len() as u64 {
-        let lead_in = Bytes::of_file(bytes, Order::Little).part(at, LEAD_IN, "a segment's lead-in")?;
-        if !lead_in.data.starts_with(MAGIC) {
+    while at < bytes.len() {
+        let lead_in = bytes.part(at, LEAD_IN, "a segment's lead-in")?;
+        if !lead_in.starts_with(MAGIC) {
             return Err(Fault::damaged(
                 Place::Byte(at),
                 "something else",
@@ -49,10 +50,10 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         } else {
             Order::Big
         };
-        let lead_in = Bytes { order, ..lead_in };
+        let lead_in = lead_in.in_order(order);
         let (length, raw) = (lead_in.u64(12, "a length")?, lead_in.u64(20, "the place of raw data")?);
-        let segment = segment(bytes, at, order, length, raw, number)?;
-        file.add(&segment, contents, raw, number)?;
+        let segment = segment(&bytes.in_order(order), at, length, raw, number)?;
+        file.add(&segment, contents, raw, number, wanted)?;
         at = at.saturating_add(LEAD_IN).saturating_add(length);
         number += 1;
     }
@@ -60,8 +61,8 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
 }
 
 /// What follows the lead-in of a segment, which must be there in full.
-fn segment(bytes: &[u8], at: u64, order: Order, length: u64, raw: u64, number: u32) -> Read<Bytes<'_>> {
-    let there = bytes.len() as u64 - at - LEAD_IN;
+fn segment<'a>(file: &Bytes<'a>, at: u64, length: u64, raw: u64, number: u32) -> Read<Bytes<'a>> {
+    let there = file.len() - at - LEAD_IN;
     if length > there {
         let promised = match length {
             u64::MAX => "an end that its writer never noted".into(),
@@ -74,7 +75,7 @@ fn segment(bytes: &[u8], at: u64, order: Order, length: u64, raw: u64, number: u
         );
         return Err(Fault::cut_off(Place::Byte(at), found, promised));
     }
-    Bytes::of_file(bytes, order).part(at + LEAD_IN, length, "a segment")
+    file.part(at + LEAD_IN, length, "a segment")
 }
 
 /// What was read of a file so far.
@@ -89,6 +90,7 @@ struct File {
 /// A channel, a group or the file itself.
 struct Object {
     path: String,
+    wanted: bool,
     place: Place,
     properties: Properties,
     /// How its raw data lie in the present segment.
@@ -101,14 +103,14 @@ struct Object {
 }
 
 impl File {
-    fn add(&mut self, segment: &Bytes, contents: u32, raw: u64, number: u32) -> Read<()> {
+    fn add(&mut self, segment: &Bytes, contents: u32, raw: u64, number: u32, wanted: &Wanted) -> Read<()> {
         if contents & HAS_METADATA != 0 {
             if contents & NEW_LIST != 0 {
                 self.active
                     .drain(..)
                     .for_each(|active| self.objects[active].active = false);
             }
-            self.add_objects(segment, raw)?;
+            self.add_objects(segment, raw, wanted)?;
         }
         if contents & HAS_RAW_DATA == 0 {
             return Ok(());
@@ -149,13 +151,13 @@ impl File {
             let found = format!("{length} bytes of data in segment {number}");
             return Err(Fault::damaged(place, found, format!("whole chunks of {chunk} bytes")));
         }
-        for chunk in data.data.chunks_exact(chunk as usize) {
-            self.add_chunk(chunk, &used, interleaved, segment.order);
+        for at in (0..length / chunk).map(|number| number * chunk) {
+            self.add_chunk(&data.part(at, chunk, "a chunk")?, &used, interleaved)?;
         }
         Ok(())
     }
 
-    fn add_objects(&mut self, segment: &Bytes, raw: u64) -> Read<()> {
+    fn add_objects(&mut self, segment: &Bytes, raw: u64, wanted: &Wanted) -> Read<()> {
         let metadata = segment.part(0, raw.min(segment.len()), "objects")?;
         let mut at = 4;
         for _ in 0..metadata.u32(0, "a number of objects")? {
@@ -169,6 +171,7 @@ impl File {
             let index = *self.by_path.entry(new.path.clone()).or_insert_with(|| {
                 self.objects.push(Object {
                     path: new.path.clone(),
+                    wanted: is_read(&new.path, wanted),
                     place,
                     properties: Properties::default(),
                     index: None,
@@ -191,42 +194,58 @@ impl File {
         Ok(())
     }
 
-    fn add_chunk(&mut self, chunk: &[u8], used: &[(usize, Index)], interleaved: bool, order: Order) {
-        let stride: u64 = used.iter().filter_map(|(_, index)| index.size()).sum();
-        let (mut at, mut column) = (0, 0);
+    /// Reads what the wanted objects have in a chunk.
+    fn add_chunk(&mut self, chunk: &Bytes, used: &[(usize, Index)], interleaved: bool) -> Read<()> {
+        if interleaved {
+            self.add_rows(chunk, used)?;
+        }
+        let (order, mut at) = (chunk.order, 0);
         for (object, index) in used {
             let object = &mut self.objects[*object];
             match &index.layout {
-                Layout::Plain(number) if interleaved => {
-                    object.extend(None, number.strided(&chunk[column..], stride as usize, order));
-                    column += number.size();
-                }
+                Layout::Plain(_) if interleaved => {}
                 Layout::Plain(number) => {
-                    let end = at + number.size() * index.count as usize;
-                    object.extend(None, number.all(&chunk[at..end], order));
-                    at = end;
+                    let size = number.size() as u64 * index.count;
+                    if object.wanted {
+                        let own = object.raw_of(None);
+                        own.reserve(index.count as usize);
+                        chunk.pieces(at, size, number.size() as u64, "raw data", |piece| {
+                            number.extend(own, piece, number.size(), order);
+                        })?;
+                    }
+                    at += size;
                 }
                 Layout::Unread { bytes, why } => {
                     object.unread = Some(why.clone());
-                    at += *bytes as usize;
+                    at += *bytes;
                 }
-                Layout::Daqmx { scalers, .. } => {
-                    for Scaler {
-                        id,
-                        number,
-                        buffer,
-                        byte,
-                    } in scalers
-                    {
-                        let Some((buffer, width)) = metadata::buffer(used, chunk, *buffer) else {
-                            continue;
-                        };
-                        let from = buffer.get(*byte as usize..).unwrap_or(&[]);
-                        object.extend(Some(*id), number.strided(from, width, order));
+                Layout::Daqmx { scalers, .. } if object.wanted => {
+                    for scaler in scalers {
+                        if let Some(buffer) = metadata::buffer(used, chunk, scaler.buffer)? {
+                            object.add_daqmx(scaler, &buffer, order)?;
+                        }
                     }
                 }
+                Layout::Daqmx { .. } => {}
             }
         }
+        Ok(())
+    }
+
+    /// The numbers of a chunk that has a value of each object in a row.
+    fn add_rows(&mut self, chunk: &Bytes, used: &[(usize, Index)]) -> Read<()> {
+        let stride: u64 = used.iter().filter_map(|(_, index)| index.size()).sum();
+        chunk.pieces(0, chunk.len(), stride, "raw data", |rows| {
+            let mut column = 0;
+            for (object, index) in used {
+                let Layout::Plain(number) = &index.layout else { continue };
+                let object = &mut self.objects[*object];
+                if object.wanted {
+                    number.extend(object.raw_of(None), &rows[column..], stride as usize, chunk.order);
+                }
+                column += number.size();
+            }
+        })
     }
 
     fn recording(mut self) -> Read<Recording> {
@@ -276,7 +295,7 @@ impl File {
                 name,
                 unit: object.unit(),
                 time,
-                samples,
+                samples: samples.into(),
                 labels: Vec::new(),
                 source: Source {
                     group,
@@ -289,11 +308,21 @@ impl File {
 }
 
 impl Object {
-    fn extend(&mut self, scaler: Option<u32>, values: Vec<f64>) {
-        match self.raw.iter_mut().find(|(own, _)| *own == scaler) {
-            Some((_, all)) => all.extend(values),
-            None => self.raw.push((scaler, values)),
-        }
+    fn raw_of(&mut self, scaler: Option<u32>) -> &mut Vec<f64> {
+        let known = self.raw.iter().position(|(own, _)| *own == scaler);
+        let at = known.unwrap_or_else(|| {
+            self.raw.push((scaler, Vec::new()));
+            self.raw.len() - 1
+        });
+        &mut self.raw[at].1
+    }
+
+    fn add_daqmx(&mut self, scaler: &Scaler, (buffer, width): &(Bytes, u64), order: Order) -> Read<()> {
+        let own = self.raw_of(Some(scaler.id));
+        buffer.pieces(0, buffer.len(), *width, "raw data", |rows| {
+            let from = rows.get(scaler.byte as usize..).unwrap_or(&[]);
+            scaler.number.extend(own, from, *width as usize, order);
+        })
     }
 
     /// Physical values, or why there are none.
@@ -317,6 +346,11 @@ impl Object {
             .unwrap_or("")
             .into()
     }
+}
+
+/// Whether the values of an object are to be read: those of a wanted channel, and what may be its times.
+fn is_read(path: &str, wanted: &Wanted) -> bool {
+    channel_of(path).is_some_and(|(group, name)| wanted.has(&group, &name) || is_time(&name))
 }
 
 /// Group and channel of a path such as `/'rig'/'wheel_left_z'`; a quote within a name is doubled.

@@ -237,7 +237,7 @@ fn function(recording: &mut Recording, lines: &mut Lines, header: &Header, units
         time: time.map_err(|fault| fault.of(&function.name))?,
         name: function.name,
         unit: function.unit,
-        samples,
+        samples: samples.into(),
         labels: Vec::new(),
         source: Source {
             group: function.point,

@@ -1,14 +1,12 @@
 //! Whatever a file holds, it is read or refused: no panic, and no more memory than its bytes can pay for.
 
-#![expect(unsafe_code, reason = "an allocator that counts is an unsafe trait")]
-
+#[path = "../../tests/support/counting.rs"]
+mod counting;
 #[path = "../../fuzz/mutation.rs"]
 mod mutation;
 #[path = "../../fuzz/bodies/recording.rs"]
 mod recording;
 
-use std::alloc::{GlobalAlloc, Layout, System};
-use std::cell::Cell;
 use std::fs;
 use std::io::Write as _;
 use std::panic::catch_unwind;
@@ -20,41 +18,9 @@ use qcar_signals::read::recognise;
 
 use mutation::{Random, mutated};
 
-/// Counts what the thread of a test holds, and the most it held.
-struct Counting;
-
-thread_local! {
-    static HELD: Cell<isize> = const { Cell::new(0) };
-    static MOST: Cell<isize> = const { Cell::new(0) };
-}
-
-fn count(bytes: isize) {
-    let held = HELD.get() + bytes;
-    HELD.set(held);
-    MOST.set(MOST.get().max(held));
-}
-
-unsafe impl GlobalAlloc for Counting {
-    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
-        count(layout.size() as isize);
-        unsafe { System.alloc(layout) }
-    }
-
-    unsafe fn dealloc(&self, place: *mut u8, layout: Layout) {
-        count(-(layout.size() as isize));
-        unsafe { System.dealloc(place, layout) }
-    }
-}
-
-#[global_allocator]
-static ALLOCATOR: Counting = Counting;
-
 /// The most that a reader held beyond what it was given, bytes.
 fn memory_of(bytes: &[u8]) -> isize {
-    let before = HELD.get();
-    MOST.set(before);
-    recording::survives(bytes);
-    MOST.get() - before
+    counting::memory_of(|| recording::survives(bytes))
 }
 
 fn sample(name: &str) -> Vec<u8> {
@@ -152,6 +118,7 @@ fn mat() {
         3000,
     );
     survives(&["mat/testlab_v73.mat", "mat/matlab74_double_v73.mat"], 3000);
+    survives(&["mat/h5py_v114.mat"], 2000);
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn agree_in_channel(file: &str, channel: &Json, recording: &Recording) {
     if channel["last"].is_string() {
         agree_in_labels(&what, channel, signal);
     } else {
-        agree_in_numbers(&what, channel, &signal.samples);
+        agree_in_numbers(&what, channel, &signal.samples.to_vec());
     }
     if let Some(invalid) = channel["invalid_samples"].as_array() {
         let missing = signal.samples.iter().enumerate().filter(|(_, value)| value.is_nan());
@@ -137,7 +137,7 @@ fn agree_in_time(what: &str, channel: &Json, signal: &Signal) {
 
 fn agree_in_labels(what: &str, channel: &Json, signal: &Signal) {
     let label = |value: f64| &signal.labels.iter().find(|(code, _)| *code == value).unwrap().1;
-    let first: Vec<_> = signal.samples[..3].iter().map(|&value| label(value).as_str()).collect();
+    let first: Vec<_> = signal.samples.range(0..3).map(|value| label(value).as_str()).collect();
     let expected: Vec<_> = channel["first3"]
         .as_array()
         .unwrap()
@@ -146,7 +146,7 @@ fn agree_in_labels(what: &str, channel: &Json, signal: &Signal) {
         .collect();
     assert_eq!(first, expected, "{what}");
     assert_eq!(
-        label(*signal.samples.last().unwrap()),
+        label(signal.samples.iter().next_back().unwrap()),
         channel["last"].as_str().unwrap(),
         "{what}"
     );
@@ -445,4 +445,46 @@ fn a_cell_that_is_no_number_is_named() {
     for (table, parts) in cases {
         says(&recognise(table.as_bytes()).unwrap_err().to_string(), &parts);
     }
+}
+
+/// A file of the latest version of HDF5, made by h5py with these formulas: in one piece, and in chunks with each kind of index.
+#[test]
+fn hdf5_as_newer_libraries_write_it_is_read() {
+    let recording = read(&sample("mat/h5py_v114.mat").unwrap()).unwrap_or_else(|error| panic!("{error}"));
+    type Formula = (&'static str, fn(f64) -> f64);
+    let expected: [Formula; 4] = [
+        ("one_piece", |at| 0.25 * at),
+        ("packed", |at| at * at),
+        ("growing", |at| -at),
+        ("short", |at| at),
+    ];
+    assert_eq!(recording.signals.len(), expected.len(), "{:?}", names(&recording));
+    let at = || (0..1000).map(f64::from);
+    for (name, of) in expected {
+        let signal = recording.signal(name).unwrap_or_else(|fault| panic!("{fault}"));
+        assert_eq!(signal.samples, at().map(of).collect::<Vec<_>>(), "{name}");
+        let TimeBase::Times(times) = &signal.time else {
+            panic!("{name}: no times")
+        };
+        assert!(times.iter().copied().eq(at().map(|at| at / 500.0)), "{name}");
+    }
+    let text = recording.scalars.iter().find(|scalar| scalar.name == "text").unwrap();
+    assert_eq!(text.value, Value::Text("Grüße".into()));
+    let passed: Vec<_> = recording
+        .passed_over
+        .iter()
+        .map(|passed| passed.name.as_str())
+        .collect();
+    assert_eq!(passed, ["both_growing", "capture"]);
+}
+
+/// What the latest version began with is passed over, and the rest is read.
+#[test]
+fn a_layout_of_hdf5_2_is_passed_over() {
+    let recording = read(&sample("mat/h5py_latest.mat").unwrap()).unwrap_or_else(|error| panic!("{error}"));
+    assert_eq!(names(&recording), ["one_piece"]);
+    let [passed] = &recording.passed_over[..] else {
+        panic!("{:?}", recording.passed_over)
+    };
+    assert!(passed.name == "packed" && passed.why.contains("HDF5 2.0"), "{passed:?}");
 }

@@ -102,7 +102,7 @@ fn arrays_texts_and_structures_come_back_from_mat() {
     let recording = read_back("ride.mat", &v5("a test", &variables).unwrap());
     let signal = |name: &str| recording.signals.iter().find(|own| own.name == name).unwrap();
     assert_eq!(
-        (signal("f").unit.as_str(), &signal("f").samples[..]),
+        (signal("f").unit.as_str(), &signal("f").samples.to_vec()[..]),
         ("N", &[0.1, -0.2, 1e300][..])
     );
     assert_eq!(times(signal("a")), [0.0, 0.5, 1.0]);

@@ -5,7 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use qcar_runtime::bounded;
 use qcar_signals::error::ReadError;
-use qcar_signals::read::recognise;
+use qcar_signals::find::Wanted;
+use qcar_signals::read::channels;
+use qcar_signals::samples::Samples;
 use qcar_signals::signal::{Recording, Scalar, Signal, Value};
 use serde::Serialize;
 
@@ -49,9 +51,9 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 /// # Errors
 /// A file that cannot be read.
 pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
-    let bytes = bounded::measured_file(file, "correct the path, or put the file there")?;
+    let content = bounded::measured_file(file, "correct the path, or put the file there")?;
     let file = file.into();
-    recognise(&bytes).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
+    channels(&content, &Wanted::All).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
 }
 
 /// What a file holds, as JSON.
@@ -114,7 +116,7 @@ impl<'a> Inspected<'a> {
 
 impl<'a> Channel<'a> {
     fn of(signal: &'a Signal) -> Self {
-        let valid = || signal.samples.iter().copied().filter(|value| value.is_finite());
+        let valid = || signal.samples.iter().filter(|value| value.is_finite());
         let count = valid().count();
         let mean = |sum: f64| (count > 0).then(|| sum / count as f64);
         Channel {
@@ -160,7 +162,7 @@ impl<'a> Single<'a> {
 pub(super) fn text(recording: &Recording) -> String {
     let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
     if !recording.signals.is_empty() {
-        text += &format!("\n{}", channels(recording));
+        text += &format!("\n{}", table(recording));
     }
     if !recording.scalars.is_empty() {
         text += &format!("\n{}", scalars(recording));
@@ -174,7 +176,7 @@ pub(super) fn text(recording: &Recording) -> String {
         .collect::<String>()
 }
 
-fn channels(recording: &Recording) -> String {
+fn table(recording: &Recording) -> String {
     let headings = [
         "channel", "group", "unit", "samples", "missing", "rate_Hz", "start_s", "min", "max", "rms", "",
     ];
@@ -218,11 +220,13 @@ fn scalars(recording: &Recording) -> String {
 }
 
 /// The course of a channel in a few characters: the means of as many parts, from the lowest to the highest.
-fn sparkline(samples: &[f64]) -> String {
+fn sparkline(samples: &Samples) -> String {
     let part = samples.len().div_ceil(SPARKS).max(1);
-    let means = samples.chunks(part).map(|part| {
-        let valid: Vec<f64> = part.iter().copied().filter(|value| value.is_finite()).collect();
-        valid.iter().sum::<f64>() / valid.len() as f64
+    let means = (0..samples.len()).step_by(part).map(|from| {
+        let valid = samples
+            .range(from..samples.len().min(from + part))
+            .filter(|value| value.is_finite());
+        valid.clone().sum::<f64>() / valid.count() as f64
     });
     let means: Vec<f64> = means.collect();
     let low = means.iter().copied().fold(f64::INFINITY, f64::min);

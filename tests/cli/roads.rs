@@ -140,7 +140,10 @@ fn a_road_is_the_same_from_whichever_file() {
     let road = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join(CRG)).unwrap();
     let [u, left] = ["u", "v=0.3"].map(|name| &road.signal(name).unwrap().samples);
     let table = |head: &str, scale: f64| {
-        let rows = u.iter().zip(left).map(|(u, z)| format!("{u};{};{}\n", scale * z, 0.0));
+        let rows = u
+            .iter()
+            .zip(left.iter())
+            .map(|(u, z)| format!("{u};{};{}\n", scale * z, 0.0));
         format!("{head}\n{}", rows.collect::<String>())
     };
     fs::write(folder.path().join("metres.csv"), table("x;z;other [V]", 1.0)).unwrap();
@@ -338,7 +341,7 @@ fn a_cleat_may_be_a_road_of_a_measured_file() {
     let manifest = folder.path().join("campaign.toml");
     let text = fs::read_to_string(&manifest).unwrap();
     let road = read(&folder.path().join("road/cleat_20.csv.gz")).unwrap();
-    let own = ["x", "z", "slope"].map(|name| &road.signal(name).unwrap().samples);
+    let own = ["x", "z", "slope"].map(|name| road.signal(name).unwrap().samples.to_vec());
     let row = |at: usize| format!("{}\t{}\t{}\n", own[0][at], 1e3 * own[1][at], own[2][at]);
     let rows = (0..own[0].len()).map(row);
     let table = format!("Distance [m]\tProfile [mm]\tslope\n{}", rows.collect::<String>());

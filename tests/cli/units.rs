@@ -169,7 +169,7 @@ fn a_run_in_other_units_is_the_run() {
         };
         assert_eq!((&a.name, b.unit.as_str()), (&b.name, unit));
         let largest = a.samples.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        for (a, b) in a.samples.iter().zip(&b.samples) {
+        for (a, b) in a.samples.iter().zip(b.samples.iter()) {
             assert!((a * size - b).abs() <= 1e-12 * largest * size);
         }
     }

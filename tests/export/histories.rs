@@ -97,7 +97,7 @@ fn our_own_readers_read_what_is_written() {
                 };
                 (
                     signal.name.clone(),
-                    (signal.unit.clone(), times, signal.samples.clone()),
+                    (signal.unit.clone(), times, signal.samples.to_vec()),
                 )
             };
             agree(&recording.signals.iter().map(channel).collect(), &file("csv"), end);

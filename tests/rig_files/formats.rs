@@ -166,3 +166,26 @@ fn rpc_gives_the_same_fit_within_its_rounding() {
         );
     }
 }
+
+/// The samples as RPC III rounds them, which MAT holds in full.
+fn rounded(group: &Group) -> Group {
+    let channel = |own: &Channel| {
+        let step = rpc::step(own);
+        let samples = own.samples.iter().map(|value| (value / step).round() * step);
+        Channel::new(&own.name, &own.unit, samples.collect())
+    };
+    Group {
+        rate: group.rate,
+        channels: group.channels.iter().map(channel).collect(),
+    }
+}
+
+#[test]
+fn rpc_gives_the_same_fit_as_its_samples_in_another_file() {
+    let (own, _) = both("rsp", rpc::file);
+    let (other, _) = both("mat", |group| mat5::file(&rounded(group)));
+    assert!(own.len() >= 8 && own.len() == other.len(), "{own:?} {other:?}");
+    for ((name, value, _), (_, same, _)) in own.into_iter().zip(other) {
+        assert!((value / same - 1.0).abs() < SAME, "{name} is {value}, not {same}");
+    }
+}

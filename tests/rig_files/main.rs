@@ -1,11 +1,15 @@
 //! A campaign whose runs are files of rigs and other programs.
 
+#[path = "../support/counting.rs"]
+mod counting;
 // What samples show to be wrong.
 mod findings;
 // The same fit from every format.
 mod formats;
 // A campaign begun with files.
 mod import;
+// How much of a long recording is in memory.
+mod memory;
 // What is refused, and how.
 mod refused;
 // Parts of a recording, and channels of several rates.

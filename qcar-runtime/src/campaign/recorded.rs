@@ -40,11 +40,19 @@ impl Campaign {
         };
         taps.iter().filter(|tap| !run.without.contains(&tap.name)).collect()
     }
+
+    /// The channels of its file that a run is made of.
+    fn sources(&self, run: &Run) -> Vec<String> {
+        let taps = self.taps_of(run).into_iter().map(|tap| tap.source.clone());
+        let trigger = run.window.trigger.iter().map(|trigger| trigger.channel.clone());
+        taps.chain(trigger).collect()
+    }
 }
 
 /// The highest rate among the channels of a file that `taps` mean, Hz.
 pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<f64, InputError> {
-    let recording = files.get(file)?;
+    let sources: Vec<String> = taps.iter().map(|tap| tap.source.clone()).collect();
+    let recording = files.with(file, &sources)?;
     let (mut highest, mut is_any) = (0.0_f64, false);
     for tap in taps.iter().filter(|tap| recording.has(&tap.source)) {
         let signal = recording.find(&tap.source);
@@ -66,7 +74,7 @@ pub(super) fn highest_rate(files: &Files, file: &Path, taps: &[&Tap]) -> Result<
 /// Reads a run.
 pub(super) fn record(campaign: &Campaign, files: &Files, run: &Run) -> Result<Recorded, InputError> {
     let file = campaign.folder.join(&run.file);
-    let recording = files.get(&file)?;
+    let recording = files.with(&file, &campaign.sources(run))?;
     // A quasi-static curve needs no times.
     let declared = run.test.sample_rate().or(run.test.is_curve().then_some(1.0));
     let span = Span::of(&file, &recording, &run.window, declared)?;

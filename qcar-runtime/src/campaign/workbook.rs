@@ -173,15 +173,14 @@ fn roads(cells: &mut Cells<'_>, recording: &Recording, file: &str) -> Vec<Road> 
         match (filled(x), z.and_then(filled)) {
             (None, None) => {}
             (Some(count), Some(other)) if count == other => {
-                let heights = z.map_or(&[][..], |z| &z.samples[..count]);
-                let lengths = [&x.samples[..count], heights];
+                let heights = z.map_or_else(Vec::new, |z| z.samples.range(0..count).collect());
                 let units = [x, z.unwrap_or(x)].map(|signal| length(cells, signal));
                 if let [Some(of_x), Some(of_z)] = units {
-                    let corners = lengths[0].iter().zip(lengths[1]);
+                    let corners = x.samples.range(0..count).zip(heights);
                     roads.push(Road {
                         name: name.into(),
                         file: file.into(),
-                        profile: Profile::Corners(corners.map(|(x, z)| [of_x.si(*x), of_z.si(*z)]).collect()),
+                        profile: Profile::Corners(corners.map(|(x, z)| [of_x.si(x), of_z.si(z)]).collect()),
                     });
                 }
             }

@@ -1,41 +1,48 @@
 //! HDF5, as far as MATLAB uses it for version 7.3: groups of symbol tables, object headers of version 1, data in one piece or
 //! in chunks, deflated or not.
 //!
-//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. A file written for the latest version only is refused.
+//! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. Files of superblock versions 2 and 3 are read by the crate that
+//! writes them here.
 
 // What the messages of an object header say.
 mod messages;
 // The bytes of a dataset.
 mod storage;
+// Newer versions.
+mod latest;
 
 use std::collections::HashSet;
 
-use crate::bytes::{Bytes, Number, Order, Origin, field, text};
+use crate::bytes::{Bytes, Number, Order, field, text};
 use crate::error::{Fault, Read};
+use crate::find::Wanted;
 
-use super::value::{Array, Fields, Value, Variable};
+use super::value::{Array, Fields, Value, Variable, is_read, of_fields};
 
 use messages::{Class, Header};
 
-const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
+pub(super) const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
 /// Groups within groups.
 const DEEPEST: usize = 16;
 
 /// The byte at which a superblock stands, if there is one where HDF5 allows it.
-pub(super) fn superblock(bytes: &[u8]) -> Option<usize> {
+pub(super) fn superblock(file: &Bytes) -> Option<u64> {
     let places = std::iter::once(0).chain((9..24).map(|power| 1 << power));
-    let mut places = places.take_while(|&at| at < bytes.len());
-    places.find(|&at| bytes[at..].starts_with(SIGNATURE))
+    let mut places = places.take_while(|&at| at < file.len());
+    let stands_at = |at: u64| {
+        file.part(at, file.len() - at, "a superblock")
+            .is_ok_and(|rest| rest.starts_with(SIGNATURE))
+    };
+    places.find(|&at| stands_at(at))
 }
 
 /// All variables of a file whose superblock stands at byte `at`.
-pub(super) fn variables(bytes: &[u8], at: usize) -> Read<Vec<Variable>> {
-    let file = Bytes {
-        data: &bytes[at..],
-        order: Order::Little,
-        origin: Origin::At(at as u64),
-    };
+pub(super) fn variables(file: &Bytes, at: u64, wanted: &Wanted) -> Read<Vec<Variable>> {
+    let file = file.part(at, file.len() - at, "HDF5")?;
     let version = file.u8(8, "the superblock")?;
+    if matches!(version, 2 | 3) {
+        return latest::variables(&file, wanted);
+    }
     let sizes = (file.u8(13, "the superblock")?, file.u8(14, "the superblock")?);
     if version > 1 || sizes != (8, 8) {
         let found = format!("a superblock of version {version}");
@@ -51,7 +58,9 @@ pub(super) fn variables(bytes: &[u8], at: usize) -> Read<Vec<Variable>> {
     for (name, address) in reader.members(&header)? {
         // Names of MATLAB's own begin with #.
         if !name.starts_with('#') {
-            let value = reader.value(address, DEEPEST).map_err(|fault| fault.of(&name))?;
+            let value = reader
+                .variable(&name, address, wanted)
+                .map_err(|fault| fault.of(&name))?;
             variables.push(Variable {
                 name,
                 value,
@@ -82,6 +91,17 @@ impl<'a> Reader<'a> {
         Err(Fault::damaged(self.file.place(at), found, "links that lead on"))
     }
 
+    /// The value of a variable.
+    fn variable(&mut self, name: &str, address: u64, wanted: &Wanted) -> Read<Value> {
+        let header = Header::read(&self.file, address)?;
+        let numbers = matches!(header.datatype.map(|datatype| datatype.class), Some(Class::Number(_)));
+        let skipped = numbers && header.matlab_class != "char" && !is_read(name, &header.dimensions, wanted);
+        if skipped && !header.is_empty {
+            return Ok(Value::Numbers(Array::unread(header.dimensions)));
+        }
+        self.value(address, DEEPEST)
+    }
+
     /// The value of the object at an address.
     fn value(&mut self, address: u64, depth: usize) -> Read<Value> {
         self.first_time(address)?;
@@ -110,54 +130,32 @@ impl<'a> Reader<'a> {
                 numbers: Vec::new(),
             }));
         }
-        let (bytes, mut dimensions) = self.data(&header)?;
-        let order = header.datatype.map_or(Order::Little, |datatype| datatype.order);
-        let numbers = number.all(&bytes, order);
+        let numbers = self.numbers(&header, number)?;
         if header.matlab_class == "char" {
             let units: Vec<u16> = numbers.iter().map(|&unit| unit as u16).collect();
             return Ok(Value::Text(String::from_utf16_lossy(&units)));
         }
         // HDF5 counts its dimensions from the other end.
+        let mut dimensions = header.dimensions;
         dimensions.reverse();
         Ok(Value::Numbers(Array { dimensions, numbers }))
     }
 
-    /// A group as a structure. Where every field is a list of references, it is a structure array of as many elements.
+    /// A group as a structure or a structure array.
     fn structure(&mut self, header: &Header<'a>, depth: usize) -> Read<Value> {
         let mut fields = Fields::new();
-        let mut elements = 1;
-        let mut all_lists = true;
         for (name, address) in self.members(header)? {
             let value = self.value(address, depth).map_err(|fault| fault.of(&name))?;
-            match &value {
-                Value::Cells(cells) => elements = elements.max(cells.len()),
-                _ => all_lists = false,
-            }
             fields.push((name, value));
         }
-        if !all_lists || fields.is_empty() {
-            return Ok(Value::Structs(vec![fields]));
-        }
-        let mut lists: Vec<(String, std::vec::IntoIter<Value>)> = Vec::new();
-        for (name, value) in fields {
-            if let Value::Cells(cells) = value {
-                lists.push((name, cells.into_iter()));
-            }
-        }
-        let element = |_| {
-            lists
-                .iter_mut()
-                .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
-                .collect()
-        };
-        Ok(Value::Structs((0..elements).map(element).collect()))
+        Ok(of_fields(fields))
     }
 
     fn cells(&mut self, header: &Header<'a>, depth: usize) -> Read<Vec<Value>> {
         if depth == 0 || header.is_empty {
             return Ok(Vec::new());
         }
-        let (bytes, _) = self.data(header)?;
+        let bytes = self.data(header)?;
         let addresses = bytes.chunks_exact(8).filter_map(|address| address.first_chunk());
         addresses
             .map(|&address| self.value(u64::from_le_bytes(address), depth - 1))
@@ -171,21 +169,21 @@ impl<'a> Reader<'a> {
         };
         let heap = self.file.part(heap, 32, "a heap of names")?;
         let size = heap.u64(8, "the size of names")?;
-        let names = self.file.part(heap.u64(24, "the place of names")?, size, "names")?;
+        let names = self.file.take(heap.u64(24, "the place of names")?, size, "names")?;
         let mut members = Vec::new();
         for node in self.leaves(tree, 0, 0)? {
             let head = self.file.part(node.child, 8, "symbols")?;
-            if !head.data.starts_with(b"SNOD") {
+            if !head.starts_with(b"SNOD") {
                 return Err(Fault::damaged(
                     head.place(0),
-                    format!("`{}`", text(&head.data[..4])),
+                    format!("`{}`", text(&head.take(0, 4, "a signature")?)),
                     "symbols (`SNOD`)",
                 ));
             }
             let count = u64::from(head.u16(6, "a number of symbols")?);
             let symbols = self.file.part(node.child + 8, 40 * count, "symbols")?;
             for at in (0..count).map(|index| 40 * index) {
-                let name = names.data.get(symbols.u64(at, "a name")? as usize..).unwrap_or(&[]);
+                let name = names.get(symbols.u64(at, "a name")? as usize..).unwrap_or(&[]);
                 let name = field(&name[..name.len().min(LONGEST_NAME)]);
                 members.push((name, symbols.u64(at + 8, "an address")?));
             }
@@ -201,10 +199,10 @@ impl<'a> Reader<'a> {
         while let Some(at) = nodes.pop() {
             self.first_time(at)?;
             let head = self.file.part(at, 24, "a tree")?;
-            if !head.data.starts_with(b"TREE") || head.data[4] != kind {
+            if !head.starts_with(b"TREE") || head.u8(4, "the kind of a tree")? != kind {
                 return Err(Fault::damaged(
                     head.place(0),
-                    format!("`{}`", text(&head.data[..4])),
+                    format!("`{}`", text(&head.take(0, 4, "a signature")?)),
                     "a tree (`TREE`)",
                 ));
             }
@@ -212,7 +210,7 @@ impl<'a> Reader<'a> {
             let entries = self.file.part(at + 24, count * (key + 8), "entries of a tree")?;
             let mut children = Vec::new();
             for entry in (0..count).map(|index| index * (key + 8)) {
-                let numbers = Number::U64.all(entries.take(entry, key, "a key")?, Order::Little);
+                let numbers = Number::U64.all(&entries.take(entry, key, "a key")?, Order::Little);
                 let child = entries.u64(entry + key, "an address")?;
                 let size = entries.u32(entry, "the size of a chunk")?;
                 let skipped = if kind == 0 {
@@ -228,7 +226,7 @@ impl<'a> Reader<'a> {
                     child,
                 });
             }
-            match head.data[5] {
+            match head.u8(5, "the level of a tree")? {
                 0 => leaves.extend(children),
                 _ => nodes.extend(children.iter().rev().map(|leaf| leaf.child)),
             }

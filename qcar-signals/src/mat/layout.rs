@@ -1,30 +1,31 @@
 //! Channels from variables: structures as Testlab exports them, captures as dSPACE writes them, and plain arrays.
 
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::{Recording, Scalar, Signal, Source, TimeBase, Value as Single, evenly};
 use crate::units::{in_seconds, is_time, seconds};
 
 use super::value::{Array, Value, Variable};
 
 /// The channels of a file.
-pub(super) fn recording(format: &str, variables: Vec<Variable>) -> Read<Recording> {
+pub(super) fn recording(format: &str, variables: Vec<Variable>, wanted: &Wanted) -> Read<Recording> {
     let mut recording = Recording::new(format);
     let mut arrays = Vec::new();
     for Variable { name, value, place } in variables {
         if value.at(&["y_values", "values"]).is_some() {
-            testlab(&mut recording, &name, &value, &place).map_err(|fault| fault.of(&name))?;
+            testlab(&mut recording, &name, &value, &place, wanted).map_err(|fault| fault.of(&name))?;
         } else if value.at(&["X"]).is_some() && value.at(&["Y"]).is_some() {
-            dspace(&mut recording, &name, value, &place).map_err(|fault| fault.of(&name))?;
+            dspace(&mut recording, &name, value, &place, wanted).map_err(|fault| fault.of(&name))?;
         } else {
             match value {
-                Value::Numbers(array) => match array.numbers.as_slice() {
-                    &[number] => recording.scalars.push(Scalar {
+                Value::Numbers(array) => match (array.len(), array.numbers.as_slice()) {
+                    (1, &[number]) => recording.scalars.push(Scalar {
                         name,
                         unit: String::new(),
                         value: Single::Number(number),
                         place,
                     }),
-                    [] => recording.pass_over(name, place, "an empty array"),
+                    (0, _) => recording.pass_over(name, place, "an empty array"),
                     _ => arrays.push((name, array, place)),
                 },
                 Value::Text(text) => recording.scalars.push(Scalar {
@@ -41,7 +42,7 @@ pub(super) fn recording(format: &str, variables: Vec<Variable>) -> Read<Recordin
             }
         }
     }
-    plain(&mut recording, arrays)?;
+    plain(&mut recording, arrays, wanted)?;
     Ok(recording)
 }
 
@@ -52,7 +53,7 @@ fn missing(place: &Place, what: &str, expected: &str) -> Box<Fault> {
 
 /// `x_values` with start, increment and unit, `y_values` with values, and `function_record` with a name. Values are shown in
 /// the unit of the label: what is stored, less the offset, by the factor of its transformation.
-fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Place) -> Read<()> {
+fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Place, wanted: &Wanted) -> Read<()> {
     let quantity = ["y_values", "quantity"];
     let transformation = |name: &str| value.number(&["y_values", "quantity", "unit_transformation", name]);
     let (factor, offset) = (
@@ -82,6 +83,8 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
     };
     let along = |key: &str| value.number(&["x_values", key]);
     let step = along("increment").ok_or_else(|| missing(place, "x_values.increment", "the time step"))?;
+    let stored = if wanted.has(variable, &name) { stored } else { &[] };
+    let samples: Vec<f64> = stored.iter().map(|stored| (stored - offset) / factor).collect();
     recording.signals.push(Signal {
         name,
         unit: label(&quantity),
@@ -90,7 +93,7 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
             step * per_unit,
             place.clone(),
         )?,
-        samples: stored.iter().map(|stored| (stored - offset) / factor).collect(),
+        samples: samples.into(),
         labels: Vec::new(),
         source: Source {
             group: variable.into(),
@@ -102,7 +105,7 @@ fn testlab(recording: &mut Recording, variable: &str, value: &Value, place: &Pla
 
 /// `X`, of which an element holds the times, and `Y`, each element a channel with `Name`, `Data` and `Unit`; `XIndex` says
 /// which element of `X` is meant, from 1.
-fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &Place) -> Read<()> {
+fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &Place, wanted: &Wanted) -> Read<()> {
     let mut elements = |name: &str| value.take(name).map(Value::into_elements).unwrap_or_default();
     let times = elements("X")
         .iter()
@@ -123,11 +126,16 @@ fn dspace(recording: &mut Recording, variable: &str, mut value: Value, place: &P
             let found = format!("{} samples at {} times", samples.len(), times.len());
             return Err(Fault::damaged(place.clone(), found, "as many samples as times").of(&name));
         }
+        let samples = if wanted.has(variable, &name) {
+            samples
+        } else {
+            Vec::new()
+        };
         recording.signals.push(Signal {
             name,
             unit: channel.text(&["Unit"]).unwrap_or("").into(),
             time,
-            samples,
+            samples: samples.into(),
             labels: Vec::new(),
             source: Source {
                 group: variable.into(),
@@ -163,11 +171,11 @@ fn times_of(times: &[f64], factor: f64, name: &str, place: &Place) -> Read<TimeB
 
 /// Vectors and the columns of matrices. One that is named as times are is the time base of those of its length. Where that is
 /// as long as the rows of a matrix, its rows are channels.
-fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>) -> Read<()> {
+fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>, wanted: &Wanted) -> Read<()> {
     let mut bases: Vec<(usize, TimeBase)> = Vec::new();
     let mut channels = Vec::new();
     for (name, array, place) in arrays {
-        let length = array.numbers.len();
+        let length = array.len();
         if array.is_vector() && is_time(&name) && bases.iter().all(|(known, _)| *known != length) {
             bases.push((length, times_of(&array.numbers, 1.0, &name, &place)?));
         } else {
@@ -181,12 +189,13 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>) -> Read
             .map(|(_, base)| base.clone())
     };
     for (name, array, place) in channels {
-        for (name, samples) in split(&name, array, &|length| base(length).is_some()) {
+        for (name, length, samples) in split(&name, array, &|length| base(length).is_some()) {
+            let samples = if wanted.has("", &name) { samples } else { Vec::new() };
             recording.signals.push(Signal {
                 name,
                 unit: String::new(),
-                time: base(samples.len()).unwrap_or(TimeBase::Unknown),
-                samples,
+                time: base(length).unwrap_or(TimeBase::Unknown),
+                samples: samples.into(),
                 labels: Vec::new(),
                 source: Source {
                     group: String::new(),
@@ -198,19 +207,22 @@ fn plain(recording: &mut Recording, arrays: Vec<(String, Array, Place)>) -> Read
     Ok(())
 }
 
-/// The channels in an array: itself, or its columns or rows. Of more dimensions, all but the first are taken as columns.
-fn split(name: &str, array: Array, is_timed: &dyn Fn(usize) -> bool) -> Vec<(String, Vec<f64>)> {
+/// The channels in an array: itself, or its columns or rows, each with its length. Of more dimensions, all but the first are taken
+/// as columns. One that was not read stays whole.
+fn split(name: &str, array: Array, is_timed: &dyn Fn(usize) -> bool) -> Vec<(String, usize, Vec<f64>)> {
     let rows = array.dimensions.first().map_or(1, |&rows| rows as usize).max(1);
-    let columns = array.numbers.len() / rows;
-    if array.is_vector() {
-        vec![(name.into(), array.numbers)]
+    let columns = array.len() / rows;
+    if array.is_vector() || array.numbers.is_empty() {
+        vec![(name.into(), array.len(), array.numbers)]
     } else if is_timed(columns) && !is_timed(rows) {
         let row = |at: usize| array.numbers.iter().skip(at).step_by(rows).copied().collect();
-        (0..rows).map(|at| (format!("{name}[{at},:]"), row(at))).collect()
+        (0..rows)
+            .map(|at| (format!("{name}[{at},:]"), columns, row(at)))
+            .collect()
     } else {
         let columns = array.numbers.chunks_exact(rows).enumerate();
         columns
-            .map(|(at, column)| (format!("{name}[:,{at}]"), column.to_vec()))
+            .map(|(at, column)| (format!("{name}[:,{at}]"), rows, column.to_vec()))
             .collect()
     }
 }

@@ -7,25 +7,29 @@ use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
 
-use crate::bytes::{Bytes, Number, Order, Origin, field, text};
+use crate::bytes::{Bytes, Number, Order, field, text};
+use crate::content::Content;
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 
 use super::HEADER;
-use super::value::{Array, Fields, Value, Variable};
+use super::value::{Array, Fields, Value, Variable, is_read};
 
 const PACKED: u32 = 15;
 const MATRIX: u32 = 14;
+/// Packed bytes in which the name of a variable stands.
+const MOST_OF_A_HEAD: u64 = 4096;
 /// Structures within structures.
 const DEEPEST: usize = 32;
 
 /// All variables of a file.
-pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
-    let order = if bytes[HEADER - 2..HEADER] == *b"IM" {
+pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
+    let order = if *file.take(HEADER as u64 - 2, 2, "the byte order")? == *b"IM" {
         Order::Little
     } else {
         Order::Big
     };
-    let file = Bytes::of_file(bytes, order);
+    let file = file.in_order(order);
     let mut variables: Vec<Variable> = Vec::new();
     let mut at = HEADER as u64;
     while at < file.len() {
@@ -40,18 +44,13 @@ pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
         let place = Place::Byte(at);
         let unpacked;
         let variable = if element.kind == PACKED {
-            unpacked = unpack(&element, at, u64::MAX)?;
-            let inside = Bytes {
-                data: &unpacked,
-                order,
-                origin: Origin::PackedAt(at),
-            };
-            self::element(&inside, 0)?
+            unpacked = Content::of_bytes(unpack(&element, at)?);
+            self::element(&Bytes::unpacked(&unpacked, order, at), 0)?
         } else {
             element
         };
         if variable.kind == MATRIX {
-            let (name, value) = matrix(&variable.data, DEEPEST)?;
+            let (name, value) = matrix(&variable.data, DEEPEST, wanted)?;
             variables.push(Variable { name, value, place });
         }
         at = element.next;
@@ -59,13 +58,11 @@ pub(super) fn variables(bytes: &[u8]) -> Read<Vec<Variable>> {
     Ok(variables)
 }
 
-/// What a packed element holds, at most `most` bytes of it.
-fn unpack(element: &Element, at: u64, most: u64) -> Read<Vec<u8>> {
+/// What a packed element holds.
+fn unpack(element: &Element, at: u64) -> Read<Vec<u8>> {
+    let packed = element.data.all("packed data")?;
     let mut unpacked = Vec::new();
-    match ZlibDecoder::new(element.data.data)
-        .take(most)
-        .read_to_end(&mut unpacked)
-    {
+    match ZlibDecoder::new(&*packed).read_to_end(&mut unpacked) {
         Ok(_) => Ok(unpacked),
         Err(error) => {
             let found = format!("packed data that end with: {error}");
@@ -76,22 +73,20 @@ fn unpack(element: &Element, at: u64, most: u64) -> Read<Vec<u8>> {
 
 /// The name of a variable of which only the beginning is there.
 fn name_of_packed(file: &Bytes, at: u64) -> Option<String> {
-    let packed = file.data.get(at as usize + 8..)?;
+    let there = file.len().checked_sub(at + 8)?;
+    let packed = file.take(at + 8, there.min(MOST_OF_A_HEAD), "packed data").ok()?;
     let mut begin = [0; 256];
     let mut length = 0;
-    let mut decoder = ZlibDecoder::new(packed);
+    let mut decoder = ZlibDecoder::new(&*packed);
     while let Ok(more @ 1..) = decoder.read(&mut begin[length..]) {
         length += more;
     }
-    let bytes = Bytes {
-        data: &begin[..length],
-        order: file.order,
-        origin: Origin::PackedAt(at),
-    };
+    let content = Content::of_bytes(&begin[..length]);
+    let bytes = Bytes::unpacked(&content, file.order, at);
     // Behind the tag of the matrix, its flags and its dimensions.
     let dimensions = element(&bytes, 24).ok()?;
     let name = element(&bytes, dimensions.next).ok()?;
-    Some(field(name.data.data))
+    Some(field(&name.data.all("a name").ok()?))
 }
 
 /// A piece of a file.
@@ -127,17 +122,17 @@ fn element<'a>(from: &Bytes<'a>, at: u64) -> Read<Element<'a>> {
 }
 
 /// Elements of a matrix: flags, dimensions, name, then what its class says.
-fn matrix(data: &Bytes, depth: usize) -> Read<(String, Value)> {
-    if data.data.is_empty() {
+fn matrix(data: &Bytes, depth: usize, wanted: &Wanted) -> Read<(String, Value)> {
+    if data.len() == 0 {
         return Ok((String::new(), Value::Other("nothing")));
     }
     let flags = element(data, 0)?;
     let class = flags.data.u32(0, "flags")?;
     let dimensions = element(data, flags.next)?;
     let name_element = element(data, dimensions.next)?;
-    let name = field(name_element.data.data);
+    let name = field(&name_element.data.all("a name")?);
     let dimensions: Vec<u64> = Number::I32
-        .all(dimensions.data.data, data.order)
+        .all(&dimensions.data.all("dimensions")?, data.order)
         .into_iter()
         .map(|d| d as u64)
         .collect();
@@ -146,8 +141,11 @@ fn matrix(data: &Bytes, depth: usize) -> Read<(String, Value)> {
     let value = match class & 0xff {
         1 => cells(data, at, depth).map(Value::Cells),
         2 => structs(data, at, depth).map(Value::Structs),
-        4 => element(data, at).map(|element| Value::Text(characters(&element))),
+        4 => element(data, at).and_then(|element| Ok(Value::Text(characters(&element)?))),
         6..=15 if complex => Ok(Value::Other("complex numbers")),
+        6..=15 if depth == DEEPEST && !is_read(&name, &dimensions, wanted) => {
+            Ok(Value::Numbers(Array::unread(dimensions)))
+        }
         6..=15 => numbers(data, at, dimensions).map(Value::Numbers),
         3 => Ok(Value::Other("an object")),
         5 => Ok(Value::Other("a sparse matrix")),
@@ -180,7 +178,7 @@ fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
             ));
         }
     };
-    let numbers = number.all(element.data.data, data.order);
+    let numbers = number.all_of(&element.data, "numbers")?;
     let promised = dimensions.iter().try_fold(1_u64, |all, &size| all.checked_mul(size));
     if promised != Some(numbers.len() as u64) {
         let sizes: Vec<String> = dimensions.iter().map(u64::to_string).collect();
@@ -194,15 +192,16 @@ fn numbers(data: &Bytes, at: u64, dimensions: Vec<u64>) -> Read<Array> {
     Ok(Array { dimensions, numbers })
 }
 
-fn characters(element: &Element) -> String {
-    match element.kind {
+fn characters(element: &Element) -> Read<String> {
+    let bytes = element.data.all("a text")?;
+    Ok(match element.kind {
         4 | 17 => {
-            let units = Number::U16.all(element.data.data, element.data.order);
+            let units = Number::U16.all(&bytes, element.data.order);
             let units: Vec<u16> = units.into_iter().map(|unit| unit as u16).collect();
             String::from_utf16_lossy(&units)
         }
-        _ => text(element.data.data),
-    }
+        _ => text(&bytes),
+    })
 }
 
 fn cells(data: &Bytes, mut at: u64, depth: usize) -> Read<Vec<Value>> {
@@ -222,7 +221,7 @@ fn nested(data: &Bytes, at: u64, depth: usize) -> Read<(Value, u64)> {
         let found = format!("data of type {} within {} others", element.kind, DEEPEST - depth);
         return Err(Fault::damaged(data.place(at), found, "an array"));
     }
-    Ok((matrix(&element.data, depth - 1)?.1, element.next))
+    Ok((matrix(&element.data, depth - 1, &Wanted::All)?.1, element.next))
 }
 
 /// Length of a field's name, names, and the fields of each element.
@@ -230,7 +229,8 @@ fn structs(data: &Bytes, at: u64, depth: usize) -> Read<Vec<Fields>> {
     let length = element(data, at)?;
     let width = length.data.u32(0, "the length of names")? as usize;
     let names_element = element(data, length.next)?;
-    let names: Vec<String> = names_element.data.data.chunks_exact(width.max(1)).map(field).collect();
+    let names = names_element.data.all("the names of fields")?;
+    let names: Vec<String> = names.chunks_exact(width.max(1)).map(field).collect();
     let mut elements = Vec::new();
     let mut at = names_element.next;
     while at < data.len() && !names.is_empty() {

@@ -1,6 +1,8 @@
 //! What a variable of a MAT-file is, however the file stores it.
 
 use crate::error::Place;
+use crate::find::Wanted;
+use crate::units::is_time;
 
 /// A variable with its name.
 pub(super) struct Variable {
@@ -25,10 +27,39 @@ pub(super) enum Value {
 #[derive(Clone, Debug)]
 pub(super) struct Array {
     pub(super) dimensions: Vec<u64>,
+    /// None where it was not read.
     pub(super) numbers: Vec<f64>,
 }
 
+/// Whether the numbers of a variable are to be read: those of a wanted channel, what may be its times, and a single value.
+pub(super) fn is_read(variable: &str, dimensions: &[u64], wanted: &Wanted) -> bool {
+    let single = dimensions.iter().all(|&size| size == 1);
+    single || is_time(variable) || wanted.has("", variable) || wanted.may_begin(&format!("{variable}["))
+}
+
 pub(super) type Fields = Vec<(String, Value)>;
+
+/// A group of HDF5 as a structure. Where every field is a list of references, it is a structure array of as many elements.
+pub(super) fn of_fields(fields: Fields) -> Value {
+    if fields.is_empty() || fields.iter().any(|(_, value)| !matches!(value, Value::Cells(_))) {
+        return Value::Structs(vec![fields]);
+    }
+    let mut elements = 1;
+    let mut lists: Vec<(String, std::vec::IntoIter<Value>)> = Vec::new();
+    for (name, value) in fields {
+        if let Value::Cells(cells) = value {
+            elements = elements.max(cells.len());
+            lists.push((name, cells.into_iter()));
+        }
+    }
+    let element = |_| {
+        let fields = lists.iter_mut();
+        fields
+            .filter_map(|(name, list)| Some((name.clone(), list.next()?)))
+            .collect()
+    };
+    Value::Structs((0..elements).map(element).collect())
+}
 
 impl Value {
     /// What lies at a path of fields, through structures of one element.
@@ -91,6 +122,23 @@ impl Value {
 }
 
 impl Array {
+    /// One whose numbers are not read.
+    pub(super) fn unread(dimensions: Vec<u64>) -> Self {
+        Array {
+            dimensions,
+            numbers: Vec::new(),
+        }
+    }
+
+    /// How many numbers it has, whether they were read or not.
+    pub(super) fn len(&self) -> usize {
+        let all = self
+            .dimensions
+            .iter()
+            .try_fold(1_u64, |all, &size| all.checked_mul(size));
+        all.map_or(usize::MAX, |all| all as usize)
+    }
+
     pub(super) fn is_vector(&self) -> bool {
         self.dimensions.iter().filter(|&&size| size != 1).count() <= 1
     }

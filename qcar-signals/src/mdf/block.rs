@@ -34,7 +34,7 @@ impl<'a> File<'a> {
         }
         let head = self.bytes.part(at, HEAD, what)?;
         let mut id = [0; 4];
-        id.copy_from_slice(&head.data[..4]);
+        id.copy_from_slice(&head.take(0, 4, what)?);
         let (length, count) = (head.u64(8, "a length")?, head.u64(16, "a number of links")?);
         let data_at = count
             .checked_mul(8)
@@ -46,7 +46,8 @@ impl<'a> File<'a> {
         };
         let whole = self.bytes.part(at, length, &format!("{what} (`{}`)", text(&id)))?;
         let links = whole.part(HEAD, data_at - HEAD, "links")?;
-        let links = links.data.chunks_exact(8).filter_map(|link| link.first_chunk());
+        let links = links.all("links")?;
+        let links = links.chunks_exact(8).filter_map(|link| link.first_chunk());
         Ok(Block {
             at,
             id,
@@ -82,7 +83,7 @@ impl<'a> File<'a> {
                 format!("a name or a unit of at most {LONGEST_TEXT} bytes"),
             ));
         }
-        let text = crate::bytes::field(block.data.data);
+        let text = crate::bytes::field(&block.data.all("a text")?);
         if block.id != *b"##MD" {
             return Ok(text);
         }
@@ -114,6 +115,6 @@ impl Block<'_> {
     /// Numbers of double precision from a byte of the data on.
     pub(super) fn doubles(&self, at: u64, count: u64) -> Read<Vec<f64>> {
         let bytes = self.data.take(at, count.saturating_mul(8), "values")?;
-        Ok(crate::bytes::Number::F64.all(bytes, Order::Little))
+        Ok(crate::bytes::Number::F64.all(&bytes, Order::Little))
     }
 }

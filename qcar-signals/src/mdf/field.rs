@@ -2,7 +2,7 @@
 
 use crate::bytes::{Number, Order};
 
-use super::Records;
+use super::Piece;
 
 /// Where the values of a channel lie in a record.
 pub(super) enum Field {
@@ -83,8 +83,8 @@ impl Field {
         }
     }
 
-    /// The stored values of all records, not a number where one is invalid.
-    pub(super) fn values(&self, records: &Records) -> Vec<f64> {
+    /// Adds the stored values of some records, not a number where one is invalid.
+    pub(super) fn values(&self, records: &Piece, into: &mut Vec<f64>) {
         let Field::Bits {
             byte,
             bit,
@@ -94,29 +94,27 @@ impl Field {
             invalid,
         } = *self
         else {
-            return (records.first..).take(records.count).map(|at| at as f64).collect();
+            into.extend((records.first..).take(records.count).map(|at| at as f64));
+            return;
         };
-        if records.count == 0 {
-            return Vec::new();
-        }
         let own = || {
             records
                 .bytes
                 .chunks_exact(records.stride)
                 .map(|record| &record[records.before..])
         };
-        let mut values = match number(kind, bit, count) {
+        let known = into.len();
+        match number(kind, bit, count) {
             Some(number) => {
                 let from = &records.bytes[records.before + byte..];
-                number.strided(from, records.stride, order)
+                number.extend(into, from, records.stride, order);
             }
             None => {
                 let size = (bit + count).div_ceil(8) as usize;
-                own()
-                    .map(|record| value(&record[byte..byte + size], bit, count, kind, order))
-                    .collect()
+                into.extend(own().map(|record| value(&record[byte..byte + size], bit, count, kind, order)));
             }
-        };
+        }
+        let values = &mut into[known..];
         match invalid {
             Invalid::None => {}
             Invalid::All => values.fill(f64::NAN),
@@ -128,7 +126,6 @@ impl Field {
                 }
             }
         }
-        values
     }
 }
 

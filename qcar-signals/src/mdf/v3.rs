@@ -1,10 +1,13 @@
 //! Groups and channels of MDF 3. Blocks: id 2, size 2, then what each function lists, with its offsets.
 
 use crate::bytes::{Bytes, Order, field};
+use crate::content::Content;
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::Recording;
 
 use super::conversion::Conversion;
+use super::data::Data;
 use super::field::{Field, Invalid, Kind};
 use super::{Channel, Records, Role, Visited, add_group};
 
@@ -12,19 +15,19 @@ use super::{Channel, Records, Role, Visited, add_group};
 const HEADER: u32 = 64;
 
 /// Reads a file of version 3. Byte 24 of it is 0 where numbers begin with their lowest byte.
-pub(super) fn read(bytes: Bytes, version: &str) -> Read<Recording> {
+pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recording> {
     let order = match bytes.u16(24, "the byte order")? {
         0 => Order::Little,
         _ => Order::Big,
     };
-    let file = Bytes { order, ..bytes };
+    let file = bytes.in_order(order);
     let mut recording = Recording::new(format!("MDF {version}"));
     let mut visited = Visited::default();
     let mut at = block(&file, HEADER, b"HD", "the header")?.u32(4, "the first data group")?;
     while at != 0 {
         visited.first_time(at.into())?;
         let group = block(&file, at, b"DG", "a data group")?;
-        add_data_group(&mut recording, &file, &group, &mut visited)?;
+        add_data_group(&mut recording, &file, &group, &mut visited, wanted)?;
         at = group.u32(4, "the next data group")?;
     }
     Ok(recording)
@@ -41,8 +44,9 @@ fn block<'a>(file: &Bytes<'a>, at: u32, id: &[u8; 2], what: &str) -> Read<Bytes<
         return Err(Fault::cut_off(Place::Byte(at), found, what));
     }
     let head = file.part(at, 4, what)?;
-    if head.data[..2] != *id {
-        let (found, expected) = (crate::bytes::text(&head.data[..2]), crate::bytes::text(id));
+    let found = head.take(0, 2, what)?;
+    if *found != *id {
+        let (found, expected) = (crate::bytes::text(&found), crate::bytes::text(id));
         let found = format!("a block `{found}`");
         return Err(Fault::damaged(Place::Byte(at), found, format!("{what} (`{expected}`)")));
     }
@@ -59,7 +63,13 @@ struct Group {
 }
 
 /// Data group: next 4, first channel group 8, trigger 12, data 16, number of groups 20, number of ids around a record 22.
-fn add_data_group(recording: &mut Recording, file: &Bytes, data_group: &Bytes, visited: &mut Visited) -> Read<()> {
+fn add_data_group(
+    recording: &mut Recording,
+    file: &Bytes,
+    data_group: &Bytes,
+    visited: &mut Visited,
+    wanted: &Wanted,
+) -> Read<()> {
     let ids = data_group.u16(22, "the number of record ids")?.min(2);
     let (before, around) = (usize::from(ids.min(1)), usize::from(ids));
     let mut groups = Vec::new();
@@ -78,13 +88,17 @@ fn add_data_group(recording: &mut Recording, file: &Bytes, data_group: &Bytes, v
         .iter()
         .map(|group| u64::from(group.records) * (group.length + around) as u64);
     let promised = promised.fold(0, u64::saturating_add);
-    let data = file.take(start.into(), promised, "records")?;
+    let data = file.part(start.into(), promised, "records")?;
     match groups.as_slice() {
-        [_] => groups.remove(0).add_to(recording, data, before, around),
+        [_] => groups
+            .remove(0)
+            .add_to(recording, &Data::plain(data), [before, around], wanted),
         _ => {
-            let sorted = sorted(&groups, data, around, start)?;
+            let sorted = sorted(&groups, &data.all("records")?, around, start)?;
             for (group, own) in groups.into_iter().zip(sorted) {
-                group.add_to(recording, &own, 0, 0)?;
+                let own = Content::of_bytes(own);
+                let own = Data::plain(Bytes::of_file(&own, file.order));
+                group.add_to(recording, &own, [0, 0], wanted)?;
             }
             Ok(())
         }
@@ -92,10 +106,11 @@ fn add_data_group(recording: &mut Recording, file: &Bytes, data_group: &Bytes, v
 }
 
 impl Group {
-    fn add_to(self, recording: &mut Recording, bytes: &[u8], before: usize, around: usize) -> Read<()> {
+    /// Adds the channels, whose records have so many bytes of an id before them and around them.
+    fn add_to(self, recording: &mut Recording, data: &Data, [before, around]: [usize; 2], wanted: &Wanted) -> Read<()> {
         let stride = self.length + around;
-        let records = Records::checked(bytes, before, stride, self.records.into(), &self.name, &self.place)?;
-        add_group(recording, &self.name, self.channels, &records)
+        let records = Records::checked(data, before, stride, self.records.into(), &self.name, &self.place)?;
+        add_group(recording, &self.name, self.channels, &records, wanted)
     }
 }
 
@@ -157,7 +172,8 @@ fn group(file: &Bytes, block: &Bytes, at: u32, visited: &mut Visited) -> Read<Gr
 }
 
 fn text(file: &Bytes, at: u32) -> Read<String> {
-    Ok(field(&block(file, at, b"TX", "a text")?.data[4..]))
+    let block = block(file, at, b"TX", "a text")?;
+    Ok(field(block.all("a text")?.get(4..).unwrap_or(&[])))
 }
 
 /// Channel: next 4, conversion 8, comment 20, type 24, short name 26 to 57, first bit 186, bits 188, data type 190,
@@ -166,7 +182,7 @@ fn channel(file: &Bytes, block: &Bytes, at: u32, record: usize) -> Read<Channel>
     let what = "a channel";
     let long_name = if block.len() >= 222 { block.u32(218, what)? } else { 0 };
     let name = match long_name {
-        0 => field(block.take(26, 32, "a name")?),
+        0 => field(&block.take(26, 32, "a name")?),
         at => text(file, at)?,
     };
     let further = if block.len() >= 228 { block.u16(226, what)? } else { 0 };
@@ -214,7 +230,7 @@ fn bits(block: &Bytes, further: usize, own: Order) -> Read<Result<Field, String>
 /// Unit and conversion. Inner: why the channel is passed over. Conversion: unit 22 to 41, type 42, size 44, parameters 46.
 fn conversion(file: &Bytes, at: u32) -> Read<(String, Result<Conversion, String>)> {
     let block = block(file, at, b"CC", "a conversion")?;
-    let unit = field(block.take(22, 20, "a unit")?);
+    let unit = field(&block.take(22, 20, "a unit")?);
     let (kind, size) = (block.u16(42, "a conversion")?, block.u16(44, "a conversion")?);
     let doubles = |from: u64, count: u64| -> Read<Vec<f64>> {
         let values = (0..count).map(|at| block.f64(from + 8 * at, "a parameter of a conversion"));
@@ -251,7 +267,7 @@ fn conversion(file: &Bytes, at: u32) -> Read<(String, Result<Conversion, String>
         11 => {
             let entries = (0..u64::from(size)).map(|at| {
                 let entry = block.part(46 + 40 * at, 40, "the text of a value")?;
-                Ok((entry.f64(0, "a value")?, field(&entry.data[8..])))
+                Ok((entry.f64(0, "a value")?, field(&entry.take(8, 32, "a text")?)))
             });
             Ok(Conversion::Labels(entries.collect::<Read<_>>()?))
         }

@@ -3,19 +3,22 @@
 use std::collections::HashMap;
 
 use crate::bytes::{Bytes, Order};
+use crate::content::Content;
 use crate::error::{Fault, Place, Read};
+use crate::find::Wanted;
 use crate::signal::Recording;
 
 use super::block::{Block, File};
 use super::conversion::Conversion;
+use super::data::Data;
 use super::field::{Field, Invalid, Kind};
-use super::{Channel, Records, Role, Visited, add_group, packed};
+use super::{Channel, Records, Role, Visited, add_group};
 
 /// Where the header block stands.
 const HEADER: u64 = 64;
 
 /// Reads a file of version 4.
-pub(super) fn read(bytes: Bytes, version: &str) -> Read<Recording> {
+pub(super) fn read(bytes: Bytes, version: &str, wanted: &Wanted) -> Read<Recording> {
     let file = File { bytes };
     let mut recording = Recording::new(format!("MDF {version}"));
     let mut visited = Visited::default();
@@ -24,7 +27,7 @@ pub(super) fn read(bytes: Bytes, version: &str) -> Read<Recording> {
     while at != 0 {
         let group = file.named(at, b"##DG", what)?;
         visited.first_time(at)?;
-        add_data_group(&mut recording, &file, &group, &mut visited)?;
+        add_data_group(&mut recording, &file, &group, &mut visited, wanted)?;
         (at, what) = (group.link(0), "the next data group (`##DG`)");
     }
     Ok(recording)
@@ -42,7 +45,13 @@ struct Group {
     channels: Vec<Channel>,
 }
 
-fn add_data_group(recording: &mut Recording, file: &File, data_group: &Block, visited: &mut Visited) -> Read<()> {
+fn add_data_group(
+    recording: &mut Recording,
+    file: &File,
+    data_group: &Block,
+    visited: &mut Visited,
+    wanted: &Wanted,
+) -> Read<()> {
     let id_size = usize::from(data_group.data.u8(0, "the size of record ids")?);
     let mut groups = Vec::new();
     let mut at = data_group.link(1);
@@ -52,14 +61,18 @@ fn add_data_group(recording: &mut Recording, file: &File, data_group: &Block, vi
         groups.push(group(file, &block, visited)?);
         at = block.link(0);
     }
-    let data = packed::data(file, data_group.link(2))?;
+    let data = Data::listed(file, data_group.link(2))?;
     match groups.as_slice() {
-        [only] if !only.variable_length => groups.remove(0).add_to(recording, &data, id_size),
+        [only] if !only.variable_length => groups.remove(0).add_to(recording, &data, id_size, wanted),
         _ => {
+            for group in groups.iter_mut().filter(|group| !group.is_wanted(wanted)) {
+                group.cycles = 0;
+            }
             let mut sorted = sorted(&groups, &data, id_size, &data_group.place())?;
             for group in groups.into_iter().filter(|group| !group.variable_length) {
-                let own = sorted.remove(&group.id).unwrap_or_default();
-                group.add_to(recording, &own, 0)?;
+                let own = Content::of_bytes(sorted.remove(&group.id).unwrap_or_default());
+                let own = Data::plain(Bytes::of_file(&own, Order::Little));
+                group.add_to(recording, &own, 0, wanted)?;
             }
             Ok(())
         }
@@ -67,64 +80,115 @@ fn add_data_group(recording: &mut Recording, file: &File, data_group: &Block, vi
 }
 
 impl Group {
-    /// Adds the channels, whose records stand in `bytes` with so many bytes of an id before each.
-    fn add_to(self, recording: &mut Recording, bytes: &[u8], before: usize) -> Read<()> {
-        let records = Records::checked(
-            bytes,
-            before,
-            before + self.length,
-            self.cycles,
-            &self.name,
-            &self.place,
-        )?;
-        add_group(recording, &self.name, self.channels, &records)
+    fn is_wanted(&self, wanted: &Wanted) -> bool {
+        self.channels
+            .iter()
+            .any(|channel| wanted.has(&self.name, &channel.name))
+    }
+
+    /// Adds the channels, whose records stand in `data` with so many bytes of an id before each.
+    fn add_to(self, recording: &mut Recording, data: &Data, before: usize, wanted: &Wanted) -> Read<()> {
+        let stride = before + self.length;
+        let records = Records::checked(data, before, stride, self.cycles, &self.name, &self.place)?;
+        add_group(recording, &self.name, self.channels, &records, wanted)
     }
 }
 
 /// The records of several groups that were stored as they came: an id, then the record.
-fn sorted(groups: &[Group], data: &[u8], id_size: usize, place: &Place) -> Read<HashMap<u64, Vec<u8>>> {
-    let mut own: HashMap<u64, Vec<u8>> = groups.iter().map(|group| (group.id, Vec::new())).collect();
-    let by_id: HashMap<u64, &Group> = groups.iter().map(|group| (group.id, group)).collect();
-    let mut rest = data;
-    while !rest.is_empty() {
-        let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte));
-        let at = data.len() - rest.len();
-        let cut = || {
-            Fault::cut_off(
-                place.clone(),
-                format!("half a record at byte {at} of the data"),
-                "whole records",
-            )
-        };
-        let (id, after) = rest
-            .split_at_checked(id_size)
-            .filter(|(id, _)| (1..=8).contains(&id.len()))
-            .ok_or_else(cut)?;
-        let id = number(id);
-        let Some(group) = by_id.get(&id) else {
-            let found = format!("a record with id {id} at byte {at} of the data");
-            return Err(Fault::damaged(
-                place.clone(),
-                found,
-                "an id of one of the channel groups",
-            ));
-        };
-        let length = if group.variable_length {
-            let length = after.get(..4).map(number).ok_or_else(cut)?;
-            usize::try_from(length)
-                .ok()
-                .and_then(|length| length.checked_add(4))
-                .ok_or_else(cut)?
-        } else {
-            group.length
-        };
-        let (record, next) = after.split_at_checked(length).ok_or_else(cut)?;
-        if let Some(records) = own.get_mut(&id).filter(|_| !group.variable_length) {
-            records.extend_from_slice(record);
-        }
-        rest = next;
+fn sorted(groups: &[Group], data: &Data, id_size: usize, place: &Place) -> Read<HashMap<u64, Vec<u8>>> {
+    let read = groups.iter().filter(|group| !group.variable_length && group.cycles > 0);
+    let mut sorting = Sorting {
+        own: read.map(|group| (group.id, Vec::new())).collect(),
+        groups: groups.iter().map(|group| (group.id, group)).collect(),
+        id_size,
+        place,
+        at: 0,
+        pending: Vec::new(),
+        needed: 0,
+        outcome: Ok(()),
+    };
+    data.pieces(data.len(), 1, |piece| sorting.add(piece))?;
+    sorting.outcome?;
+    match sorting.pending.is_empty() {
+        true => Ok(sorting.own),
+        false => Err(half_a_record(place, sorting.at)),
     }
-    Ok(own)
+}
+
+fn half_a_record(place: &Place, at: u64) -> Box<Fault> {
+    let found = format!("half a record at byte {at} of the data");
+    Fault::cut_off(place.clone(), found, "whole records")
+}
+
+/// Records that are given to their groups.
+struct Sorting<'a> {
+    own: HashMap<u64, Vec<u8>>,
+    groups: HashMap<u64, &'a Group>,
+    id_size: usize,
+    place: &'a Place,
+    /// The byte of the data at which `pending` begins.
+    at: u64,
+    /// Records that are not given away yet.
+    pending: Vec<u8>,
+    /// Bytes that the first of them has at least.
+    needed: usize,
+    outcome: Read<()>,
+}
+
+impl Sorting<'_> {
+    fn add(&mut self, piece: &[u8]) {
+        if self.outcome.is_err() {
+            return;
+        }
+        self.pending.extend_from_slice(piece);
+        let mut given = 0;
+        while given < self.pending.len() && self.needed <= self.pending.len() - given {
+            match self.give(given) {
+                Ok(Ok(length)) => (given, self.needed) = (given + length, 0),
+                Ok(Err(needed)) => self.needed = needed,
+                Err(fault) => {
+                    self.outcome = Err(fault);
+                    return;
+                }
+            }
+        }
+        self.pending.drain(..given);
+        self.at += given as u64;
+    }
+
+    /// Gives away the record that begins at a byte of the pending ones: its bytes, or those that it has at least where it is not
+    /// all there.
+    fn give(&mut self, from: usize) -> Read<Result<usize, usize>> {
+        let (at, bytes) = (self.at + from as u64, &self.pending[from..]);
+        let number = |bytes: &[u8]| bytes.iter().rev().fold(0, |all, &byte| all << 8 | u64::from(byte));
+        if !(1..=8).contains(&self.id_size) {
+            return Err(half_a_record(self.place, at));
+        }
+        let Some((id, after)) = bytes.split_at_checked(self.id_size) else {
+            return Ok(Err(self.id_size));
+        };
+        let id = number(id);
+        let Some(group) = self.groups.get(&id) else {
+            let found = format!("a record with id {id} at byte {at} of the data");
+            let expected = "an id of one of the channel groups";
+            return Err(Fault::damaged(self.place.clone(), found, expected));
+        };
+        let length = match (group.variable_length, after.get(..4)) {
+            (false, _) => group.length,
+            (true, Some(length)) => 4 + number(length) as usize,
+            (true, None) => 4,
+        };
+        let whole = self.id_size + length;
+        match after.get(..length) {
+            Some(record) => {
+                if let Some(records) = self.own.get_mut(&id) {
+                    records.extend_from_slice(record);
+                }
+                Ok(Ok(whole))
+            }
+            None => Ok(Err(whole)),
+        }
+    }
 }
 
 /// Channel group: links next, first channel, name, source, reduction, comment; data: record id 8, cycles 8, flags 2,

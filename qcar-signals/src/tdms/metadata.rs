@@ -133,16 +133,17 @@ fn rows_of_buffers(used: &[(usize, Index)]) -> Vec<(u64, u64)> {
 }
 
 /// The bytes of a DAQmx buffer within a chunk, and its width.
-pub(super) fn buffer<'a>(used: &[(usize, Index)], chunk: &'a [u8], number: u32) -> Option<(&'a [u8], usize)> {
+pub(super) fn buffer<'a>(used: &[(usize, Index)], chunk: &Bytes<'a>, number: u32) -> Read<Option<(Bytes<'a>, u64)>> {
     let mut at = 0;
     for (index, (rows, width)) in rows_of_buffers(used).into_iter().enumerate() {
-        let size = (rows * width) as usize;
+        let size = rows * width;
         if index == number as usize {
-            return Some((chunk.get(at..at + size)?, width as usize)).filter(|_| width > 0);
+            let buffer = chunk.part(at, size, "a buffer of DAQmx")?;
+            return Ok(Some((buffer, width)).filter(|_| width > 0));
         }
         at += size;
     }
-    None
+    Ok(None)
 }
 
 /// Reads an object from byte `at` on and moves `at` past it. `known` gives the index it had before.
@@ -181,7 +182,7 @@ fn string(from: &Bytes, at: &mut u64) -> Read<String> {
     let length = u64::from(step_u32(from, at)?);
     let bytes = from.take(*at, length, "a text")?;
     *at += length;
-    Ok(text(bytes))
+    Ok(text(&bytes))
 }
 
 /// Type 4, dimension 4, number of values 8, and of texts their bytes 8.
@@ -324,6 +325,6 @@ fn property(from: &Bytes, at: &mut u64) -> Read<Option<Property>> {
     let bytes = from.take(*at, size, "a property")?;
     *at += size;
     Ok(number
-        .and_then(|number| number.all(bytes, from.order).first().copied())
+        .and_then(|number| number.all(&bytes, from.order).first().copied())
         .map(Property::Number))
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use qcar_runtime::campaign::Quantity;
+use qcar_signals::samples::Samples;
 use qcar_signals::si::in_si;
 use qcar_signals::signal::{Recording, Signal, TimeBase};
 
@@ -161,7 +162,7 @@ fn in_units(signal: &Signal) -> Vec<f64> {
     let factor = in_si(&signal.unit).map_or(1.0, |si| si.multiply / si.divide);
     let valid = signal.samples.iter().filter(|value| value.is_finite());
     let mean = valid.clone().sum::<f64>() / valid.count().max(1) as f64;
-    let value = |value: &f64| {
+    let value = |value: f64| {
         if value.is_finite() {
             (value - mean) * factor
         } else {
@@ -171,7 +172,7 @@ fn in_units(signal: &Signal) -> Vec<f64> {
     signal.samples.iter().map(value).collect()
 }
 
-fn is_impact(samples: &[f64]) -> bool {
+fn is_impact(samples: &Samples) -> bool {
     let largest = samples.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let square = samples.iter().map(|value| value * value).sum::<f64>() / samples.len().max(1) as f64;
     largest > IMPACT * square.sqrt()

@@ -32,10 +32,11 @@ pub fn file(group: &Group) -> Vec<u8> {
         ("SAMPLES".into(), group.len().to_string()),
         ("DATA_TYPE".into(), "SHORT_INTEGER".into()),
     ];
-    for (number, channel) in group.channels.iter().enumerate() {
+    let steps: Vec<f64> = group.channels.iter().map(step).collect();
+    for (number, (channel, step)) in group.channels.iter().zip(&steps).enumerate() {
         parameters.push((format!("DESC.CHAN_{}", number + 1), channel.name.clone()));
         parameters.push((format!("UNITS.CHAN_{}", number + 1), channel.unit.clone()));
-        parameters.push((format!("SCALE.CHAN_{}", number + 1), format!("{:E}", step(channel))));
+        parameters.push((format!("SCALE.CHAN_{}", number + 1), format!("{step:E}")));
     }
     let blocks = parameters.len().div_ceil(4);
     parameters[1].1 = blocks.to_string();
@@ -46,8 +47,7 @@ pub fn file(group: &Group) -> Vec<u8> {
         .collect();
     file.resize(blocks * 512, 0);
     for frame in 0..frames {
-        for channel in &group.channels {
-            let step = step(channel);
+        for (channel, step) in group.channels.iter().zip(&steps) {
             let points = frame * POINTS_OF_GROUP..(frame + 1) * POINTS_OF_GROUP;
             file.extend(points.flat_map(|at| {
                 let value = channel.samples.get(at).copied().unwrap_or(0.0);

@@ -216,6 +216,6 @@ fn metres(file: &Path, signal: &Signal) -> Result<Vec<f64>, InputError> {
         )
         .into());
     }
-    let value = |value: &f64| value * si.multiply / si.divide;
+    let value = |value: f64| value * si.multiply / si.divide;
     Ok(signal.samples.iter().map(value).collect())
 }

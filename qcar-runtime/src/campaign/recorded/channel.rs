@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::Path;
 
 use qcar_signals::resample::reach;
+use qcar_signals::samples::Samples;
 use qcar_signals::signal::{Recording, Signal, TimeBase};
 
 use super::super::contents::Tap;
@@ -21,7 +22,7 @@ pub(super) struct Channel<'a> {
     signal: &'a Signal,
     base: TimeBase,
     /// As the file has them; of samples that came unevenly, on even instants.
-    samples: Cow<'a, [f64]>,
+    samples: Cow<'a, Samples>,
     scaling: Scaling,
     /// Hz.
     pub rate: f64,
@@ -51,8 +52,8 @@ impl<'a> Channel<'a> {
         };
         let scaling = Scaling::of(file, signal, &base, tap)?;
         let (base, samples, uneven) = match resampled(&base, &signal.samples, rate) {
-            Some(even) => (even.base, Cow::Owned(even.values), Some(even.steps)),
-            None => (base, Cow::Borrowed(signal.samples.as_slice()), None),
+            Some(even) => (even.base, Cow::Owned(even.values.into()), Some(even.steps)),
+            None => (base, Cow::Borrowed(&signal.samples), None),
         };
         Ok(Channel {
             tap,
@@ -69,15 +70,18 @@ impl<'a> Channel<'a> {
     pub fn up_to_its_last_value(mut self) -> Self {
         if self.signal.time == TimeBase::Unknown {
             let last = self.signal.samples.iter().rposition(|value| value.is_finite());
-            self.samples = Cow::Borrowed(&self.signal.samples[..last.map_or(0, |last| last + 1)]);
+            let filled: Vec<f64> = self.signal.samples.range(0..last.map_or(0, |last| last + 1)).collect();
+            self.samples = Cow::Owned(filled.into());
         }
         self
     }
 
     /// The values of these samples, in SI.
     pub fn values(&self, of: Range<usize>) -> Vec<f64> {
-        let samples = self.samples[of].iter();
-        samples.map(|sample| self.scaling.value(*sample)).collect()
+        self.samples
+            .range(of)
+            .map(|sample| self.scaling.value(sample))
+            .collect()
     }
 
     /// Its samples in the window, with what a filter to `rate` looks at beside it.
@@ -88,9 +92,10 @@ impl<'a> Channel<'a> {
             let place = Place::Channel(self.signal.full_name(), broken.at);
             Problem::new(file, place, broken.found, broken.expected, broken.remedy)
         })?;
-        let mut scaled = self.samples[even.samples.clone()]
-            .iter()
-            .map(|sample| self.scaling.value(*sample));
+        let mut scaled = self
+            .samples
+            .range(even.samples.clone())
+            .map(|sample| self.scaling.value(sample));
         if scaled.all(f64::is_finite) {
             return Ok(even);
         }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use qcar_signals::resample::Grid;
+use qcar_signals::samples::Samples;
 use qcar_signals::signal::TimeBase;
 
 use super::super::steps;
@@ -60,6 +61,10 @@ pub(super) fn rate(base: &TimeBase, count: usize, declared: Option<f64>) -> Opti
 
 /// Of the steps that are one sample long.
 fn usual_rate(times: &[f64]) -> f64 {
+    if steps::all_alike(times) {
+        let sum: f64 = times.windows(2).map(|two| two[1] - two[0]).sum();
+        return (times.len() - 1) as f64 / sum;
+    }
     let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
     let typical = 1.0 / steps::median(&steps);
     let ones: Vec<f64> = steps.into_iter().filter(|step| steps::is_one(*step, typical)).collect();
@@ -69,24 +74,24 @@ fn usual_rate(times: &[f64]) -> f64 {
 impl Even {
     /// The samples from `from` to `to` (s; the whole channel without), with up to `margin` more at each side.
     pub fn new(
-        samples: &[f64],
+        samples: &Samples,
         base: &TimeBase,
         rate: f64,
         (from, to): (Option<f64>, Option<f64>),
         margin: usize,
     ) -> Result<Even, Broken> {
         let range = inside(samples.len(), base, rate, (from, to))?;
-        let broken = |at: usize| is_gap(base, at, rate) || !samples[at].is_finite();
+        let broken = |at: usize| is_gap(base, at, rate) || !samples.at(at).is_finite();
         if let Some(at) = range
             .clone()
-            .find(|&at| !samples[at].is_finite() || (at > range.start && broken(at)))
+            .find(|&at| !samples.at(at).is_finite() || (at > range.start && broken(at)))
         {
             return Err(at_break(samples, base, at, rate));
         }
         let (first, last) = (range.start, range.end - 1);
         let before = (first.saturating_sub(margin)..first).rev();
         let before = before
-            .take_while(|&at| samples[at].is_finite() && !is_gap(base, at + 1, rate))
+            .take_while(|&at| samples.at(at).is_finite() && !is_gap(base, at + 1, rate))
             .count();
         let after = (last + 1..samples.len().min(last + 1 + margin))
             .take_while(|&at| !broken(at))
@@ -176,8 +181,11 @@ fn is_gap(base: &TimeBase, at: usize, rate: f64) -> bool {
     matches!(base, TimeBase::Times(_)) && !steps::is_one(time(base, at) - time(base, at - 1), rate)
 }
 
-fn at_break(samples: &[f64], base: &TimeBase, at: usize, rate: f64) -> Broken {
-    let lost = samples[at..].iter().take_while(|value| !value.is_finite()).count();
+fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> Broken {
+    let lost = samples
+        .range(at..samples.len())
+        .take_while(|value| !value.is_finite())
+        .count();
     let found = match lost {
         0 => format!("a step of {} s", time(base, at) - time(base, at - 1)),
         1 => "a sample without a value".into(),

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use qcar_signals::error::{Fault, Place as Within};
-use qcar_signals::read::recognise;
+use qcar_signals::find::Wanted;
+use qcar_signals::read::channels;
 use qcar_signals::signal::Recording;
 
 use crate::bounded;
@@ -18,24 +19,77 @@ const KEPT: usize = 1 << 26;
 /// The files of a campaign.
 #[derive(Default)]
 pub(in crate::campaign) struct Files {
-    read: RefCell<HashMap<PathBuf, Result<Rc<Recording>, InputError>>>,
+    read: RefCell<HashMap<PathBuf, Known>>,
+}
+
+/// What was read of a file.
+struct Known {
+    /// Names and patterns of the channels whose samples are there; all of them without.
+    wanted: Option<Vec<String>>,
+    recording: Result<Rc<Recording>, InputError>,
+}
+
+impl Known {
+    fn has(&self, sources: &[String]) -> bool {
+        let known = self.wanted.as_ref();
+        known.is_none_or(|known| sources.iter().all(|source| known.contains(source)))
+    }
 }
 
 impl Files {
     /// The recording in a file.
     pub fn get(&self, file: &Path) -> Result<Rc<Recording>, InputError> {
-        let known = self.read.borrow().get(file).cloned();
-        known.unwrap_or_else(|| {
-            self.forget_what_is_too_much();
-            let recording = recording(file, BESIDE_MANIFEST).map(Rc::new);
-            self.read.borrow_mut().insert(file.into(), recording.clone());
-            recording
-        })
+        let known = self
+            .read
+            .borrow_mut()
+            .remove(file)
+            .filter(|known| known.wanted.is_none());
+        let known = known.map(|known| known.recording);
+        self.keep(file, None, known.unwrap_or_else(|| self.read(file, &Wanted::All)))
+    }
+
+    /// The same with the samples of at least those channels that these names and patterns may mean: a long recording has many more
+    /// than a campaign names.
+    pub fn with(&self, file: &Path, sources: &[String]) -> Result<Rc<Recording>, InputError> {
+        let known = self.read.borrow_mut().remove(file);
+        match known {
+            Some(known) if known.has(sources) => self.keep(file, known.wanted, known.recording),
+            // A run may name more than those before it.
+            known => {
+                let mut wanted = known.and_then(|known| known.wanted).unwrap_or_default();
+                wanted.extend_from_slice(sources);
+                let recording = self.read(file, &Wanted::These(&wanted));
+                self.keep(file, Some(wanted), recording)
+            }
+        }
+    }
+
+    fn read(&self, file: &Path, wanted: &Wanted<'_>) -> Result<Rc<Recording>, InputError> {
+        self.forget_what_is_too_much();
+        wanted_recording(file, BESIDE_MANIFEST, wanted).map(Rc::new)
+    }
+
+    fn keep(
+        &self,
+        file: &Path,
+        wanted: Option<Vec<String>>,
+        recording: Result<Rc<Recording>, InputError>,
+    ) -> Result<Rc<Recording>, InputError> {
+        let known = Known {
+            wanted,
+            recording: recording.clone(),
+        };
+        self.read.borrow_mut().insert(file.into(), known);
+        recording
     }
 
     fn forget_what_is_too_much(&self) {
         let mut read = self.read.borrow_mut();
-        let samples: usize = read.values().flatten().map(|recording| samples(recording)).sum();
+        let samples: usize = read
+            .values()
+            .flat_map(|known| &known.recording)
+            .map(|recording| samples(recording))
+            .sum();
         if samples > KEPT {
             read.clear();
         }
@@ -55,8 +109,12 @@ pub(in crate::campaign) const BESIDE_MANIFEST: &str =
 /// # Errors
 /// A file that cannot be read.
 pub(in crate::campaign) fn recording(file: &Path, wrong_path: &str) -> Result<Recording, InputError> {
-    let bytes = bounded::measured_file(file, wrong_path)?;
-    recognise(&bytes).map_err(|fault| problem(file, &fault).into())
+    wanted_recording(file, wrong_path, &Wanted::All)
+}
+
+fn wanted_recording(file: &Path, wrong_path: &str, wanted: &Wanted<'_>) -> Result<Recording, InputError> {
+    let content = bounded::measured_file(file, wrong_path)?;
+    channels(&content, wanted).map_err(|fault| problem(file, &fault).into())
 }
 
 /// A fault of a file as the workbench reports it.

@@ -1,5 +1,6 @@
 //! Samples that come unevenly, as messages of a bus do, resampled by linear interpolation.
 
+use qcar_signals::samples::Samples;
 use qcar_signals::signal::TimeBase;
 
 use super::super::steps;
@@ -23,6 +24,9 @@ pub(super) struct Pace {
 impl Pace {
     /// Of these times; `None` where they come evenly.
     pub fn of(times: &[f64]) -> Option<Pace> {
+        if steps::all_alike(times) {
+            return None;
+        }
         let steps: Vec<f64> = times.windows(2).map(|two| two[1] - two[0]).collect();
         let usual = steps::median(steps.get(..).filter(|steps| !steps.is_empty())?);
         let others = steps.iter().filter(|step| !steps::is_one(**step, 1.0 / usual)).count();
@@ -49,7 +53,7 @@ pub(super) struct Resampled {
 }
 
 /// The values of an uneven channel at `rate`, Hz; `None` of a channel that is even or that does not say its times.
-pub(super) fn resampled(base: &TimeBase, values: &[f64], rate: f64) -> Option<Resampled> {
+pub(super) fn resampled(base: &TimeBase, values: &Samples, rate: f64) -> Option<Resampled> {
     let TimeBase::Times(times) = base else { return None };
     let pace = Pace::of(times)?;
     let (&start, &end) = (times.first()?, times.last()?);
@@ -70,7 +74,7 @@ pub(super) fn resampled(base: &TimeBase, values: &[f64], rate: f64) -> Option<Re
         };
         match to - from > pace.gap {
             true => f64::NAN,
-            false => values[after - 1] + share * (values[after] - values[after - 1]),
+            false => values.at(after - 1) + share * (values.at(after) - values.at(after - 1)),
         }
     };
     Some(Resampled {

@@ -53,7 +53,7 @@ impl Scaling {
     fn mean_of_start(&self, file: &Path, signal: &Signal, base: &TimeBase, span: f64) -> Result<f64, InputError> {
         let inside = |k: &usize| time(base, *k) < time(base, 0) + span;
         let count = (0..signal.samples.len()).take_while(inside).count();
-        let values = signal.samples[..count].iter().map(|sample| self.value(*sample));
+        let values = signal.samples.range(0..count).map(|sample| self.value(sample));
         let valid: Vec<f64> = values.filter(|value| value.is_finite()).collect();
         if count == signal.samples.len() || valid.is_empty() {
             let found = format!("{} values in the first {span} s", valid.len());

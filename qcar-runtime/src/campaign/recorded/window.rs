@@ -47,10 +47,11 @@ fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Optio
         .map_err(|fault| InputError::from(problem(file, &fault)))?;
     let base = clock(&signal.time, declared);
     let above = |value: f64| value > trigger.above;
-    let rises = |two: &[f64]| two.iter().all(|value| value.is_finite()) && !above(two[0]) && above(two[1]);
-    let met = base.as_ref().zip(signal.samples.windows(2).position(rises));
+    let rises = |(one, next): (f64, f64)| one.is_finite() && next.is_finite() && !above(one) && above(next);
+    let mut pairs = signal.samples.iter().zip(signal.samples.iter().skip(1));
+    let met = base.as_ref().zip(pairs.position(rises));
     met.map(|(base, before)| time(base, before + 1)).ok_or_else(|| {
-        let valid = || signal.samples.iter().copied().filter(|value| value.is_finite());
+        let valid = || signal.samples.iter().filter(|value| value.is_finite());
         let (low, high) = (
             valid().fold(f64::INFINITY, f64::min),
             valid().fold(f64::NEG_INFINITY, f64::max),

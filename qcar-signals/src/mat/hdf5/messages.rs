@@ -44,7 +44,7 @@ pub(super) enum Class {
 /// Where the elements are.
 pub(super) enum Layout<'a> {
     /// In the header.
-    Compact(&'a [u8]),
+    Compact(Bytes<'a>),
     /// At an address, at most so many bytes.
     Contiguous(u64, u64),
     /// In a tree, in chunks of these dimensions; the last is the size of an element.
@@ -54,10 +54,11 @@ pub(super) enum Layout<'a> {
 impl<'a> Header<'a> {
     pub(super) fn read(file: &Bytes<'a>, at: u64) -> Read<Header<'a>> {
         let head = file.part(at, 16, "an object header")?;
-        if head.data[0] != 1 {
+        let version = head.u8(0, "an object header")?;
+        if version != 1 {
             let found = format!(
                 "an object header of version {}",
-                if head.data[0] == b'O' { 2 } else { head.data[0] }
+                if version == b'O' { 2 } else { version }
             );
             return Err(too_new(file, at, found));
         }
@@ -109,10 +110,11 @@ impl<'a> Header<'a> {
         let name_size = message.u16(2, "an attribute")?;
         let before =
             name_at + filled(name_size) + filled(message.u16(4, "a type")?) + filled(message.u16(6, "a space")?);
-        let name = field(message.take(name_at, name_size.into(), "the name of an attribute")?);
-        let data = message.data.get(before as usize..).unwrap_or(&[]);
+        let name = field(&message.take(name_at, name_size.into(), "the name of an attribute")?);
+        let rest = message.len().saturating_sub(before);
+        let data = message.take(before.min(message.len()), rest, "an attribute")?;
         match name.as_str() {
-            "MATLAB_class" => self.matlab_class = field(data),
+            "MATLAB_class" => self.matlab_class = field(&data),
             "MATLAB_empty" => self.is_empty = data.iter().any(|&byte| byte != 0),
             _ => {}
         }
@@ -168,7 +170,7 @@ impl<'a> Layout<'a> {
             return match class {
                 0 => {
                     let size = message.u32(8 + 4 * count, "a layout")?;
-                    Ok(Layout::Compact(message.take(
+                    Ok(Layout::Compact(message.part(
                         12 + 4 * count,
                         size.into(),
                         "elements",
@@ -181,7 +183,7 @@ impl<'a> Layout<'a> {
         match (version, class) {
             (3, 0) => {
                 let size = message.u16(2, "a layout")?;
-                Ok(Layout::Compact(message.take(4, size.into(), "elements")?))
+                Ok(Layout::Compact(message.part(4, size.into(), "elements")?))
             }
             (3, 1) => Ok(Layout::Contiguous(
                 message.u64(2, "a layout")?,

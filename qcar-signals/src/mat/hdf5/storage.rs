@@ -5,88 +5,109 @@ use std::io::Read as _;
 
 use flate2::read::ZlibDecoder;
 
+use crate::bytes::{Bytes, Number, Order};
 use crate::error::{Fault, Read};
 
 use super::messages::{Header, Layout};
 use super::{Leaf, Reader, too_new};
 
+/// Bytes that a packed one can become at most.
+const LARGEST_RATIO: u64 = 1100;
 const DEFLATE: u16 = 1;
 const SHUFFLE: u16 = 2;
 const CHECKSUM: u16 = 3;
 
 impl<'a> Reader<'a> {
-    /// All elements of a dataset and its dimensions.
-    pub(super) fn data(&mut self, header: &Header<'a>) -> Read<(Cow<'a, [u8]>, Vec<u64>)> {
-        let element = header.datatype.map_or(1, |datatype| u64::from(datatype.size));
-        let dimensions = header.dimensions.clone();
-        let promised = dimensions
-            .iter()
-            .try_fold(element, |all, &size| all.checked_mul(size))
-            .unwrap_or(u64::MAX);
-        let (there, bytes) = match &header.layout {
-            Some(Layout::Compact(bytes)) => (bytes.len() as u64, Cow::Borrowed(*bytes)),
-            Some(Layout::Contiguous(at, size)) if promised <= *size => {
-                self.first_time(*at)?;
-                (
-                    promised,
-                    Cow::Borrowed(self.file.take(*at, promised, "elements of a dataset")?),
-                )
-            }
-            Some(Layout::Contiguous(_, size)) => (*size, Cow::Borrowed(&[][..])),
-            Some(Layout::Chunked(tree, chunk)) => {
-                let chunks = self.chunks(*tree, chunk, header, element)?;
-                let there = chunks.iter().map(|(_, bytes)| bytes.len() as u64).sum();
-                let joined = if promised <= there {
-                    join(&chunks, chunk, &dimensions, element)
-                } else {
-                    Vec::new()
-                };
-                (there, Cow::Owned(joined))
-            }
-            None => (0, Cow::Borrowed(&[][..])),
-        };
-        if promised > there {
-            let found = format!("a dataset of {dimensions:?} elements with {there} bytes");
-            return Err(Fault::damaged(self.file.place(0), found, format!("{promised} bytes")));
+    /// The numbers of a dataset.
+    pub(super) fn numbers(&mut self, header: &Header<'a>, number: Number) -> Read<Vec<f64>> {
+        let order = header.datatype.map_or(Order::Little, |datatype| datatype.order);
+        match self.run(header)? {
+            Some(run) => number.all_of(&run.in_order(order), "elements of a dataset"),
+            None => Ok(number.all(&self.joined(header)?, order)),
         }
-        Ok((bytes, dimensions))
     }
 
-    /// The chunks of a dataset, unpacked, with where they begin.
-    fn chunks(&mut self, tree: u64, chunk: &[u32], header: &Header, element: u64) -> Read<Vec<(Vec<u64>, Vec<u8>)>> {
-        let fits = chunk.split_last().is_some_and(|(last, sizes)| {
-            u64::from(*last) == element && sizes.len() == header.dimensions.len() && !sizes.contains(&0)
-        });
-        let size = chunk.iter().try_fold(1_u64, |all, &size| all.checked_mul(size.into()));
-        let Some(size) = size.filter(|_| fits) else {
-            let found = format!("chunks of {chunk:?} for a dataset of {:?}", header.dimensions);
-            return Err(Fault::damaged(
-                self.file.place(tree),
-                found,
-                "chunks with as many dimensions",
-            ));
+    /// The bytes of all elements of a dataset.
+    pub(super) fn data(&mut self, header: &Header<'a>) -> Read<Cow<'a, [u8]>> {
+        match self.run(header)? {
+            Some(run) => run.all("elements of a dataset"),
+            None => Ok(Cow::Owned(self.joined(header)?)),
+        }
+    }
+
+    /// Where the elements lie in one run; `None` where they lie in chunks.
+    fn run(&mut self, header: &Header<'a>) -> Read<Option<Bytes<'a>>> {
+        let promised = promised(header);
+        let there = match &header.layout {
+            Some(Layout::Compact(bytes)) if promised <= bytes.len() => {
+                return bytes.part(0, promised, "elements of a dataset").map(Some);
+            }
+            Some(Layout::Contiguous(at, size)) if promised <= *size => {
+                self.first_time(*at)?;
+                return self.file.part(*at, promised, "elements of a dataset").map(Some);
+            }
+            Some(Layout::Chunked(..)) => return Ok(None),
+            Some(Layout::Compact(bytes)) => bytes.len(),
+            Some(Layout::Contiguous(_, size)) => *size,
+            None => 0,
         };
-        let leaves = self.leaves(tree, 1, chunk.len() as u64)?;
-        let mut chunks = Vec::new();
-        for leaf in leaves {
+        Err(self.short(header, there))
+    }
+
+    fn short(&self, header: &Header, there: u64) -> Box<Fault> {
+        let found = format!("a dataset of {:?} elements with {there} bytes", header.dimensions);
+        Fault::damaged(self.file.place(0), found, format!("{} bytes", promised(header)))
+    }
+
+    /// A dataset from its chunks, unpacked one by one.
+    fn joined(&mut self, header: &Header<'a>) -> Read<Vec<u8>> {
+        let Some(Layout::Chunked(tree, chunk)) = &header.layout else {
+            return Ok(Vec::new());
+        };
+        let element = element(header);
+        let size = self.size_of_chunk(*tree, chunk, header)?;
+        let leaves = self.leaves(*tree, 1, chunk.len() as u64)?;
+        let (promised, there) = (promised(header), size.saturating_mul(leaves.len() as u64));
+        if promised > there {
+            return Err(self.short(header, there));
+        }
+        for leaf in &leaves {
             self.first_time(leaf.child)?;
+            let there = self.file.part(leaf.child, leaf.size.into(), "a chunk")?.len();
+            if size > LARGEST_RATIO * there {
+                let found = format!("a chunk of {there} bytes");
+                let expected = format!("what gives {size} bytes");
+                return Err(Fault::damaged(self.file.place(leaf.child), found, expected));
+            }
+        }
+        let mut joined = vec![0; promised as usize];
+        for leaf in leaves {
             let bytes = self.chunk(&leaf, header, element, size)?;
             if bytes.len() as u64 != size {
                 let found = format!("a chunk of {} bytes", bytes.len());
-                return Err(Fault::damaged(
-                    self.file.place(leaf.child),
-                    found,
-                    format!("{size} bytes"),
-                ));
+                let expected = format!("{size} bytes");
+                return Err(Fault::damaged(self.file.place(leaf.child), found, expected));
             }
-            chunks.push((leaf.offsets, bytes));
+            place(&bytes, &leaf.offsets, chunk, &header.dimensions, element, &mut joined);
         }
-        Ok(chunks)
+        Ok(joined)
+    }
+
+    /// Bytes of a chunk, which must be of the kind of the dataset.
+    fn size_of_chunk(&self, tree: u64, chunk: &[u32], header: &Header) -> Read<u64> {
+        let fits = chunk.split_last().is_some_and(|(last, sizes)| {
+            u64::from(*last) == element(header) && sizes.len() == header.dimensions.len() && !sizes.contains(&0)
+        });
+        let size = chunk.iter().try_fold(1_u64, |all, &size| all.checked_mul(size.into()));
+        size.filter(|_| fits).ok_or_else(|| {
+            let found = format!("chunks of {chunk:?} for a dataset of {:?}", header.dimensions);
+            Fault::damaged(self.file.place(tree), found, "chunks with as many dimensions")
+        })
     }
 
     /// A chunk through its filters, the last one first.
     fn chunk(&self, leaf: &Leaf, header: &Header, element: u64, size: u64) -> Read<Vec<u8>> {
-        let mut bytes = self.file.take(leaf.child, leaf.size.into(), "a chunk")?.to_vec();
+        let mut bytes = self.file.take(leaf.child, leaf.size.into(), "a chunk")?.into_owned();
         for (at, filter) in header.filters.iter().enumerate().rev() {
             if leaf.skipped >> at.min(31) & 1 != 0 {
                 continue;
@@ -131,22 +152,28 @@ fn unshuffled(bytes: &[u8], element: usize) -> Vec<u8> {
     elements
 }
 
-/// A dataset from its chunks, each of which may stand out over its end.
-fn join(chunks: &[(Vec<u64>, Vec<u8>)], chunk: &[u32], dimensions: &[u64], element: u64) -> Vec<u8> {
-    let all = dimensions.iter().product::<u64>() * element;
-    let mut joined = vec![0; all as usize];
+/// Bytes of an element.
+fn element(header: &Header) -> u64 {
+    header.datatype.map_or(1, |datatype| u64::from(datatype.size))
+}
+
+/// Bytes of all elements.
+fn promised(header: &Header) -> u64 {
+    let sizes = header.dimensions.iter();
+    let all = sizes.copied().try_fold(element(header), u64::checked_mul);
+    all.unwrap_or(u64::MAX)
+}
+
+/// Puts a chunk, which may stand out over the end, where it belongs in a dataset.
+fn place(bytes: &[u8], offsets: &[u64], chunk: &[u32], dimensions: &[u64], element: u64, joined: &mut [u8]) {
     let sizes: Vec<u64> = chunk[..dimensions.len()].iter().map(|&size| u64::from(size)).collect();
     let row = sizes.last().copied().unwrap_or(1);
-    for (offsets, bytes) in chunks {
-        for (index, part) in bytes.chunks_exact((row * element) as usize).enumerate() {
-            let Some((at, length)) = row_at(index as u64, offsets, &sizes, dimensions) else {
-                continue;
-            };
+    for (index, part) in bytes.chunks_exact((row * element) as usize).enumerate() {
+        if let Some((at, length)) = row_at(index as u64, offsets, &sizes, dimensions) {
             let (at, length) = ((at * element) as usize, (length * element) as usize);
             joined[at..at + length].copy_from_slice(&part[..length]);
         }
     }
-    joined
 }
 
 /// The element of a dataset at which a row of a chunk begins, and how many of the row lie within it.

@@ -1,0 +1,48 @@
+//! Of a long recording, a campaign holds the channels that its sensors name, as narrow as the file stores them, and not the file.
+
+use crate::counting::memory_of;
+use crate::writers::{Channel, Group, mat5, mdf4, rpc, tdms};
+use crate::{channel, folder, history, open};
+
+/// Sixteen channels of so many samples at 1 kHz.
+fn group(samples: usize) -> Group {
+    let wave = |channel: usize| {
+        (0..samples)
+            .map(|at| ((at + 31 * channel) % 1009) as f64 - 504.0)
+            .collect()
+    };
+    let named = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
+    Group {
+        rate: 1000.0,
+        channels: (0..16).map(named).collect(),
+    }
+}
+
+/// The share of a file that is held, at most, while a campaign of two sensors and two windows is opened; `unit` of the sensors where
+/// the file states none.
+fn share(name: &str, file: &[u8], unit: &str) -> f64 {
+    let sensors = channel("pad", &format!("source = \"channel_0\"{unit}"))
+        + &channel("body", &format!("source = \"channel_1\"{unit}"));
+    let first = history(name, "name = \"first\"\nfrom = 0\nto = 20");
+    let later = history(name, "name = \"later\"\nfrom = 100\nto = 110");
+    let folder = folder(&(sensors + &first + &later), (name, file));
+    let held = memory_of(|| assert_eq!(open(folder.path()).unwrap().runs.len(), 2));
+    held as f64 / file.len() as f64
+}
+
+/// Two of sixteen channels are an eighth. The times of MDF are there in the record and, while they are read, as a channel; the pages
+/// and pieces in which a file is read, and the samples of the windows, are a few megabytes.
+#[test]
+fn a_campaign_holds_the_channels_that_it_names() {
+    let (doubles, shorts) = (group(500_000), group(2_000_000));
+    let of = |name: &str, file: Vec<u8>, unit: &str, most: f64| {
+        assert!(file.len() > 60_000_000, "{name}: {}", file.len());
+        let share = share(name, &file, unit);
+        println!("{name}: {share:.3} of the file");
+        assert!(share < most, "{name}: {share:.3} of the file");
+    };
+    of("long.mf4", mdf4::file(std::slice::from_ref(&doubles)), "", 0.4);
+    of("long.tdms", tdms::file(&doubles), "", 0.25);
+    of("long.mat", mat5::file(&doubles), "\nunit = \"m/s^2\"", 0.4);
+    of("long.rsp", rpc::file(&shorts), "", 0.25);
+}
