@@ -55,6 +55,7 @@ pub fn fit_campaign<'py>(
         channels,
         free,
         fix,
+        all_runs: false,
         profile: Vec::new(),
     };
     let fit = || refuse_nonlinear(&campaign, choices.model.as_deref()).and_then(|()| fit::fit(&campaign, &choices));

@@ -53,12 +53,13 @@ impl Class {
 impl Random {
     pub(super) fn points(&self) -> Result<Vec<[f64; 2]>, RoadError> {
         self.check()?;
-        let waves = self.waves();
-        let count = (self.length / self.spacing).round() as usize;
-        Ok((0..=count)
-            .map(|i| i as f64 * self.spacing)
-            .map(|x| [x, fade_in(x) * height(&waves, x)])
-            .collect())
+        let count = (self.length / self.spacing).round() as usize + 1;
+        let heights = heights(&self.waves(), self.spacing, count);
+        let points = heights.into_iter().enumerate().map(|(i, height)| {
+            let x = i as f64 * self.spacing;
+            [x, fade_in(x) * height]
+        });
+        Ok(points.collect())
     }
 
     fn check(&self) -> Result<(), RoadError> {
@@ -106,14 +107,52 @@ struct Wave {
     phase: f64,
 }
 
-fn height(waves: &[Wave], x: f64) -> f64 {
-    waves
-        .iter()
-        .map(|w| w.amplitude * (TAU * w.wave_number * x + w.phase).sin())
-        .sum()
+/// So many points are reached from one by turning each sine on: rounding then stays below 1e-14 of its amplitude.
+const TURNED: usize = 64;
+
+/// The sums of waves at so many points, a `spacing` apart.
+fn heights(waves: &[Wave], spacing: f64, count: usize) -> Vec<f64> {
+    let mut heights = vec![0.0; count];
+    for (block, heights) in heights.chunks_mut(TURNED).enumerate() {
+        let x = (block * TURNED) as f64 * spacing;
+        for wave in waves {
+            let (turn_sin, turn_cos) = (TAU * wave.wave_number * spacing).sin_cos();
+            let (mut sin, mut cos) = (TAU * wave.wave_number * x + wave.phase).sin_cos();
+            for height in heights.iter_mut() {
+                *height += wave.amplitude * sin;
+                (sin, cos) = (sin * turn_cos + cos * turn_sin, cos * turn_cos - sin * turn_sin);
+            }
+        }
+    }
+    heights
 }
 
 fn fade_in(x: f64) -> f64 {
     let u = (x / FADE_IN).min(1.0);
     u * u * (3.0 - 2.0 * u)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Class, Random, TAU, heights};
+
+    #[test]
+    fn heights_are_the_sums_of_the_sines() {
+        let random = Random {
+            class: Class::C,
+            seed: 5,
+            length: 400.0,
+            spacing: 0.03,
+        };
+        let waves = random.waves();
+        let found = heights(&waves, random.spacing, 13_334);
+        for i in [0, 1, 63, 64, 8_000, 13_333] {
+            let x = i as f64 * random.spacing;
+            let sines = waves
+                .iter()
+                .map(|w| w.amplitude * (TAU * w.wave_number * x + w.phase).sin());
+            let expected: f64 = sines.sum();
+            assert!((found[i] - expected).abs() < 1e-12, "{i}: {} {expected}", found[i]);
+        }
+    }
 }

@@ -16,17 +16,13 @@ const MOST: f64 = 3.0;
 /// such error is met in practice, and a search stays where numbers are finite.
 const FARTHEST: f64 = 6.0;
 
-/// A step that makes data and parameters more probable by less than this logarithm is the last one: an answer needs
-/// [odds](crate::discover::Numbers::odds_of_certain) whose logarithm is 60 times that.
-const SETTLED: f64 = 0.05;
-
 impl Posterior<'_> {
     /// The best place that is found from `start`.
     pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
         let options = Options {
             gradient: 1e-5,
             cost: 1e-6,
-            logarithm: if self.by_evidence { SETTLED } else { 0.0 },
+            logarithm: self.close,
             step: 1e-6,
             evaluations,
         };
