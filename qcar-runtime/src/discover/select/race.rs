@@ -69,6 +69,8 @@ const STARTED: usize = 9;
 const CLOSE: f64 = 10.0;
 /// So many of those that gain most enter, at whatever place and in whatever form.
 const ENTRANTS: usize = 6;
+/// How many times as many evaluations a linear model has: they cost little.
+const LINEAR: usize = 3;
 
 /// A candidate that was fitted to all runs.
 pub struct Finalist {
@@ -174,7 +176,16 @@ pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<
 }
 
 fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option<Runner<'a>> {
-    let refit = runner.hypothesis.fit(&runner.place, evidence, round.budget).ok()?;
+    let (rounds, evaluations) = round.budget;
+    let times = if runner.hypothesis.model().about().linear {
+        LINEAR
+    } else {
+        1
+    };
+    let refit = runner
+        .hypothesis
+        .fit(&runner.place, evidence, (rounds, times * evaluations))
+        .ok()?;
     if !refit.log_evidence.is_finite() {
         return None;
     }
