@@ -69,7 +69,8 @@ const STARTED: usize = 9;
 const CLOSE: f64 = 10.0;
 /// So many of those that gain most enter, at whatever place and in whatever form.
 const ENTRANTS: usize = 6;
-/// How many times as many evaluations a linear model has: they cost little.
+/// How many times as many evaluations a linear model has. They cost little, and with a third of them a light mass on mounts is dropped
+/// before its mode is found.
 const LINEAR: usize = 3;
 
 /// A candidate that was fitted to all runs.
