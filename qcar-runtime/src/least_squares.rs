@@ -61,15 +61,13 @@ impl Bounds {
     }
 }
 
-/// When to stop. Every tolerance is relative, so that none depends on units, but for the one of a cost that has none.
+/// When to stop. Every tolerance is relative, so none depends on units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Largest cosine between the residual and a Jacobian column whose variable is free to move.
     pub gradient: f64,
     /// Reduction of the cost, foreseen and made, relative to the cost.
     pub cost: f64,
-    /// The same as it is, where the cost is the logarithm of a probability; zero where it is not.
-    pub logarithm: f64,
     /// Length of the step relative to the length of `x`, both in scaled variables.
     pub step: f64,
     /// Evaluations of the residual at places of their own.
@@ -81,7 +79,6 @@ impl Default for Options {
         Self {
             gradient: 1e-8,
             cost: 1e-10,
-            logarithm: 0.0,
             step: 1e-8,
             evaluations: 200,
         }
@@ -308,8 +305,7 @@ impl<'a, P: Problem + ?Sized> Search<'a, P> {
     /// The tests of Moré (1978), section 8, on what the step promised and what it did.
     fn settled(&self, step: &Step, interior: &Interior, cost: f64, reduction: f64, options: &Options) -> Option<Stop> {
         let ratio = reduction / step.predicted;
-        let little = (options.cost * cost).max(options.logarithm);
-        if reduction.abs() <= little && step.predicted <= little && ratio <= 2.0 {
+        if reduction.abs() <= options.cost * cost && step.predicted <= options.cost * cost && ratio <= 2.0 {
             return Some(Stop::Cost);
         }
         let length = interior.scaled_length(&step.step);

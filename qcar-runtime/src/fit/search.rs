@@ -14,7 +14,6 @@ use crate::progress::{self, Told};
 pub(super) const OPTIONS: Options = Options {
     gradient: 1e-8,
     cost: 1e-9,
-    logarithm: 0.0,
     step: 1e-7,
     evaluations: 100,
 };

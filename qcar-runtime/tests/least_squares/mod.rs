@@ -17,7 +17,6 @@ use dual::{Dual, Functions};
 const TIGHT: Options = Options {
     gradient: 1e-12,
     cost: 1e-15,
-    logarithm: 0.0,
     step: 1e-12,
     evaluations: 2000,
 };

@@ -42,10 +42,6 @@ pub fn refit_with(
     Ok(posterior.refit(outcome))
 }
 
-/// A step that makes data and parameters more probable by less than this logarithm is the last one of a fit that is compared
-/// with others: an answer needs [odds](crate::discover::Numbers::odds_of_certain) whose logarithm is 60 times that.
-const CLOSE: f64 = 0.05;
-
 /// Where a fit by evidence begins.
 pub struct Start<'a> {
     /// All parameters.
@@ -94,7 +90,6 @@ pub fn fit(
     let mut posterior = Posterior::new(model, start.values.clone(), free, evidence, nuisance);
     posterior.discrepancy = Some(start.discrepancy);
     posterior.by_evidence = true;
-    posterior.close = CLOSE;
     posterior.centre = start.centre.clone();
     place.resize(posterior.variables(), 0.0);
     posterior.fit(place, rounds, evaluations)

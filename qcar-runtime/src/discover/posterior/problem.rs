@@ -38,8 +38,6 @@ pub struct Posterior<'a> {
     pub whitens: bool,
     /// and whether there is one at all, whatever it is at the moment.
     pub by_evidence: bool,
-    /// A step that gains less than this of the logarithm of the posterior is the last one of a search.
-    pub close: f64,
     pub residuals: usize,
     /// Why the model cannot say anything of the evidence at all,
     pub refused: Option<PredictError>,
@@ -83,7 +81,6 @@ impl<'a> Posterior<'a> {
             discrepancy: None,
             whitens: true,
             by_evidence: false,
-            close: 0.0,
             residuals: evidence.of_role(Role::Fit).map(|(_, series)| series.residuals()).sum(),
             nuisance,
             refused: None,

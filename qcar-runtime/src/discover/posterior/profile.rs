@@ -18,7 +18,6 @@ use crate::model::Model;
 const OPTIONS: Options = Options {
     gradient: 1e-5,
     cost: 1e-6,
-    logarithm: 0.0,
     step: 1e-6,
     evaluations: 20,
 };

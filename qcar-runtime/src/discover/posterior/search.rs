@@ -22,7 +22,6 @@ impl Posterior<'_> {
         let options = Options {
             gradient: 1e-5,
             cost: 1e-6,
-            logarithm: self.close,
             step: 1e-6,
             evaluations,
         };
