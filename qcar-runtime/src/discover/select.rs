@@ -1,7 +1,7 @@
 //! Which effect is missing: sets of effects compared by their evidence, judged on runs that no fit has seen.
 
 // The order of the data: an effect in a model,
-mod taken;
+mod unknowns;
 // what can be fitted,
 pub mod assembly;
 // what each candidate would gain without a fit,
@@ -37,7 +37,7 @@ use exchange::exchanges;
 use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use set::{Set, closed, is_missing, most_probable, nameless};
+use set::{Set, closed, excess, is_missing, most_probable, nameless};
 use verdict::judged;
 use visible::visible;
 
@@ -103,7 +103,7 @@ pub fn discover(
     if discovery.verdict == Verdict::None {
         let refit = &alone.explanation.refit;
         let steady = evidence.less(&refit.unsteady).hurried();
-        discovery.visible = visible(&alone.assembly, refit, &looks(&steady).fine);
+        discovery.visible = visible(&alone.assembly, refit, &fidelity(&steady).fine);
     }
     Ok(discovery)
 }
@@ -184,10 +184,11 @@ fn unreduced(sets: &[Set]) -> Option<usize> {
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// True where the set that was found has several effects, or leaves more of the gap than chance would.
+/// True where the set that was found has several effects, leaves more of the gap than chance would, or is judged by runs that
+/// show no gap to close.
 fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
     let closes = closed(&alone.explanation, &found.explanation, evidence);
-    found.names().len() > 1 || closes < evidence.numbers.certain()
+    found.names().len() > 1 || closes < evidence.numbers.certain() || excess(&alone.explanation, evidence) <= 0.0
 }
 
 /// The most probable set.
@@ -210,14 +211,14 @@ const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
 /// The base model, fitted.
 fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
-    let looks = looks(evidence);
+    let fidelity = fidelity(evidence);
     let hypothesis = assembly.hypothesis();
     let starts = SPREAD.par_iter().map(|&spread| {
         let from = Place {
             named: setting_spread(&assembly, spread),
-            ..Place::given(&looks.coarse)
+            ..Place::given(&fidelity.coarse)
         };
-        hypothesis.fit(&from, &looks.coarse, BASE[0])
+        hypothesis.fit(&from, &fidelity.coarse, BASE[0])
     });
     let (fitted, refused): (Vec<_>, Vec<_>) = starts.partition_map(|start| match start {
         Ok(refit) => Either::Left(refit),
@@ -228,8 +229,8 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     // What cannot be predicted at all is an error here, where among many it only drops out.
     let refusal = refused.into_iter().next().unwrap_or(PredictError::NoNumber);
     let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(refusal)?;
-    let medium = hypothesis.fit(&hypothesis.place(&best), &looks.medium, BASE[1])?;
-    let fine = hypothesis.fit(&hypothesis.place(&medium), &looks.fine, BASE[2])?;
+    let medium = hypothesis.fit(&hypothesis.place(&best), &fidelity.medium, BASE[1])?;
+    let fine = hypothesis.fit(&hypothesis.place(&medium), &fidelity.fine, BASE[2])?;
     let explanation = hypothesis.explanation(fine, evidence)?;
     if !is_number(&explanation.refit) {
         return Err(PredictError::NoNumber);
@@ -264,12 +265,12 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
     let refit = &set.explanation.refit;
     // What sweeps show beyond steady harmonics changes little with one effect more.
     let steady = evidence.less(&refit.unsteady).hurried();
-    let looks = looks(&steady);
-    let mut prospects = screen(&set.assembly, &candidates, refit, &looks.coarse)?;
+    let fidelity = fidelity(&steady);
+    let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse)?;
     // A model that leaves much has poor parameters: what an effect gains there to first order says little.
     let far_off = is_missing(set, evidence);
     if far_off {
-        let given = Place::given(&looks.coarse);
+        let given = Place::given(&fidelity.coarse);
         for prospect in &mut prospects {
             prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);
         }
@@ -280,7 +281,7 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         return Ok(Vec::new());
     }
     let entering = entrants(&candidates, &prospects);
-    let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &looks, progress);
+    let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &fidelity, progress);
     let of_finalist = |finalist: Finalist| {
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
@@ -370,11 +371,11 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     Some(Set::new(assembly, explanation, share))
 }
 
-/// Every so many-th line of the coarse and the medium look.
+/// Every so many-th line of a sweep in the coarse and the medium data.
 const THINNED: [usize; 2] = [6, 3];
 
-/// What searches look at: rides take the time of many sweeps, and all of them only count in the end.
-fn looks(evidence: &Evidence) -> Fidelity {
+/// The data of each fidelity: rides take the time of many sweeps, and all of them only count in the end.
+fn fidelity(evidence: &Evidence) -> Fidelity {
     let mut rides: Vec<usize> = (0..evidence.runs.len())
         .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))
         .collect();

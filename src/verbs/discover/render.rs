@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 
 use qcar_runtime::discover::answer::{Finding, Probable, Rival, Verdict, Visible};
+use qcar_runtime::discover::numbers::EVEN;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::{Explanation, Tile};
 use qcar_runtime::transmissibility::Point;
@@ -376,10 +377,7 @@ fn remaining(of: &Answer) -> String {
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.told_apart();
     match of.discovery.verdict {
-        Verdict::None if is_doubtful(of) => {
-            "nothing large is missing: what is left is small, but no noise, and nothing that was tried explains it"
-                .into()
-        }
+        Verdict::None if is_doubtful(of) => "no effect is certain: what is left is small, but more than noise".into(),
         Verdict::None => "nothing is missing, what is left is noise".into(),
         Verdict::Found => format!("found {}", listed(found)),
         Verdict::Class if found.is_empty() => format!("these data cannot tell apart {}", listed(class)),
@@ -392,10 +390,9 @@ pub(crate) fn sentence(of: &Answer) -> String {
     }
 }
 
-/// True where an answer is less probable than one may be that is given as certain.
+/// True where the answer is less probable than its opposite.
 fn is_doubtful(of: &Answer) -> bool {
-    let doubt = of.evidence.numbers.doubt;
-    of.discovery.probability.is_some_and(|probability| probability < doubt)
+    of.discovery.probability.is_some_and(|probability| probability < EVEN)
 }
 
 /// What comes before the name of a finding that is one of several.

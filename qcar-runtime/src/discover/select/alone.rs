@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use rayon::prelude::*;
 
 use super::assembly::{Assembly, Hypothesis, Place};
-use super::{looks, race::Fidelity};
+use super::{fidelity, race::Fidelity};
 use crate::campaign::Role;
 use crate::discover::answer::{News, Progress};
 use crate::discover::candidate::Workshop;
@@ -52,14 +52,14 @@ pub fn alone(
         return Err(PredictError::NothingToFit);
     }
     let assembly = Assembly::base(workshop.into(), setting, evidence)?;
-    let (hypothesis, looks) = (assembly.hypothesis(), looks(evidence));
+    let (hypothesis, fidelity) = (assembly.hypothesis(), fidelity(evidence));
     progress(News::Doing(&format!("searching from {count} starts")));
-    let minima = minima(&hypothesis, spread(assembly.given(), count), &looks)?;
+    let minima = minima(&hypothesis, spread(assembly.given(), count), &fidelity)?;
     progress(News::Doing("searching to the end"));
-    let best = hypothesis.fit(&hypothesis.place(&minima[0]), &looks.fine, SEARCHES[2])?;
+    let best = hypothesis.fit(&hypothesis.place(&minima[0]), &fidelity.fine, SEARCHES[2])?;
     let settled = hypothesis.explanation(best, evidence)?.refit;
     // What sweeps show beyond steady harmonics is taken off what was measured, which the steady harmonics then are held against.
-    let steady = super::looks(&evidence.less(&settled.unsteady)).fine;
+    let steady = super::fidelity(&evidence.less(&settled.unsteady)).fine;
     let refit = hypothesis.fit(&hypothesis.place(&settled), &steady, TO_THE_END)?;
     let other = |other: &Refit| Minimum {
         log_odds: minima[0].log_evidence - other.log_evidence,
@@ -75,18 +75,18 @@ pub fn alone(
 fn minima(
     hypothesis: &Hypothesis<'_>,
     from: Vec<BTreeMap<String, f64>>,
-    looks: &Fidelity,
+    fidelity: &Fidelity,
 ) -> Result<Vec<Refit>, PredictError> {
     let places = from.into_iter().map(|named| Place {
         named,
-        ..Place::given(&looks.coarse)
+        ..Place::given(&fidelity.coarse)
     });
-    let mut found = searched(hypothesis, places.collect(), &looks.coarse, SEARCHES[0])?;
+    let mut found = searched(hypothesis, places.collect(), &fidelity.coarse, SEARCHES[0])?;
     found.truncate(found.len().div_ceil(2));
     let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    let found = different(searched(hypothesis, places, &looks.coarse, SEARCHES[1])?);
+    let found = different(searched(hypothesis, places, &fidelity.coarse, SEARCHES[1])?);
     let places = found.iter().map(|refit| hypothesis.place(refit)).collect();
-    Ok(different(searched(hypothesis, places, &looks.medium, SEARCHES[2])?))
+    Ok(different(searched(hypothesis, places, &fidelity.medium, SEARCHES[2])?))
 }
 
 /// Where searches from these places end, the most probable first.

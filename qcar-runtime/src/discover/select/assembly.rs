@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use super::taken::Taken;
+use super::unknowns::Unknowns;
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, Workshop};
 use crate::discover::noise::{Beginning, Discrepancy, Form, Nuisance};
@@ -33,7 +33,7 @@ pub struct Placed {
     /// Whether it is no answer, since every real car has some of it.
     pub nuisance: bool,
     /// What of it is unknown.
-    pub taken: Taken,
+    pub unknowns: Unknowns,
 }
 
 impl Placed {
@@ -167,7 +167,7 @@ impl Assembly {
             at: candidate.at.clone(),
             form: candidate.form.clone(),
             nuisance: candidate.nuisance,
-            taken: Taken::new(candidate, &assembly.nuisance),
+            unknowns: Unknowns::new(candidate, &assembly.nuisance),
         });
         Some(assembly)
     }

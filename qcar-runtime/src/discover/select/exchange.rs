@@ -64,7 +64,7 @@ fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evid
     }
     from.discrepancy = there.discrepancy;
     let steady = evidence.less(&rival.explanation.refit.unsteady).hurried();
-    let refit = hypothesis.fit(&from, &super::looks(&steady).fine, (2, 15)).ok()?;
+    let refit = hypothesis.fit(&from, &super::fidelity(&steady).fine, (2, 15)).ok()?;
     let explanation = explained(&hypothesis, refit, evidence)?;
     let prior = rival.log_prior + set.log_prior - chosen.log_prior;
     Some(Set::new(assembly, explanation, prior))

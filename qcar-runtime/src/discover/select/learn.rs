@@ -8,7 +8,7 @@ use super::judging::predicts;
 use super::race::{Finalist, race};
 use super::screen::Prospect;
 use super::set::{Set, closed, is_missing};
-use super::{News, Progress, explained, looks};
+use super::{News, Progress, explained, fidelity};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::observe::Evidence;
 
@@ -66,7 +66,7 @@ fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Se
         &set.assembly,
         &laws,
         &all.iter().collect::<Vec<_>>(),
-        &looks(&steady),
+        &fidelity(&steady),
         progress,
     );
     let prior = set.log_prior - (laws.len() as f64).ln() + set.odds_of_another(&evidence.numbers).ln();
@@ -87,7 +87,7 @@ pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
         effect: own.effect.clone(),
         at: own.at.clone(),
         form: own.form.clone(),
-        parameters: own.taken.parameters(&learned.explanation),
+        parameters: own.unknowns.parameters(&learned.explanation),
         evidence: learned.explanation.refit.log_evidence - base.explanation.refit.log_evidence,
         closed: explained,
         rivals: Vec::new(),

@@ -14,7 +14,7 @@ use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// What the rounds look at.
+/// The data that the rounds fit.
 pub struct Fidelity {
     /// A part of the lines, and one ride.
     pub coarse: Evidence,
@@ -114,7 +114,7 @@ pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
     entering: &[&Prospect],
-    looks: &Fidelity,
+    fidelity: &Fidelity,
     progress: Progress<'_>,
 ) -> (Vec<Finalist>, Vec<Dropped>) {
     let hypotheses: Vec<Option<Hypothesis<'_>>> = entering
@@ -140,7 +140,7 @@ pub fn race(
     let mut dropped = Vec::new();
     for (number, round) in ROUNDS.iter().enumerate() {
         progress(News::Far(number, ROUNDS.len()));
-        let seen = (round.evidence)(looks);
+        let seen = (round.evidence)(fidelity);
         field = field
             .into_par_iter()
             .filter_map(|runner| run(runner, seen, round))

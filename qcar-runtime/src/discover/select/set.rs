@@ -81,7 +81,7 @@ impl Set {
             effect: own.effect.clone(),
             at: own.at.clone(),
             form: own.form.clone(),
-            parameters: own.taken.parameters(&self.explanation),
+            parameters: own.unknowns.parameters(&self.explanation),
             evidence: 0.0,
             closed: 0.0,
             rivals: self.rivals.clone(),
@@ -91,7 +91,7 @@ impl Set {
 
     /// True where an effect stands for another.
     pub fn stands_at_an_end(&self) -> bool {
-        self.named().any(|own| own.taken.stands_at_an_end(&self.explanation))
+        self.named().any(|own| own.unknowns.stands_at_an_end(&self.explanation))
     }
 
     /// True where an effect that a part of it lacks has a magnitude at an end of its range, so that it stands for another
@@ -100,7 +100,8 @@ impl Set {
     pub fn adds_a_substitute(&self, part: &Set) -> bool {
         let is_further = !part.names().is_empty();
         let is_substitute = |own: &Placed| {
-            own.taken.stands_at_an_end(&self.explanation) || is_further && own.taken.reaches_an_end(&self.explanation)
+            own.unknowns.stands_at_an_end(&self.explanation)
+                || is_further && own.unknowns.reaches_an_end(&self.explanation)
         };
         let is_new = |own: &&Placed| !part.names().contains(&own.name());
         self.named().filter(is_new).any(is_substitute)
@@ -110,7 +111,7 @@ impl Set {
     /// one, and no alternative to it.
     pub fn is_a_limit_beside(&self, other: &Set) -> bool {
         let unknowns = |set: &Set| set.explanation.refit.free.len();
-        unknowns(self) > unknowns(other) && self.named().any(|own| own.taken.reaches_an_end(&self.explanation))
+        unknowns(self) > unknowns(other) && self.named().any(|own| own.unknowns.reaches_an_end(&self.explanation))
     }
 
     /// Its effects that may be an answer.
@@ -170,7 +171,7 @@ pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) ->
 
 /// The squared gap over its uncertainty on the runs that judge (those that were fitted, where none do) beyond what noise
 /// alone leaves, which is 1.
-fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
+pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let gap = if held_out { own.gap.held_out } else { own.gap.fit };
     (gap.powi(2) - 1.0).max(0.0)

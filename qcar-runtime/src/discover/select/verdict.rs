@@ -23,25 +23,26 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
         effect: own.effect.clone(),
         at: own.at.clone(),
         form: own.form.clone(),
-        parameters: own.taken.parameters(&set.explanation),
+        parameters: own.unknowns.parameters(&set.explanation),
         evidence: set.explanation.refit.log_evidence - before.refit.log_evidence,
         closed: closed(&before, &set.explanation, evidence),
         rivals: set.rivals.clone(),
     };
     let (findings, alike) = findings(&members.iter().map(|&place| &sets[place]).collect::<Vec<_>>(), &finding);
-    let verdict = match (findings.is_empty(), alike) {
-        (true, _) if is_missing(&sets[best], evidence) => Verdict::Unknown,
-        (true, _) => Verdict::None,
-        (false, 0) => Verdict::Found,
-        (false, _) => Verdict::Class,
-    };
     let sum = |wanted: &dyn Fn(&Answer) -> bool| -> f64 {
         let wanted = answers.iter().filter(|own| wanted(own));
         wanted.map(|own| own.probability).sum()
     };
+    let of_none = sum(&|own| sets[own.set].names().is_empty());
+    let verdict = match (findings.is_empty(), alike) {
+        (true, _) if is_missing(&sets[best], evidence) || of_none < evidence.numbers.doubt => Verdict::Unknown,
+        (true, _) => Verdict::None,
+        (false, 0) => Verdict::Found,
+        (false, _) => Verdict::Class,
+    };
     let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
     let probability = match verdict {
-        Verdict::None => Some(sum(&|own| sets[own.set].names().is_empty())),
+        Verdict::None => Some(of_none),
         // Given that one of the names that may be an answer is the truth.
         Verdict::Found | Verdict::Class => Some(sum(&|own| !own.dismissed && holds(own)) / sum(&|own| !own.dismissed)),
         Verdict::Unknown => None,

@@ -1,13 +1,13 @@
-//! What of an effect in a model is to be found, and what an explanation says of it.
+//! What is unknown of an effect in a model, and what an explanation says of it.
 
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Form, Nuisance};
 use crate::discover::posterior::Explanation;
 
-/// An effect in the model.
+/// What is unknown of an effect in a model.
 #[derive(Clone)]
-pub struct Taken {
-    unknowns: Vec<Unknown>,
+pub struct Unknowns {
+    all: Vec<Unknown>,
     /// The parameters of the model that say how much of it there is, not where it acts.
     magnitudes: Vec<String>,
 }
@@ -21,7 +21,7 @@ enum Unknown {
     Coefficient(String, usize, Form),
 }
 
-impl Taken {
+impl Unknowns {
     /// A candidate, with the sensors as it suspects them.
     pub fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
         let unknowns = match &candidate.change {
@@ -45,7 +45,10 @@ impl Taken {
             }
             Change::Sensor { .. } => Vec::new(),
         };
-        Taken { unknowns, magnitudes }
+        Self {
+            all: unknowns,
+            magnitudes,
+        }
     }
 
     /// True where a magnitude stands at an end of its range: the effect does duty for another. A shape may go to its limit.
@@ -55,7 +58,7 @@ impl Taken {
 
     /// True where any of its parameters does, a shape too.
     pub fn reaches_an_end(&self, explanation: &Explanation) -> bool {
-        self.unknowns.iter().any(|unknown| match unknown {
+        self.all.iter().any(|unknown| match unknown {
             Unknown::Parameter(_, name) => is_at_end(explanation, name),
             Unknown::Coefficient(..) => false,
         })
@@ -82,7 +85,7 @@ impl Taken {
                 Some((effect_name.clone(), value, error))
             }
         };
-        self.unknowns.iter().filter_map(of).collect()
+        self.all.iter().filter_map(of).collect()
     }
 }
 
