@@ -567,6 +567,26 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
     }
 }
 
+/// A drag that grows with the square of the speed: the catalogue's linear one is certain and closes little of the gap.
+#[test]
+fn a_law_is_learned_between_a_mass_and_the_ground() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let order = Order {
+        cleats: false,
+        programme: Programme::fast(),
+        effects: vec![Hidden::new("quadratic_drag", "body", &[("c2", 2500.0)])],
+        ..Order::clean("c", 4712)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let learned = &answer["learned"];
+    assert_eq!(learned["laws"][0]["name"], "drag_law", "{learned}");
+    assert_eq!(learned["at"], "body", "{learned}");
+    assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
+}
+
 /// What a search assumes that no data give decides no answer: with all numbers 30 % more or less, in eight ways in which each two of
 /// them meet in every combination, it stays the same.
 #[test]

@@ -37,7 +37,7 @@ use exchange::exchanges;
 use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
-use set::{Set, closed, excess, is_missing, most_probable, nameless};
+use set::{Set, closed, excess, is_missing, leaves_more_than_noise, most_probable, nameless};
 use verdict::judged;
 use visible::visible;
 
@@ -89,7 +89,7 @@ pub fn discover(
     }
     let alone = &sets[nameless(&sets)];
     let (mut discovery, found) = judged(&sets, evidence);
-    if is_unexplained(&discovery) {
+    if is_unexplained(&discovery, alone, evidence) {
         let learned = learn::learn(alone, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
@@ -116,12 +116,12 @@ fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
 }
 
 /// True where something is missing, more probably than not, that no effect of the catalogue explains, be it less than models
-/// of this kind leave.
-fn is_unexplained(discovery: &Discovery) -> bool {
+/// of this kind leave; and where the model leaves more than noise.
+fn is_unexplained(discovery: &Discovery, alone: &Set, evidence: &Evidence) -> bool {
     let is_improbable = |probability: f64| probability < EVEN;
     match discovery.verdict {
         Verdict::Unknown => true,
-        Verdict::None => discovery.probability.is_some_and(is_improbable),
+        Verdict::None => discovery.probability.is_some_and(is_improbable) || leaves_more_than_noise(alone, evidence),
         Verdict::Found | Verdict::Class => false,
     }
 }

@@ -154,9 +154,12 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
         clock if is_clock(clock, parameters) => return of_time(&points, unit, longest),
         other => other,
     };
-    let rest = points.iter().find(|(x, _)| *x == 0.0).map_or(0.0, |(_, y)| *y);
+    let rest = points.iter().find(|(x, _)| *x == 0.0).map(|(_, y)| *y);
     let [compression, rebound] = [-1.0, 1.0].map(|sign| side(&points, sign));
-    let largest = points.iter().map(|(_, y)| (y - rest).abs()).fold(0.0, f64::max);
+    let largest = points
+        .iter()
+        .map(|(_, y)| (y - rest.unwrap_or(0.0)).abs())
+        .fold(0.0, f64::max);
     let told = |points: &[(f64, f64)], of: &str| {
         let told = points
             .iter()
@@ -179,7 +182,10 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
         (_, true) => told(&compression, "in compression; rebound is not determined"),
         (true, _) => told(&rebound, "in rebound; compression is not determined"),
     };
-    format!("over the {over} it goes from {} at rest to {sides}", number(rest, 3))
+    match rest {
+        Some(rest) => format!("over the {over} it goes from {} at rest to {sides}", number(rest, 3)),
+        None => format!("over the {over} it is {sides}; at rest it is not determined"),
+    }
 }
 
 fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
@@ -244,6 +250,10 @@ mod tests {
     }
 
     fn said(values: [f64; 4], errors: [f64; 4]) -> String {
+        said_of(&curve(), values, errors)
+    }
+
+    fn said_of(curve: &Curve, values: [f64; 4], errors: [f64; 4]) -> String {
         let names = ["a", "b", "c", "d"];
         let mut parameters: Vec<NewParameter> = names
             .iter()
@@ -252,7 +262,7 @@ mod tests {
             .collect();
         parameters.push(declared("v_ref", 0.4, true));
         of_curve(
-            &curve(),
+            curve,
             &parameters,
             &names.map(String::from).into_iter().zip(errors).collect(),
             60.0,
@@ -283,6 +293,16 @@ mod tests {
         assert_eq!(
             of_time(&points[..1], "1".into(), 20.0),
             "how it changes with time is not determined"
+        );
+    }
+
+    #[test]
+    fn a_value_at_rest_that_is_not_determined_is_not_told() {
+        let mut curve = curve();
+        curve.points[2].1 = Ordinate::Product(vec!["c".into(), "b".into()]);
+        assert_eq!(
+            said_of(&curve, [0.5, 0.5, 2.0, 1.5], [f64::NAN, f64::NAN, 0.01, 0.01]),
+            "over the speed it is 2 at 0.2, 3 at 0.4 1 in rebound; compression is not determined; at rest it is not determined"
         );
     }
 
