@@ -24,6 +24,8 @@ mod verdict;
 mod exchange;
 // what law is missing where the catalogue has none,
 mod learn;
+// the first such law, before names are tried in twos and threes,
+mod first_law;
 // and which effects would have been seen.
 mod visible;
 
@@ -34,6 +36,7 @@ use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
 use exchange::exchanges;
+use first_law::FirstLaw;
 use judging::predictive;
 use race::{Dropped, Fidelity, Finalist, entrants, race};
 use screen::screen;
@@ -69,9 +72,11 @@ pub fn discover(
     let alone = format!("the model alone leaves a gap of {}", told(&base.explanation));
     progress(News::Known(&alone, &[], &base.explanation));
     let mut sets = vec![base];
+    let mut law = FirstLaw::default();
     while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
-        let more = extensions(&sets[place], evidence, progress)?;
+        let lead = law.lead(&sets, place, evidence, progress);
+        let more = extensions(&sets[place], lead, evidence, progress)?;
         sets.extend(more);
         tell(&sets[best(&sets)], progress);
     }
@@ -90,12 +95,14 @@ pub fn discover(
     let alone = &sets[nameless(&sets)];
     let (mut discovery, found) = judged(&sets, evidence);
     if is_unexplained(&discovery, alone, evidence) {
-        let learned = learn::learn(alone, evidence, progress);
+        let first = law.beside(&sets, evidence, progress);
+        let learned = learn::learn(alone, first, evidence, progress);
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
     } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], alone, evidence) {
         // Names may make up for a law that the catalogue does not have.
-        let law = learn::single(alone, evidence, progress);
+        let law = law.beside(&sets, evidence, progress);
+        let law = law.filter(|law| learn::holds(law, alone, evidence));
         let odds = evidence.numbers.odds_of_certain().ln();
         let law = law.filter(|law| law.log_posterior() - sets[found].log_posterior() > odds);
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
@@ -155,10 +162,14 @@ impl Discovery {
 /// more alone need not be among them (a beam of two).
 const BEAM: usize = 2;
 
-/// Which set is extended next: the most probable one, until nothing that could be added to it is worth it.
+/// Which set is extended next: the most probable one, until nothing that could be added to it is worth it. A third effect is one
+/// beside two that explain the greater part of the gap; where these do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
-    let is_open = !sets[best].extended && sets[best].names().len() < MOST_EFFECTS;
+    let closes = || closed(&sets[nameless(sets)].explanation, &sets[best].explanation, evidence);
+    let effects = sets[best].names().len();
+    let may_grow = effects < 2 || effects < MOST_EFFECTS && closes() >= GREATER_PART;
+    let is_open = !sets[best].extended && may_grow;
     let first = is_open.then_some(best).filter(|_| !is_settled(sets, best, evidence));
     first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
@@ -256,7 +267,8 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
 }
 
 /// A set with one effect more each, those that are worth it.
-fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
+/// What one effect would gain must be worth it, and more than the `lead` of a learned law.
+fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
     let candidates = set.assembly.candidates();
     progress(News::Doing(&format!(
         "screening {} effects at their places",
@@ -276,6 +288,8 @@ fn extensions(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Result<
         }
     }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
+    // The screening sees every so many-th line, the lead is that of all of them.
+    let least = least.max(lead / THINNED[0] as f64);
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !prospects.iter().any(worth) {
         return Ok(Vec::new());

@@ -15,18 +15,20 @@ use crate::discover::observe::Evidence;
 /// Laws that act at once: one of the travel and one of the speed, say.
 const MOST_LAWS: usize = 2;
 
-/// The laws that the evidence wants beside a set; `None` where it wants none. They must predict the runs that judge, or close most
-/// of the gap there where the set is far off.
-pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+/// The laws that the evidence wants beside a set, of which the `first` is known; `None` where it wants none. They must predict
+/// the runs that judge, or close most of the gap there where the set is far off.
+pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
-    for _ in 0..MOST_LAWS {
+    let mut next = first;
+    while let Some(more) = next.take() {
         let from = best.as_ref().unwrap_or(base);
-        let enough = closed(&base.explanation, &from.explanation, evidence) >= evidence.numbers.explained();
-        let Some(more) = (!enough).then(|| with_law(from, evidence, progress)).flatten() else {
-            break;
-        };
         if more.log_posterior() <= from.log_posterior() {
             break;
+        }
+        let laws = more.assembly.effects().len() - base.assembly.effects().len();
+        let enough = closed(&base.explanation, &more.explanation, evidence) >= evidence.numbers.explained();
+        if laws < MOST_LAWS && !enough {
+            next = with_law(&more, evidence, progress);
         }
         best = Some(more);
     }
@@ -37,19 +39,15 @@ pub fn learn(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<
     best.filter(|best| holds(best, base, evidence) || is_missing(base, evidence) && closes_most(best))
 }
 
-/// The one law that the evidence wants beside a set; `None` as for [`learn`].
-pub fn single(base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
-    let law = with_law(base, evidence, progress)?;
-    (law.log_posterior() > base.log_posterior() && holds(&law, base, evidence)).then_some(law)
-}
-
-/// True where laws predict the runs that judge.
-fn holds(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
-    predicts(learned, base, evidence) && closed(&base.explanation, &learned.explanation, evidence) > 0.0
+/// True where the evidence wants laws, and they predict the runs that judge.
+pub fn holds(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
+    let is_wanted = learned.log_posterior() > base.log_posterior();
+    let closes = closed(&base.explanation, &learned.explanation, evidence) > 0.0;
+    is_wanted && closes && predicts(learned, base, evidence)
 }
 
 /// The most probable law at the most probable place beside a set.
-fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
+pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let laws = set.assembly.laws();
     progress(News::Doing(&format!("learning a law at {} places", laws.len())));
     let refit = &set.explanation.refit;
