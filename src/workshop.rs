@@ -119,7 +119,7 @@ impl Bench {
         all.find(|patch| patch.effect().name.text == name)
     }
 
-    fn candidates_of(&self, patches: &[Patch]) -> Vec<Candidate> {
+    fn with_each(&self, patches: &[Patch]) -> Vec<Candidate> {
         let values = |name: &str| self.values.get(name).copied();
         let patched = patches.par_iter();
         let of_patch = |patch: &Patch| {
@@ -192,11 +192,15 @@ impl Workshop for Bench {
     }
 
     fn candidates(&self) -> Vec<Candidate> {
-        self.candidates_of(&self.catalogue.effects)
+        self.with_each(&self.catalogue.effects)
+    }
+
+    fn candidates_of(&self, effect: &str) -> Vec<Candidate> {
+        self.patch(effect).map_or_else(Vec::new, |patch| self.with_each(std::slice::from_ref(patch)))
     }
 
     fn laws(&self) -> Vec<Candidate> {
-        self.candidates_of(&self.catalogue.laws)
+        self.with_each(&self.catalogue.laws)
     }
 
     fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>> {

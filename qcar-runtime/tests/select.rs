@@ -66,6 +66,11 @@ impl Workshop for Bench {
         self.masses.iter().map(hanging).chain(delay).collect()
     }
 
+    fn candidates_of(&self, effect: &str) -> Vec<Candidate> {
+        let all = self.candidates().into_iter();
+        all.filter(|own| own.effect == effect).collect()
+    }
+
     fn laws(&self) -> Vec<Candidate> {
         self.laws.iter().map(hanging).collect()
     }

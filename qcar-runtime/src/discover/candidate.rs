@@ -87,6 +87,9 @@ pub trait Workshop: Send + Sync {
     /// Every effect at every place where it applies, in each form.
     fn candidates(&self) -> Vec<Candidate>;
 
+    /// Those of one effect or law.
+    fn candidates_of(&self, effect: &str) -> Vec<Candidate>;
+
     /// Every law that names no cause, a curve of travel, speed or frequency whose coefficients are free, at every place
     /// where it applies.
     fn laws(&self) -> Vec<Candidate>;

@@ -12,7 +12,7 @@ mod passage;
 pub use band::Band;
 pub use means::Means;
 pub use passage::Passage;
-pub(super) use passage::{HURRIED, PATIENT};
+pub(super) use passage::{COARSE_POINTS, FINE_POINTS, HURRIED, PATIENT};
 pub use restart::{Restart, Spread, is_seen};
 
 use std::sync::Arc;

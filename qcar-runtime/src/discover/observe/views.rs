@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use super::dataset::Evidence;
-use super::run::{Band, HURRIED, Run, Stimulus};
+use super::run::{Band, COARSE_POINTS, HURRIED, Run, Stimulus};
 use super::series::Series;
 
 /// A record keeps at least this part of its length: what it begins with need not tell what comes later.
@@ -99,6 +99,7 @@ impl Stimulus {
                 let last = at[at.len() - 1];
                 let end = at[at.len() / 2];
                 passage.duration -= last - end;
+                passage.points_a_sample = COARSE_POINTS;
                 (end.next_up(), times.div_ceil(2))
             }
             _ => (f64::INFINITY, times),

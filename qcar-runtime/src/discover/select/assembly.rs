@@ -177,7 +177,7 @@ impl Assembly {
         let mut assembly = self.clone();
         for own in effects {
             let is_it = |c: &&Candidate| c.effect == own.effect && c.at == own.at && c.form == own.form;
-            let candidates = assembly.workshop.candidates();
+            let candidates = assembly.workshop.candidates_of(&own.effect);
             assembly = assembly.with(candidates.iter().find(is_it)?)?;
         }
         Some(assembly)

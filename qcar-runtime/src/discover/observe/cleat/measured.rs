@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 
 use crate::campaign::Campaign;
-use crate::discover::observe::run::PATIENT;
+use crate::discover::observe::run::{FINE_POINTS, PATIENT};
 use crate::discover::observe::sensor::sensors;
 use crate::discover::observe::{Evidence, Kind, Means, Passage, Run, Series, Stimulus, signal_of};
 use crate::error::InputError;
@@ -78,6 +78,7 @@ impl Evidence {
                     duration: window.end(),
                     means: window.means.sparse(),
                     most_steps: PATIENT,
+                    points_a_sample: FINE_POINTS,
                     road: cleat.road,
                 }),
             });

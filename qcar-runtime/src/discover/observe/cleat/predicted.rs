@@ -126,7 +126,7 @@ fn slopes(
         .map(Values::as_slice)
         .zip(changes.iter().copied())
         .collect();
-    if let Some(slopes) = variation(&car, &drive, outputs, &sets)? {
+    if let Some(slopes) = variation(&car, &drive, outputs, &sets, passage.points_a_sample)? {
         return Ok(slopes);
     }
     let difference = |(moved, change): (&Values, &f64)| {

@@ -4,6 +4,8 @@
 //! (dry friction, relaxing branches, dampers in series with springs) follows by implicit steps (backward Euler), which
 //! no stiffness upsets.
 
+use std::rc::Rc;
+
 use nalgebra::{DMatrix, DVector, Dyn, LU, SVD};
 
 use crate::campaign::Axis;
@@ -15,6 +17,8 @@ use crate::roles::{OnRig, state};
 const STEPS: usize = 30;
 const RESTS: f64 = 1e-9;
 const SMALL: f64 = 1e-3;
+/// Relative difference of two steps of time that are meant to be equal and were rounded.
+const EQUAL: f64 = 1e-9;
 
 /// Where the rig holds the wheel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +129,7 @@ impl Bench {
             }
             for (set, drive) in &mut near_drives {
                 drive.hold(instant);
-                drive.follow_near(&first.x, factor.as_ref(), instant.step);
+                drive.follow_near(&first.x, factor.as_deref(), instant.step);
                 if instant.is_read {
                     forces[*set][read] = drive.force();
                 }
@@ -184,6 +188,8 @@ struct Drive<'a> {
     u: Vec<f64>,
     dx: Vec<f64>,
     nonzeros: Vec<f64>,
+    /// The last slope, and the step of time that it is of.
+    last_factor: Option<(f64, Rc<Factor>)>,
 }
 
 impl<'a> Drive<'a> {
@@ -201,6 +207,7 @@ impl<'a> Drive<'a> {
             u: vec![0.0; about.inputs.len()],
             dx: vec![0.0; about.states.len()],
             nonzeros: vec![0.0; about.matrices.len()],
+            last_factor: None,
         })
     }
 
@@ -238,20 +245,26 @@ impl<'a> Drive<'a> {
         self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
     }
 
-    /// Takes what is between to where it is after `h` s (Newton's method); returns the last slope.
-    fn follow(&mut self, h: f64) -> Option<Factor> {
+    /// Takes what is between to where it is after `h` s (Newton's method); returns the last slope. The slope of a linear model
+    /// is the same everywhere, and its first step is exact.
+    fn follow(&mut self, h: f64) -> Option<Rc<Factor>> {
         let last = self.between();
-        let mut factor = None;
+        let is_linear = self.model.about().linear;
+        let mut factor = self.last_factor.take();
+        factor = factor.filter(|(step, _)| is_linear && (step / h - 1.0).abs() < EQUAL);
         for _ in 0..STEPS {
             let missing = self.missing(&last, h);
-            factor = Factor::of(self.slope(h));
-            let step = factor.as_ref().and_then(|factor| factor.solve(missing));
-            let Some(step) = step else { return factor };
-            if self.step(&step, &last, h) {
+            if factor.is_none() || !is_linear {
+                factor = Factor::of(self.slope(h)).map(|own| (h, Rc::new(own)));
+            }
+            let step = factor.as_ref().and_then(|(_, factor)| factor.solve(missing));
+            let Some(step) = step else { break };
+            if self.step(&step, &last, h) || is_linear {
                 break;
             }
         }
-        factor
+        self.last_factor.clone_from(&factor);
+        factor.map(|(_, factor)| factor)
     }
 
     /// The same in one step from where a drive next to this one has arrived.

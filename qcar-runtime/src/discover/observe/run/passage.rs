@@ -21,7 +21,14 @@ pub struct Passage {
     pub means: Means,
     /// The most steps in which a second of it may be simulated.
     pub most_steps: f64,
+    /// Points a sample at which its derivatives are stepped, of a linear axle: see [`variation`](crate::simulate::variation).
+    pub points_a_sample: usize,
 }
+
+/// Derivatives of a ride that are good to a hundredth of the signal,
+pub const FINE_POINTS: usize = 2;
+/// and to a twentieth, in half the time: enough where the fit is not the last one.
+pub const COARSE_POINTS: usize = 1;
 
 /// The most steps for a second of a ride.
 pub const PATIENT: f64 = 1e5;
