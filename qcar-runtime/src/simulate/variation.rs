@@ -120,6 +120,7 @@ fn changes(from: &DMatrix<f64>, to: &DMatrix<f64>, by: f64) -> Vec<Entry> {
 
 /// What one parameter changes.
 struct Direction<'a, M: ?Sized> {
+    /// The rows of these are places among the forced states, once these are known.
     a: Vec<Entry>,
     b: Vec<Entry>,
     c: Vec<Entry>,
@@ -209,8 +210,11 @@ fn slope(from: [f64; GIVEN], to: [f64; GIVEN], by: f64) -> [f64; GIVEN] {
     array::from_fn(|axis| (to[axis] - from[axis]) / by)
 }
 
-/// Adds a multiple of numbers to others.
+/// Adds a multiple of numbers to others. Most factors of an axle are zero.
 fn add(factor: f64, of: &[f64], to: &mut [f64]) {
+    if factor == 0.0 {
+        return;
+    }
     to.iter_mut().zip(of).for_each(|(to, of)| *to += factor * of);
 }
 
@@ -220,12 +224,16 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
     fn new(
         rolling: Rolling<'a, M>,
         axle: Axle,
-        directions: Vec<Direction<'a, M>>,
+        mut directions: Vec<Direction<'a, M>>,
         grid: Grid,
         begins: f64,
         mut x: Vec<f64>,
     ) -> Option<Self> {
         let forced = forced(&axle, &directions);
+        for direction in &mut directions {
+            let rows = direction.a.iter_mut().chain(&mut direction.b).map(|entry| &mut entry.0);
+            rows.for_each(|row| *row = forced.partition_point(|own| own < row));
+        }
         let spacing = grid.spacing();
         let hold = Hold::new(&axle.a, &forced, spacing)?;
         let pushed = DMatrix::from_fn(forced.len(), GIVEN, |place, axis| axle.b[(forced[place], axis)]);
@@ -387,12 +395,11 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
     fn act_beside_contact(&mut self) {
         self.acting.fill(0.0);
         for (lane, direction) in self.directions.iter().enumerate() {
-            let place = |state: usize| self.forced.partition_point(|&own| own < state) * self.lanes + lane;
-            for &(row, column, slope) in &direction.a {
-                self.acting[place(row)] += slope * self.x[column];
+            for &(place, column, slope) in &direction.a {
+                self.acting[place * self.lanes + lane] += slope * self.x[column];
             }
-            for &(row, axis, slope) in &direction.b {
-                self.acting[place(row)] += slope * self.contact.given[axis];
+            for &(place, axis, slope) in &direction.b {
+                self.acting[place * self.lanes + lane] += slope * self.contact.given[axis];
             }
         }
     }
