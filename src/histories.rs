@@ -14,11 +14,11 @@ use crate::units;
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// A table: time, and a column for each channel, with units in brackets
+    /// A table: time and a column for each channel, with units in brackets
     Csv,
     /// MAT version 5: a structure with X (time) and Y, each with Name, Unit and Data
     Mat,
-    /// MDF 4.10, not packed: one group with the time of the run
+    /// MDF 4.10, uncompressed: one group with the time of the run
     Mdf,
 }
 

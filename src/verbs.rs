@@ -64,7 +64,7 @@ pub struct ModelArguments {
     /// Parameter values: a TOML file with [parameters], or a campaign folder
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// One value, in place of that of the file; may be repeated
+    /// A single value, which takes precedence over that of the file; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
 }

@@ -45,17 +45,17 @@ mod figure;
 // What a search leaves that is stopped.
 mod unfinished;
 
-/// Find the effect that a campaign has and its model lacks
+/// Find the effect that a campaign shows and its model lacks
 ///
-/// Fits the model to the runs with the role `fit`, looks at what is left in units of its uncertainty, tries the effects
-/// of the catalogue at every place where they apply, and judges them on the runs that are `held_out`.
-/// The verdict is `none` where the gap is noise, `found`, `class` where several effects explain it alike, or `unknown`.
+/// Fits the model to the runs with the role `fit`, examines the residuals in standard deviations, tries the effects
+/// of the catalogue at every place where they apply, and checks them on the `held_out` runs.
+/// The verdict is `none` if noise explains the residuals, `found`, `class` if several effects explain them equally well, or `unknown`.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out results")]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Start from this model, by name or path, in place of the campaign's
+    /// Start from this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
@@ -64,7 +64,7 @@ pub struct Arguments {
     /// Multiply numbers that the search assumes, to see what the answer owes to them
     #[arg(long, hide = true, value_name = "NAME=FACTOR,…", value_parser = multiplied)]
     assume: Option<Numbers>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

@@ -19,8 +19,8 @@ use crate::state_space::{StateSpace, state_space};
 
 /// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables
 ///
-/// Every parameter starts with the value that is given, and stays changeable where the tool can change it. Files that are
-/// there already stay as they are.
+/// Every parameter starts with the given value, and can be changed later where the tool allows it. Existing files are never
+/// overwritten.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu"
@@ -28,13 +28,13 @@ use crate::state_space::{StateSpace, state_space};
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,
-    /// For what
+    /// The kind of file
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kind: Kind,
-    /// The version of the Functional Mock-up Interface of an FMU; 2 unless given
+    /// Version of the Functional Mock-up Interface of an FMU; default: 2
     #[arg(long, value_enum, value_name = "VERSION")]
     fmi: Option<Fmi>,
-    /// The file to write; it ends as the kind says
+    /// The file to write, with the ending of its kind
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -42,7 +42,7 @@ pub struct Arguments {
 /// What is written.
 #[derive(Clone, Copy, ValueEnum)]
 enum Kind {
-    /// FILE.c, and a header beside it: equations, matrices, Jacobians, responses
+    /// FILE.c and a header: equations, matrices, Jacobians, responses
     C,
     /// FILE.fmu: Model Exchange and Co-Simulation, with C99 sources
     Fmu,
@@ -59,7 +59,7 @@ enum Kind {
     Js,
     /// FILE.json: A, B, C, D and their derivatives, as `qcar matrices` prints them
     Json,
-    /// FILE.csv: A, B, C and D, an entry a line
+    /// FILE.csv: A, B, C and D, one entry per line
     Csv,
     /// FILE.tex: equations and matrices, as `qcar show` prints them
     Latex,

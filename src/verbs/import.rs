@@ -25,11 +25,11 @@ mod swept;
 // Which kind of run a file is.
 mod kind;
 
-/// Look into measured files and begin a campaign with them
+/// Create a campaign from measured files
 ///
-/// Lists the channels of each file, proposes which sensor of the model each is, by its name and unit, and which kind of run the file
-/// is: of a sweep the frequencies and the velocity of the pad. Several sweeps in one recording, with 1.5 s of rest between, become
-/// runs of their own. The new folder holds a campaign.toml that says what is still to be filled in. The files stay where they are.
+/// Lists the channels of each file, proposes from name and unit which sensor of the model each is, and recognises the kind of run;
+/// for a sweep it also finds the frequencies and the velocity of the pad. A recording with several sweeps, separated by 1.5 s of rest, is split into
+/// runs. The new folder has a campaign.toml that says what to fill in. The files stay where they are.
 #[derive(Args)]
 #[command(
     after_help = "Example:\n  qcar import models/campaigns/axle_a_rig/rig/sweep_025.csv.gz models/campaigns/axle_a_rig/rig/sweep_100.csv.gz --out imported --model axle_a"
@@ -38,10 +38,10 @@ pub struct Arguments {
     /// Measured files: MDF, RPC III, UFF 58, TDMS, MAT, .xlsx or text
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The folder to write, which must not be there
+    /// The folder to write; it must not exist
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
-    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    /// The model to fit: name of a shipped model, or path of a model file
     #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }

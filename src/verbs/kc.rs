@@ -24,7 +24,7 @@ use crate::verbs::Format;
 // Start values in campaign.toml.
 mod write;
 
-/// Print stiffness, damping and friction from the K&C curves of a campaign, beside its start values
+/// Print stiffness, damping and friction from the K&C curves of a campaign, and its start values
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar kc models/campaigns/axle_a_rig\n  qcar kc models/campaigns/axle_a_rig --format json"
@@ -32,10 +32,10 @@ mod write;
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Put the gradients into campaign.toml as start values of the parameters they stand for
+    /// Write the gradients to campaign.toml as start values of the parameters that they determine
     #[arg(long)]
     write: bool,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

@@ -19,13 +19,13 @@ use crate::table::number;
 /// Where the measured files go.
 const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
 
-/// Write a folder with a campaign.toml for a model, which says where each measured file goes
+/// Write a folder with a campaign.toml for a model, which says where to put each measured file
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar new campaign city_car_rig --model quarter_car")]
 pub(super) struct Arguments {
     #[command(flatten)]
     named: Named,
-    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    /// The model to fit: name of a shipped model, or path of a model file
     #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }
