@@ -30,7 +30,7 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
     match fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)) {
         Ok(()) => Ok(folder),
         Err(error) => Err(format!(
-            "found {}: {error}, expected a place to write to; choose another folder, or make room there",
+            "found {}: {error}, expected a writable place; choose another folder, or free some space there",
             existing.display()
         )),
     }
@@ -57,8 +57,8 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
         Err(error) => {
             // Of no use to anybody; where even that fails, its name says what it is.
             let _ = fs::remove_file(&unfinished);
-            let remedy = "choose another folder, or make room there";
-            Err(Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into())
+            let remedy = "choose another folder, or free some space there";
+            Err(Problem::new(path, Place::File, error.to_string(), "a writable place", remedy).into())
         }
     }
 }
@@ -70,7 +70,7 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
 pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
     let mut written = close();
     fs::rename(unfinished, path).map_err(|error| {
-        let remedy = "move what stands there away, and repeat the command";
+        let remedy = "move the existing file away, and repeat the command";
         Problem::new(
             path,
             Place::File,

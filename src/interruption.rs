@@ -52,7 +52,10 @@ pub fn listen() {
     let _ = ctrlc::set_handler(end);
 }
 
-#[expect(clippy::disallowed_methods, reason = "files are whole here, and no other is begun")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "complete files are here, and no other was started"
+)]
 fn end() {
     let unwritten: Vec<String> = left()
         .iter()

@@ -41,7 +41,7 @@ impl Units {
             })?;
             if let Some(twice) = units.of_kind(&declared.coherent) {
                 return Err(format!(
-                    "`{name}` and `{}` are of one kind; leave one of them out",
+                    "`{name}` and `{}` are of the same kind; leave one of them out",
                     twice.name
                 ));
             }

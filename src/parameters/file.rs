@@ -176,7 +176,7 @@ impl Reader<'_> {
         };
         for key in table.keys().filter(|key| !NEIGHBOURS.contains(&&**key.get_ref())) {
             if !["parameters", "vehicle"].contains(&&**key.get_ref()) {
-                let remedy = "put parameters under [parameters] and facts of the vehicle under [vehicle]";
+                let remedy = "put parameters under [parameters] and vehicle data under [vehicle]";
                 let found = format!("`{}`", key.get_ref());
                 self.wrong(
                     key.span().start,

@@ -104,7 +104,7 @@ impl Answer {
 
     /// What is left of each sensor over frequency, before and after, as SVG.
     pub fn figure(&self) -> String {
-        let title = format!("{}: what the model leaves, 0 dB being the noise", self.campaign);
+        let title = format!("{}: residuals of the model; 0 dB is noise", self.campaign);
         figure::gap(title, [&self.discovery.before.gap, &self.discovery.after.gap]).svg()
     }
 
@@ -236,7 +236,7 @@ pub(crate) fn answer(
 fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
-        format!("{sensor}: `{own}` of the model stands for the offset of this sensor, which is given none")
+        format!("{sensor}: `{own}` of the model is the offset of this sensor, so no other offset is estimated for it")
     })
 }
 
@@ -283,7 +283,7 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
     let (before, after) = (&discovery.before.gap, &discovery.after.gap);
     let evidence = format!(
-        "Evidence: the gap of held-out runs over their uncertainty fell from {:.2} to {:.2}.",
+        "Evidence: the RMS residual of held-out runs fell from {:.2} to {:.2} standard deviations.",
         before.held_out, after.held_out
     );
     match discovery.verdict {

@@ -158,12 +158,12 @@ fn must_be_free(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
     }
-    let found = format!("{}, which is there already", path.display());
+    let found = format!("{}, which exists already", path.display());
     Err(flag(
         "--out",
         found,
-        "a name that is still free",
-        "take another name, or move the file away",
+        "a name that is not in use",
+        "choose another name, or move the file away",
     )
     .into())
 }
@@ -198,7 +198,7 @@ fn files(
                     "--as",
                     said,
                     "variables that MATLAB can hold",
-                    "rename one of both in the model",
+                    "rename one of them in the model",
                 )
             };
             (vec![own(file.map_err(refused)?)], String::new())
@@ -246,12 +246,12 @@ fn library(of: &Library) -> String {
     match of {
         Library::Compiled { place, compiler, .. } => format!("{place}: compiled by {compiler}\n"),
         Library::Absent(why) => {
-            format!("no library: {why}; the unit has C99 sources, which an importer that compiles sources can use\n")
+            format!("no library: {why}; the FMU has C99 sources, for importers that compile sources\n")
         }
     }
 }
 
 fn cannot_compile(message: &str) -> Failure {
-    let remedy = "name a C99 compiler in the environment variable CC, or make room for temporary files";
+    let remedy = "name a C99 compiler in the environment variable CC, or free some space for temporary files";
     flag("--as fmu", message.trim_end(), "a library of the model", remedy).into()
 }

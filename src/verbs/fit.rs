@@ -266,7 +266,7 @@ fn profiled(plan: &Plan, about: &About, free: &[usize], names: &[String]) -> Res
         let expected = "a parameter that is fitted, or `all`";
         let (found, remedy) = match unseen {
             true => (
-                format!("`{name}`, which no fitted channel depends on"),
+                format!("`{name}`, on which no fitted channel depends"),
                 "leave it out".into(),
             ),
             false => (format!("`{name}`"), spelling::remedy(name, fitted())),
@@ -300,12 +300,12 @@ fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
                 format!("model {}", model.about().name),
                 Place::Name("parameters".into()),
                 format!(
-                    "{}, of which its outputs see {} combinations",
+                    "{}, of which its outputs determine {} combinations",
                     fitted.join(", "),
                     unseen.seen
                 ),
-                "parameters that a measurement can tell apart",
-                "set `fit = false` for those that are known otherwise, or name them with --fix",
+                "parameters that the outputs can distinguish",
+                "set `fit = false` for those that are known from elsewhere, or name them with --fix",
             )
         };
         (fitted.len() > unseen.seen).then(wrong)

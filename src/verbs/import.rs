@@ -86,12 +86,12 @@ fn must_be_new(folder: &Path) -> Result<(), Failure> {
     match folder.exists() {
         false => Ok(()),
         true => {
-            let found = format!("{}, which is there already", folder.display());
+            let found = format!("{}, which exists already", folder.display());
             Err(flag(
                 "--out",
                 found,
-                "a folder that is still to be made",
-                "take another name, or move it away",
+                "a folder that does not exist yet",
+                "choose another name, or move it away",
             )
             .into())
         }
@@ -128,7 +128,7 @@ fn told(
     text += &sensors::table(proposed);
     let out = arguments.out.display();
     text += &format!(
-        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and give what stands after a `#` with `give yours`\n"
+        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and fill in every line marked `give yours`\n"
     );
     text += &format!("2. qcar check {out}\n3. qcar fit {out}\n");
     text

@@ -252,7 +252,7 @@ fn parameter_value(
     let place = known.or_else(|| kc::parameter_for(&**model, values, asked));
     let place = place.ok_or_else(|| {
         format!(
-            "model {} has no parameter between `{}` and what it is linked to that gives its {} along {axis} with `{}` held",
+            "model {} has no parameter between `{}` and the parts linked to it that determines its {} along {axis} while `{}` is held",
             about.name, on.wheel, gradient.quantity, on.body
         )
     })?;
@@ -261,7 +261,7 @@ fn parameter_value(
     let value = value.ok_or_else(|| {
         let (curve, quantity) = (gradient.test, gradient.quantity);
         format!(
-            "no `{name}` within its range gives model {} the {quantity} of the {curve} curve with `{}` held",
+            "with no `{name}` in its range model {} has the {quantity} of the {curve} curve while `{}` is held",
             about.name, on.body
         )
     });

@@ -75,7 +75,7 @@ fn must_be_new(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
     }
-    let found = format!("{}, which is there already", path.display());
-    let remedy = "take another name, choose another folder with --dir, or move it away";
-    Err(flag("NAME", found, "a name that is still free", remedy).into())
+    let found = format!("{}, which exists already", path.display());
+    let remedy = "choose another name or another folder with --dir, or move it away";
+    Err(flag("NAME", found, "a name that is not in use", remedy).into())
 }

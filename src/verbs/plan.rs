@@ -217,16 +217,16 @@ impl Planned {
     fn text(&self) -> String {
         let count = counted(self.parameters.0.len(), "parameter");
         let mut out = format!(
-            "{}: what would say most about {count} of {}\n",
+            "{}: candidates by what they tell about {count} of {}\n",
             self.campaign, self.model
         );
         out += &noted(&self.notices);
         if self.further.is_empty() {
-            return out + "Nothing could be added: every output and excitation of the model is in use.\n";
+            return out + "Nothing can be added: every output and excitation of the model is in use.\n";
         }
         out += "\n";
         out += &self.measurements().text();
-        out += "\nStandard errors in percent, as they are and as expected with the first of these:\n\n";
+        out += "\nStandard errors in percent, now and as expected with each of the first candidates:\n\n";
         out + &self.errors().text()
     }
 

@@ -218,9 +218,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 fn list(ground: &Ground<'_>) -> String {
     if ground.metrics().is_empty() {
         let name = &ground.about().name;
-        return format!(
-            "{name} has no metric: nothing of it vibrates, no road drives it, and it declares no channel\n"
-        );
+        return format!("{name} has no metric: it has no vibrating mode, no road and no channel\n");
     }
     let mut table = Table::new(["metric", "unit", "meaning"]);
     for metric in ground.metrics() {
@@ -237,8 +235,8 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
         match chosen::parameter(subject.model.about(), &subject.values, name, problem) {
             Ok(place) if parameters.contains(&place) => return Some(place),
             Ok(_) => {
-                let found = format!("`{name}`, which is not looked at");
-                problems.push(problem(&found, "one of the parameters", "name it in --parameters, too"));
+                let found = format!("`{name}`, which is not among the parameters");
+                problems.push(problem(&found, "one of the parameters", "add it to --parameters"));
             }
             Err(error) => problems.extend(error.problems),
         }

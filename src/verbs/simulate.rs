@@ -335,7 +335,7 @@ fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<
                     file,
                     Place::File,
                     error.to_string(),
-                    "a ride that can be simulated",
+                    "a run that can be simulated",
                     remedy,
                 ));
             }

@@ -42,7 +42,7 @@ use plan::Plan;
 ///
 /// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names), and the parameters
 /// that may change, with ranges, steps, costs and couplings; docs/targets.md describes it.
-/// The exit status is 1 if no design meets all targets.
+/// The exit status is 1 if no design is found that meets all targets.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out results")]
 pub struct Arguments {
@@ -80,7 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
     let chance = plan.doubts.chance(&subject)?;
     let answer = gather::gather((&subject, &ground), &plan, chance, arguments.seed, wanted).ok_or_else(|| {
-        let (found, expected) = ("no design in range that can be driven", "ranges with designs that can");
+        let (found, expected) = (
+            "no design in range that can be simulated",
+            "ranges that contain such designs",
+        );
         read.problem(
             &read.file.subject,
             "parameter.range",

@@ -77,7 +77,7 @@ fn an_oscillator_moves_as_its_formula_says() {
 fn what_no_rig_run_has_seen_is_told_of_both_campaigns() {
     let said = compared(&[AXLE, STUDY])["notices"].to_string();
     for (campaign, names) in [(AXLE, "c_wheel_x, k_pwt_x, c_pwt_x"), (STUDY, "c_wheel_x")] {
-        let told = format!("{campaign}: no rig run sees {names}: start values.");
+        let told = format!("{campaign}: no rig run determines {names}, which have start values.");
         assert!(said.contains(&told), "{told} is not in {said}");
     }
 }

@@ -234,7 +234,7 @@ fn wishes_are_read_with_care() {
     let tyre = format!("{AXLE} --vary static_tire_load=-5%..5% --count 2 --rides 20mm@30km/h --out sets.csv");
     refused(
         &run_line(folder.path(), &tyre),
-        &["--vary static_tire_load", "a fact of the vehicle with --rides"],
+        &["--vary static_tire_load", "vehicle data with --rides"],
     );
     let other = run_line(folder.path(), &format!("{CAR} --count 2 --out sets.txt"));
     refused(&other, &["sets.txt", ".parquet"]);

@@ -137,7 +137,7 @@ fn what_cannot_be_written_is_said_before_anything_is() {
     refused(&wrong_end, &["own.zip", "ends in .fmu", "write --out", "own.fmu"]);
     fs::write(path("file"), "").unwrap();
     let in_a_file = export("quarter_car", "csv", &path("file/own.csv"), &[]);
-    refused(&in_a_file, &["own.csv", "a place to write to"]);
+    refused(&in_a_file, &["own.csv", "a writable place"]);
     let keyword = export("quarter_car", "matlab", &path("end.m"), &[]);
     refused(&keyword, &["`end.m`", "no keyword", "quarter_car.m"]);
     refused(

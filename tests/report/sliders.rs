@@ -75,7 +75,7 @@ fn columns(text: &Value) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The magnitude (dB) of a channel of the extended model with the values that were found, one of which may be in the middle of
+/// The magnitude (dB) of a channel of the extended model with the values found, one of which may be in the middle of
 /// its range by its logarithm.
 fn magnitude(channel: &str, frequency: &[f64], moved: bool) -> Vec<f64> {
     let folder = ONE_MISSING.folder.join("discovery");

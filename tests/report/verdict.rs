@@ -13,10 +13,7 @@ fn beside_nothing_missing_stands_the_worst_sensor() {
     let found = look(&browser, &page(&NOTHING_MISSING), 1280, "light");
     let said = paragraphs(&found);
     let tables = found["tables"].to_string();
-    assert!(
-        tables.contains("Usual size over the least that would be certain"),
-        "{tables}"
-    );
+    assert!(tables.contains("Usual size over the smallest certain size"), "{tables}");
     assert!(said[0].starts_with("Nothing is missing"), "{said:?}");
     assert!(said[1].contains("Most is left of body x in cleat runs: "), "{said:?}");
     assert!(

@@ -45,7 +45,7 @@ class Verdict:
         )
         effects = _html.table(["effect", "at", "parameter", "value", "standard error", "unit"], rows)
         gaps = ((name, own["before"], own["after"]) for name, own in self.gap.items())
-        gap = _html.table(["gap over noise", "before", "after"], gaps)
+        gap = _html.table(["residual in sd", "before", "after"], gaps)
         return _html.titled(self.verdict, _sentence(self.probability), effects if self.effects else "", gap)
 
 

@@ -158,7 +158,7 @@ fn refused(run: &Run, error: &str) -> InputError {
         run.name(),
         Place::File,
         error,
-        "a run that both sides can be driven over",
+        "a run that can be simulated for both sides",
         remedy,
     )
     .into()

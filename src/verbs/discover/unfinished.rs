@@ -10,7 +10,7 @@ use qcar_runtime::discover::posterior::Explanation;
 use super::{figure, patched, render};
 use crate::workshop::Bench;
 
-const WORD: &str = "unfinished, the search was stopped before its verdict";
+const WORD: &str = "unfinished: the search was stopped before its verdict";
 const PARAMETERS: &str = "parameters.toml";
 const GAP: &str = "gap.svg";
 const MODEL: &str = "axle";

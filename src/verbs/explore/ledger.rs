@@ -152,8 +152,8 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
             format!("a new file, or results whose `{key}` is {own}"),
         ),
         None => (
-            "a file of which nothing tells what it is".into(),
-            "a new file, or one that this command has begun".into(),
+            "a file without its .design.json".into(),
+            "a new file, or one that this command has started".into(),
         ),
     };
     let remedy = "choose another file, or remove it";

@@ -66,8 +66,8 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 /// # Errors
 /// Channels, which the cost of a linear fit is made of.
 fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
-    let expected = "a linear model, whose cost is made of channels";
-    let remedy = "leave it out: a nonlinear model is fitted to what every sensor shows";
+    let expected = "a linear model, whose cost consists of channels";
+    let remedy = "leave it out: a nonlinear model is fitted to all sensors";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
     InputError::unless_empty(channels.into_iter().collect(), Some(()))

@@ -72,14 +72,10 @@ pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize
 fn unread(ground: &Ground<'_>, metric: usize) -> Option<Problem> {
     let found = format!("`{}`, on runs without an obstacle", ground.metrics()[metric].name);
     let remedy = "choose such a run with --runs, or leave the metric out";
-    ground.readings_of(metric).is_empty().then(|| {
-        flag(
-            "--metrics",
-            found,
-            "a run over an obstacle, which throws the wheel up",
-            remedy,
-        )
-    })
+    ground
+        .readings_of(metric)
+        .is_empty()
+        .then(|| flag("--metrics", found, "a run over an obstacle", remedy))
 }
 
 fn places<'a>(metrics: &'a [Metric], pattern: &'a str) -> impl Iterator<Item = usize> + 'a {

@@ -141,7 +141,7 @@ impl<'a> Planner<'a, '_> {
                             key,
                             &found,
                             "targets that can hold together",
-                            "remove one of both, or make it a wish",
+                            "remove one of them, or make it a wish",
                         );
                         continue;
                     }
