@@ -71,7 +71,7 @@ pub enum KcError {
     #[error("the curve does not determine its gradients; expected travel in both directions")]
     OneWay,
     #[error(
-        "the force does not grow with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
+        "the force does not increase with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
          expected both positive in compression, or forwards"
     )]
     NoSlope { slope: f64, error: f64 },

@@ -53,7 +53,7 @@ pub enum RoadError {
         "x falls from {before} m to {x} m at sample {sample}; x must never decrease (two points at one x are a step)"
     )]
     NotMonotonic { sample: usize, before: f64, x: f64 },
-    #[error("all points of the road lie at x = {x} m; expected a road that goes on")]
+    #[error("all points of the road lie at x = {x} m; expected a road with a length")]
     NoLength { x: f64 },
     #[error(
         "slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}; slope is that of the segment to the right of its point, and a step stands alone"

@@ -150,8 +150,8 @@ impl std::fmt::Display for Report {
             Reason::End => write!(f, "reached the end at t = {t} s"),
             Reason::Event(index) => write!(f, "stopped by event {index} at t = {t} s"),
             Reason::NotFinite => write!(f, "the state or its derivative is not finite after t = {t} s"),
-            Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s, however short the step"),
-            Reason::Crowded => write!(f, "events follow one another without an end after t = {t} s"),
+            Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s with any step"),
+            Reason::Crowded => write!(f, "endless events after t = {t} s"),
             Reason::TooManySteps => write!(
                 f,
                 "{} steps were not enough: it got to t = {t} s; the model may be too stiff for an explicit method",

@@ -32,7 +32,7 @@ impl Report {
     fn further(&self) -> String {
         match self.diagnostics.len().saturating_sub(MOST) {
             0 => String::new(),
-            more => format!("and {more} more like these; correct the first ones and try again\n"),
+            more => format!("and {more} more of this kind; correct the first ones and try again\n"),
         }
     }
 

@@ -90,13 +90,7 @@ impl Campaign {
         let place = Place::Channel(name.clone(), None);
         let remedy =
             format!("leave it out of the run with `without = [\"{name}\"]`, or repair the sensor and measure again");
-        Problem::new(
-            self.folder.join(run),
-            place,
-            &finding.what,
-            "a signal that a fit can use",
-            remedy,
-        )
+        Problem::new(self.folder.join(run), place, &finding.what, "a usable signal", remedy)
     }
 
     /// Sentences on channels that some run lacks and another of its kind has, or that no run has.

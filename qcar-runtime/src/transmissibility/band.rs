@@ -205,6 +205,6 @@ fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputErr
         format!("a record of {recorded:.1} s, which is too short"),
         format!("at least {seconds:.1} s for {frequency} Hz"),
     );
-    let remedy = "export the whole record, record longer, or ask from a higher frequency";
+    let remedy = "export the whole record, record longer, or start at a higher frequency";
     Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }

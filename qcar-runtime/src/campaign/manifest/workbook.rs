@@ -15,7 +15,7 @@ pub(super) fn named(folder: &Path, top: &Section<'_>, files: &Files) -> Option<W
             top.wrong(
                 "axle",
                 "no `workbook`",
-                "`workbook = \"vehicle.xlsx\"` beside it",
+                "also `workbook = \"vehicle.xlsx\"`",
                 "add it, or remove `axle`",
             );
         }

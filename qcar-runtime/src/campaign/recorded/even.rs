@@ -171,7 +171,7 @@ fn inside(
     Err(Broken {
         at: None,
         found: format!("a window from {first_time} to {last_time} s"),
-        expected: format!("a part of the recording, which goes from {start} to {end} s"),
+        expected: format!("a window within the recording, from {start} to {end} s"),
         remedy: "correct `from`, `to` or the trigger of the run",
     })
 }
