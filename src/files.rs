@@ -39,7 +39,7 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
 /// The files that stand complete, in the order in which they were written; held while one is being written.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Writes a file whole under another name, then renames it, so that nothing half-written looks complete.
+/// Writes a file whole under another name, then renames it, so that no half-written file seems complete.
 ///
 /// # Errors
 /// A folder that cannot be made or written to.
@@ -63,7 +63,7 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
     }
 }
 
-/// Gives a file that is whole the name under which it is looked for.
+/// Gives a complete file its final name.
 ///
 /// # Errors
 /// What the system says.

@@ -1,4 +1,4 @@
-//! Ctrl-C: what is done stays, nothing is left half-written, and the user is told which is which.
+//! Ctrl-C: finished files stay, no file is left half-written, and the user learns which files are finished.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};

@@ -20,7 +20,7 @@ use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::spectrum::transform;
 use qcar_runtime::transmissibility::Point;
 
-/// Frequencies at which a record is looked at: thirds of an octave are coarse for a resonance, but a scale is no more than
+/// Frequencies at which a record is evaluated: thirds of an octave are coarse for a resonance, but a scale is no more than
 /// an order of magnitude.
 const BANDS_PER_OCTAVE: f64 = 3.0;
 

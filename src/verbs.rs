@@ -14,7 +14,7 @@ pub mod completions;
 pub mod new;
 // checked,
 pub mod check;
-// looked at,
+// examined,
 pub mod show;
 // beside another,
 pub mod diff;

@@ -77,7 +77,7 @@ pub enum KcError {
     NoSlope { slope: f64, error: f64 },
 }
 
-/// Share of the travel, in its middle, that is taken for linear.
+/// Share of the travel, in its middle, that counts as linear.
 const LINEAR_SHARE: f64 = 0.5;
 /// Share of the peak velocity below which the friction of a sine is about to change sign.
 const SLOW_SHARE: f64 = 0.1;

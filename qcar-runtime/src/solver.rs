@@ -54,11 +54,11 @@ pub trait System {
     /// Takes an accepted step.
     fn accept(&mut self, _step: &Step<'_>) {}
 
-    /// The first time after `from` at which the right-hand side will bend, as far as it can be foreseen from the state at
+    /// The first time after `from` at which the right-hand side will have a kink, as predicted from the state at
     /// `t` and its rate; infinite where nothing is in sight.
     ///
-    /// A method of high order loses it over a bend. So a step ends there: the error control would find that out, too,
-    /// but by steps that fail, and by short ones until the bend is behind.
+    /// A method of high order loses its order across a kink, so a step ends there. The error control would find that too,
+    /// but by failed steps, and short ones until the kink is passed.
     fn next_bend(&self, _t: f64, _x: &[f64], _dx: &[f64], _from: f64) -> f64 {
         f64::INFINITY
     }

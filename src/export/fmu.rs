@@ -1,4 +1,4 @@
-//! A Functional Mock-up Unit: the model's C99 behind the functions of the interface, and the description of both.
+//! A Functional Mock-up Unit: the model's C99, the functions of the interface around it, and the description of both.
 //!
 //! The same model and values give the same bytes, but for the library, which is the compiler's.
 

@@ -233,7 +233,7 @@ impl Reader<'_> {
             .collect()
     }
 
-    /// Refuses what a parameter's table has and nobody reads: most often a misspelt `unit`.
+    /// Refuses unknown keys of a parameter's table, most often a misspelt `unit`.
     fn refuse_unknown(&mut self, key: &str, table: &DeTable) {
         for name in table.keys().filter(|name| !KEYS.contains(&&**name.get_ref())) {
             let own = name.get_ref();

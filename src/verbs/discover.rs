@@ -77,7 +77,7 @@ pub struct Answer {
     pub evidence: Evidence,
     /// What was found.
     pub discovery: Discovery,
-    /// The model that was looked at.
+    /// The model that was examined.
     base: Checked,
     /// Where something would explain what it leaves of the sweeps.
     pub sweeps: Sweeps,
@@ -163,7 +163,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Looks for what the model of the campaign in a folder lacks, and notes what is odd about the campaign.
+/// Searches for what the model of the campaign in a folder lacks, and notes oddities of the campaign.
 ///
 /// # Errors
 /// A campaign that cannot be read or says nothing of the model, or a model that the compiler refuses.
@@ -174,7 +174,7 @@ pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers:
     Ok(answer)
 }
 
-/// Looks for what the model of a campaign lacks. Stopped on the way, it leaves what is known by then in `out`.
+/// Searches for what the model of a campaign lacks. If it is stopped, it writes what is known by then to `out`.
 ///
 /// # Errors
 /// A campaign that says nothing of the model, or a model that the compiler refuses.
@@ -216,7 +216,7 @@ pub(crate) fn answer(
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
-    // A model that cannot be held against the sweeps has no places.
+    // A model that cannot be compared with the sweeps has no places.
     let [before, after] = [0, 1].map(|of| with(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {

@@ -1,4 +1,4 @@
-//! `qcar import`: measured files looked into, and a campaign of them begun.
+//! `qcar import`: a new campaign from measured files.
 
 use std::path::{Path, PathBuf};
 

@@ -98,7 +98,7 @@ impl Checked {
         self.tree.get_or_init(read)
     }
 
-    /// Parameters that no measurement can tell from each other, or at all; empty as long as nobody has looked
+    /// Parameters that no measurement can tell from each other, or at all; empty before that check
     /// ([`crate::derive::visible`]).
     pub fn unseen(&self) -> &[Unseen] {
         self.unseen.as_deref().unwrap_or_default()

@@ -1,4 +1,4 @@
-//! How a report looks: for people with the lines of the file, for build scripts one line each.
+//! The form of a report: for people with the lines of the file, for build scripts one line each.
 
 use std::fmt;
 

@@ -198,7 +198,7 @@ impl Masses {
         Some(own.2)
     }
 
-    /// The heaviest mass of a direction but one; of equal ones, and of those that nobody knows, the first.
+    /// The heaviest mass of a direction but one; of equal or unknown ones, the first.
     fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
         let others = self
             .0

@@ -34,7 +34,7 @@ impl Scale {
         Scale::ALL.into_iter().find(|scale| scale.word() == word)
     }
 
-    /// The name by which the value of a link or mass is looked up: `z.damper.force_scale`.
+    /// The name under which the value of a link or mass is stored: `z.damper.force_scale`.
     pub fn name(self, direction: &str, place: &str) -> String {
         format!("{direction}.{place}.{}", self.word())
     }

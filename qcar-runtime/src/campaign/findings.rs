@@ -80,7 +80,7 @@ impl Campaign {
         plain.next().is_none() && !self.recorded.iter().any(|recorded| recorded.has(name))
     }
 
-    /// Whether some file was looked into for a sensor in vain.
+    /// Whether a sensor was missing in some file.
     pub(super) fn is_missed(&self, name: &str) -> bool {
         self.missing(name).next().is_some()
     }

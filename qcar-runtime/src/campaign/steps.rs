@@ -13,7 +13,7 @@ pub(super) fn is_one(step: f64, rate: f64) -> bool {
     (0.5..=1.5).contains(&(step * rate))
 }
 
-/// Whether all steps between times are one sample long whichever of them is taken for that: none is a tenth longer or shorter than
+/// Whether all steps between times are one sample long, whichever of them is the reference: none is a tenth longer or shorter than
 /// their mean.
 pub(super) fn all_alike(times: &[f64]) -> bool {
     let ends = times.first().zip(times.last());

@@ -5,7 +5,7 @@ use crate::mean::mean_square;
 /// Which parts of a run are compared, in s after its onset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windows {
-    /// The impact lasts from the onset for so long (section 2.1: 100 ms); the peaks are looked for here.
+    /// Duration of the impact from the onset (section 2.1: 100 ms), in which peaks are searched.
     pub impact: f64,
     /// The after-shake follows the impact for so long, or to the end of the shorter record.
     pub after_shake: f64,

@@ -95,7 +95,7 @@ fn level(
 const MOVES: f64 = 0.01;
 
 /// # Errors
-/// Several roads that move in one run: a response is related to one of them, and would be taken for its alone.
+/// Several roads that move in one run: a response is related to one of them only, as if the others were at rest.
 fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     let roads = about.excitations.iter().filter(|excitation| excitation.road);
     let recorded = roads.filter_map(|road| {

@@ -195,7 +195,7 @@ fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) ->
     Ok(())
 }
 
-/// A record that ends too soon looks like one without power at `frequency`; so this is asked before any spectrum.
+/// A record that ends too soon resembles one without power at `frequency`, so this is checked before any spectrum.
 fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputError> {
     let recorded = history.len() as f64 / history.sample_rate;
     if recorded >= seconds {

@@ -20,7 +20,7 @@ pub enum Role {
     /// Of the state of this place.
     Derivative(usize),
     Output,
-    /// A value whose sign says on which side of its bend a law is.
+    /// A value whose sign tells on which side of its kink a law is.
     Kink,
     Time,
 }

@@ -61,7 +61,7 @@ function consequence(discover, { verdict: kind }, likely) {
     : '';
   switch (kind) {
     case 'none':
-      return `${before}; noise alone gives 1. No effect of the catalogue is needed. ${mostLeft(discover)}`;
+      return `${before}; noise alone gives 1. ${unneeded(gap)} ${mostLeft(discover)}`;
     case 'found':
       return `${before}, ${after}.${likelihood(discover)}${nextBest(chosen)} ${mostLeft(discover)}`;
     case 'class':
@@ -69,6 +69,13 @@ function consequence(discover, { verdict: kind }, likely) {
     default:
       return `${before}; noise alone gives 1. No effect of the catalogue explains it. The map below shows where it occurs.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
   }
+}
+
+// The fitted runs may call for no effect while others are predicted badly.
+function unneeded(gap) {
+  return gap.before > MUCH.deviations
+    ? 'The fitted runs show no effect of the catalogue, but the model does not predict these runs.'
+    : 'No effect of the catalogue is needed.';
 }
 
 function learnedLaw({ learned }) {

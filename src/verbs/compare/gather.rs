@@ -128,7 +128,7 @@ fn all_ratios(
 /// Facts that a rolling tyre needs.
 const TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 
-/// The wheel of a side as its own campaign says it, or the one that both are looked at with.
+/// The wheel of a side as its own campaign states it, or the common one of both.
 fn roles(side: &Side, beside: Option<&Campaign>) -> Result<Roles, RoleError> {
     let own = side.measured.as_ref().map(|measured| &measured.campaign);
     let named = own.or(beside).map(|campaign| campaign.roles.clone());

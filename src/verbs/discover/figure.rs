@@ -1,4 +1,4 @@
-//! The gap over frequency before and after, a panel for each sensor.
+//! The residual over frequency before and after, a panel for each sensor.
 
 use qcar_runtime::discover::posterior::Gap;
 use qcar_runtime::transmissibility::Point;

@@ -109,7 +109,7 @@ fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f
     format!("{}; no memory", sentences.collect::<Vec<_>>().join("; "))
 }
 
-/// A coefficient is told of from this share of their sum on.
+/// A coefficient is mentioned if it has at least this share of their sum.
 const WORTH_TELLING: f64 = 0.1;
 
 fn shares(parameters: &[NewParameter]) -> String {
@@ -127,7 +127,7 @@ fn shares(parameters: &[NewParameter]) -> String {
 
 /// Both directions are called alike where they differ by less than this part of the largest change.
 const ALIKE: f64 = 0.1;
-/// A point is told of where its standard error is less than this, in parts of what the curve is at rest.
+/// A point is mentioned if its standard error is below this share of the curve's value at rest.
 const DETERMINED: f64 = 0.5;
 
 /// `over the speed it goes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions`
@@ -306,7 +306,7 @@ mod tests {
         );
     }
 
-    /// A point that no run has reached stands where its neighbour does, which nobody has measured.
+    /// A point that no run has reached has the value of its neighbour, which was not measured.
     #[test]
     fn what_is_not_determined_is_not_told() {
         let said = said([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);

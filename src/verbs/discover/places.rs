@@ -30,7 +30,7 @@ pub(crate) struct Missing {
     pub explains: f64,
     /// The dynamic stiffness that would have to be added, run by run.
     kappa: Vec<Stiffness>,
-    /// The coarse law behind it.
+    /// The coarse law of it.
     pub shape: Shape,
 }
 

@@ -377,8 +377,7 @@ fn remaining(of: &Answer) -> String {
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.told_apart();
     match of.discovery.verdict {
-        Verdict::None if is_doubtful(of) => "no effect is certain: small residuals above noise remain".into(),
-        Verdict::None => "no effect found: noise explains the residuals".into(),
+        Verdict::None => nothing_found(of),
         Verdict::Found => format!("found {}", listed(found)),
         Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}", listed(class)),
         Verdict::Class => format!(
@@ -387,6 +386,27 @@ pub(crate) fn sentence(of: &Answer) -> String {
             listed(class)
         ),
         Verdict::Unknown => "something is missing that no effect of the catalogue explains".into(),
+    }
+}
+
+/// RMS residual in standard deviations above which noise does not explain it. Errors of sensors that are worse than their data
+/// sheets say leave less. `MUCH` in the report's `judgement.js` is the same limit.
+const MUCH: f64 = 2.0;
+
+/// Why there is no effect: the fitted runs show none, which does not mean that the model predicts all others.
+fn nothing_found(of: &Answer) -> String {
+    let gap = &of.discovery.before.gap;
+    let (runs, left) = match gap.held_out.is_finite() {
+        true => ("held-out", gap.held_out),
+        false => ("fitted", gap.fit),
+    };
+    if left > MUCH {
+        let left = number(left, 3);
+        format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
+    } else if is_doubtful(of) {
+        "no effect is certain: small residuals above noise remain".into()
+    } else {
+        "no effect found: noise explains the residuals".into()
     }
 }
 

@@ -108,7 +108,7 @@ fn section(sensor: &Sensor) -> String {
     )
 }
 
-/// What is taken for what.
+/// Which channel is taken to be which sensor.
 pub(super) fn table(sensors: &Sensors) -> String {
     let mut table = Table::new(["channel", "is", "unit"]);
     for sensor in &sensors.known {

@@ -181,7 +181,7 @@ fn line(key: &str, value: Option<f64>) -> String {
     value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
 }
 
-/// What is known has no initial value but the model's own: a guess would be taken for known.
+/// A known parameter gets only the model's own value, because a guess would count as known.
 fn of_vehicle(of: &Parameter) -> String {
     let value = match of.default {
         Default::Value(value) => Some(value),

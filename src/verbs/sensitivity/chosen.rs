@@ -111,7 +111,7 @@ pub(crate) fn unknown(ground: &Ground<'_>, name: &str, problem: impl Fn(&str, &s
     problem(&format!("`{name}`"), &expected, &remedy)
 }
 
-/// What is looked at where nobody chooses: what wheel and body feel, the tyre's load, the travel, and the vibrations.
+/// The metrics without a choice: those of wheel and body, the tyre's load, the travel, and the modes.
 pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
     let roles = Roles::of(ground.about(), names).ok();
     let body = roles.as_ref().and_then(|roles| Some(roles.on_rig().ok()?.body));

@@ -95,7 +95,7 @@ pub struct Refitted {
     stderr: Option<f64>,
 }
 
-/// The parameters of the model with what it lacked; none where nothing was found.
+/// The parameters of the extended model; none if no effect was found.
 pub fn refitted(of: &Study) -> Vec<Refitted> {
     let Some(after) = &of.after else { return Vec::new() };
     let explanation = &of.answer.discovery.after;

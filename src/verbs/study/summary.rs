@@ -26,7 +26,7 @@ pub struct Summary {
     pub rig_fit: BTreeMap<&'static str, Percent>,
 }
 
-/// Of the fitted model, and of the model with what it lacked.
+/// Of the fitted model, and of the extended model.
 #[derive(Serialize)]
 pub struct Percent {
     magnitude: BeforeAfter,

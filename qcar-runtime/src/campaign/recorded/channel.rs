@@ -84,7 +84,7 @@ impl<'a> Channel<'a> {
             .collect()
     }
 
-    /// Its samples in the window, with what a filter to `rate` looks at beside it.
+    /// Its samples in the window, with those around it that a filter to `rate` needs.
     pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even, InputError> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;
         let margin = margin.min(self.samples.len() as f64) as usize;

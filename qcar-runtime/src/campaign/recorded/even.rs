@@ -16,7 +16,7 @@ const SLACK: f64 = 1e-3;
 
 /// A part of a channel without any gap.
 pub(super) struct Even {
-    /// The samples that lie in the window, and beside it those that the filter may look at.
+    /// The samples in the window, and those around it that the filter may need.
     pub samples: Range<usize>,
     /// Their instants.
     pub grid: Grid,
@@ -199,7 +199,7 @@ fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> Broken 
         at: Some(time(base, at)),
         found,
         expected,
-        remedy: "what was lost cannot be guessed: choose `from` and `to` beside it, leave the channel out with `without`, or \
+        remedy: "a missing sample cannot be filled in: choose `from` and `to` outside of it, leave the channel out with `without`, or \
                  export the record again",
     }
 }
