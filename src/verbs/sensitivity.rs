@@ -5,7 +5,7 @@ use std::str::FromStr;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
-use qcar_runtime::error::InputError;
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::metric::{Ground, MetricError};
 use qcar_runtime::sensitivity::Plan;
 
@@ -260,6 +260,6 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
 
 /// A metric that cannot be measured.
 pub(crate) fn refused(subject: &str, error: &MetricError) -> Failure {
-    let remedy = "correct the run, the vehicle or the parameters, or leave the metric out";
-    flag(subject, error, "an axle whose metrics can be measured", remedy).into()
+    let place = Place::Name(subject.into());
+    Problem::refused("command line", place, "its metrics cannot be computed", error).into()
 }

@@ -321,23 +321,20 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     InputError::unless_empty(problems, Some(found))
 }
 
+/// What a run says that cannot be simulated.
+const NO_RIDE: &str = "this run cannot be simulated";
+
 /// The rides, if there is one for every run. What keeps several of them from being simulated is said once.
 fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {
     let (mut done, mut problems): (Vec<Ride>, Vec<Problem>) = (Vec::new(), Vec::new());
     for (cleat, ride) in cleats.iter().zip(rides) {
         match ride {
             Ok(ride) => done.push(ride),
-            Err(error) if problems.iter().any(|told| told.found == error.to_string()) => {}
             Err(error) => {
-                let remedy = "correct the run, the vehicle or the parameters";
-                let file = &cleat.measured.file;
-                problems.push(Problem::new(
-                    file,
-                    Place::File,
-                    error.to_string(),
-                    "a run that can be simulated",
-                    remedy,
-                ));
+                let problem = Problem::refused(&cleat.measured.file, Place::File, NO_RIDE, error);
+                if problems.iter().all(|told| told.found != problem.found) {
+                    problems.push(problem);
+                }
             }
         }
     }

@@ -132,8 +132,7 @@ pub(super) fn roll(
 
 fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
     let place = Place::Name(format!("road {}", course.name));
-    let remedy = "correct the vehicle or the parameters, or choose another road or speed";
-    Problem::new(campaign.manifest(), place, error, "a run that can be simulated", remedy)
+    Problem::refused(campaign.manifest(), place, "this road cannot be simulated", error)
 }
 
 impl Rolled {
