@@ -1,4 +1,4 @@
-//! Simulated time histories as files: CSV for tables, MAT and MDF for the viewers in which the measurement lies.
+//! Simulated time histories as files: CSV as tables, MAT and MDF for viewers of measurements.
 
 use std::fmt::Write;
 use std::path::Path;

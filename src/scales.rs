@@ -1,4 +1,4 @@
-//! How far, how fast and how hard the parts of a model are moved in a campaign, as the model without any effect has it:
+//! Amplitudes of the parts of a model in a campaign, computed by the model without any effect:
 //! what the ranges of effects are measured by.
 //!
 //! Sweeps count by their measured amplitude, line by line, other records by the RMS value of what drove them, and both

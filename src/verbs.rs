@@ -1,4 +1,4 @@
-//! One file a verb: its flags, and what it does with them. A verb gives the text for standard output.
+//! One file per verb: its flags, and what it does with them. A verb returns the text for standard output.
 
 use std::path::PathBuf;
 

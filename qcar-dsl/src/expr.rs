@@ -1,4 +1,4 @@
-//! Expressions: one hash-consed graph for a model, identities applied at birth.
+//! Expressions: one hash-consed graph for a model; identities are applied on construction.
 //!
 //! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
 //! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.

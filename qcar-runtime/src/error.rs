@@ -1,4 +1,4 @@
-//! What every part of the workbench reports through when what it was given cannot be used.
+//! The errors with which every part of the workbench reports unusable input.
 
 use std::fmt;
 use std::path::PathBuf;

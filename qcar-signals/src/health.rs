@@ -1,4 +1,4 @@
-//! What is wrong with the samples of a channel, as far as they show it themselves.
+//! Flaws that the samples of a channel show.
 
 /// A flaw of a channel.
 #[derive(Clone, Debug, PartialEq)]

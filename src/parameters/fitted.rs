@@ -1,4 +1,4 @@
-//! What `qcar fit` has written: `fit.json`, which has standard errors beside the values. `study.json` holds one, too.
+//! The results of `qcar fit`: `fit.json`, with values and standard errors. `study.json` holds one, too.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -1,4 +1,4 @@
-//! `qcar completions`: a script that lets a shell ask qcar how a line may go on.
+//! `qcar completions`: a script with which a shell asks qcar for completions.
 
 use clap::{Args, Command, ValueEnum};
 use clap_complete::env::{Bash, EnvCompleter, Fish, Powershell, Zsh};

@@ -1,4 +1,4 @@
-//! `qcar diff`: in what two models differ.
+//! `qcar diff`: the differences between two models.
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;

@@ -1,4 +1,4 @@
-//! `qcar discover`: where a model and a campaign disagree, and which effect is missing.
+//! `qcar discover`: the residuals of a model, and which effect is missing.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

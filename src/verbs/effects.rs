@@ -1,4 +1,4 @@
-//! `qcar effects`: the catalogue of effects that a model may miss.
+//! `qcar effects`: the catalogue of effects that a model may lack.
 
 mod described;
 

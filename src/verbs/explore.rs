@@ -1,4 +1,4 @@
-//! `qcar explore`: thousands of parameter sets, each over the same rides, measured.
+//! `qcar explore`: metrics of thousands of parameter sets over the same rides.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

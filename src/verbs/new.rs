@@ -1,4 +1,4 @@
-//! `qcar new`: files to begin with, which are never put over others.
+//! `qcar new`: first files, which never overwrite others.
 
 use std::path::{Path, PathBuf};
 

@@ -1,4 +1,4 @@
-//! `qcar plan`: which further sensor, run or level says most about the parameters of a fit.
+//! `qcar plan`: which further sensor, run or level would tell most about the parameters of a fit.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `qcar score`: fits campaigns that are published with their answer, and compares.
+//! `qcar score`: fits campaigns with known parameters, and compares.
 
 use std::fs;
 use std::path::{Path, PathBuf};

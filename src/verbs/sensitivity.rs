@@ -1,4 +1,4 @@
-//! `qcar sensitivity`: what metrics of an axle depend on, and how sure they are.
+//! `qcar sensitivity`: how metrics of an axle depend on parameters, and how uncertain they are.
 
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -30,7 +30,7 @@ pub(crate) mod doubts;
 pub(crate) mod gather;
 // As text and CSV.
 pub(crate) mod render;
-// And drawn.
+// as figures,
 mod figure;
 
 use doubts::{Doubts, Temperatures};

@@ -1,4 +1,4 @@
-//! `qcar target`: what an axle must be to meet targets.
+//! `qcar target`: designs that meet targets.
 
 use std::path::{Path, PathBuf};
 

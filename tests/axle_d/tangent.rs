@@ -13,7 +13,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::direction;
 use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent, variation};
 
-use crate::cleat;
+use super::cleat;
 
 /// Axle D that does not say that it is linear, so that its rides are stepped by the general method throughout: that
 /// ends its steps where the force of the tyre bends, and has no polynomials between them.

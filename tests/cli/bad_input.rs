@@ -234,7 +234,7 @@ fn records_with_holes_are_refused() {
     });
     fit_refused(
         gap.path(),
-        &["sweep.csv, line 501, column `time`", "a gap cannot be guessed"],
+        &["sweep.csv, line 501, column `time`", "a gap cannot be filled"],
     );
     let renamed = damaged(|line, cells| {
         let text = cells.join(",");

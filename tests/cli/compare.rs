@@ -68,7 +68,7 @@ fn an_oscillator_moves_as_its_formula_says() {
     }
     let said = found["notices"].to_string();
     assert!(
-        said.contains("no channel in common") && said.contains("no tyre that can roll"),
+        said.contains("no common channel") && said.contains("no tyre that can roll"),
         "{said}"
     );
 }
@@ -317,7 +317,7 @@ fn what_cannot_be_compared_is_refused_with_a_remedy() {
         }
     };
     refused(&["axle_a", AXLE], &["is a model", "is a campaign", "two of one kind"]);
-    refused(&["axle_q", "axle_a"], &["`axle_q`, which is no file", "`A`"]);
+    refused(&["axle_q", "axle_a"], &["`axle_q`, which does not exist", "`A`"]);
     refused(&["axle_a", &empty], &["without campaign.toml or fit.json", "`B`"]);
     refused(&["axle_a", note], &["notes.txt", "ending"]);
     refused(&[&a, &a], &["no model", "--model NAME"]);

@@ -116,7 +116,7 @@ fn groups_that_were_written_are_kept() {
         assert_eq!(ran.status, 0, "{}", ran.stderr);
         assert!(fs::read(&done).unwrap() == whole, "cut at {cut}");
         assert_eq!(
-            ran.stdout.contains("16384 of them were there already"),
+            ran.stdout.contains("16384 of them existed already"),
             kept,
             "{}",
             ran.stdout
@@ -145,7 +145,11 @@ fn a_run_that_was_killed_goes_on() {
     child.wait().unwrap();
     assert!(written(folder.path(), &line, "rides.csv") == whole);
     let again = run_line(folder.path(), &format!("{line} --out rides.csv"));
-    assert!(again.stdout.contains("they were there already"), "{}", again.stdout);
+    assert!(
+        again.stdout.contains("the file was already complete"),
+        "{}",
+        again.stdout
+    );
 }
 
 fn refused(ran: &Ran, said: &[&str]) {
@@ -176,18 +180,18 @@ fn results_of_something_else_are_refused() {
     );
     refused(&run(&format!("{line} --set m_corner=410")), &["`parameters`"]);
     refused(&run(&format!("{line} --units engineering")), &["`columns`"]);
-    // A row that this command would not have written, at the end of those that it had.
+    // A row that this command would not write, at the end of those that it had.
     let [done, part] = ["sets.csv", "sets.csv.part"].map(|name| folder.path().join(name));
     fs::remove_file(&done).unwrap();
     let text = String::from_utf8(whole).unwrap();
     let mut rows: Vec<String> = text.lines().take(4).map(String::from).collect();
     rows[3] = rows[3].replacen("3,", "2,", 1).replace(",0", ",7");
     fs::write(&part, rows.join("\n") + "\n").unwrap();
-    refused(&run(&line), &["sets.csv.part", "would not have written"]);
+    refused(&run(&line), &["sets.csv.part", "would not write"]);
     fs::remove_file(&part).unwrap();
     fs::write(&done, "mine\n").unwrap();
     fs::remove_file(folder.path().join("sets.csv.design.json")).unwrap();
-    refused(&run(&line), &["sets.csv", "nothing tells what it is"]);
+    refused(&run(&line), &["sets.csv", "without its .design.json"]);
     assert_eq!(fs::read_to_string(&done).unwrap(), "mine\n");
 }
 

@@ -116,7 +116,7 @@ fn files_that_are_there_stay_as_they_are() {
         let out = folder.path().join(format!("own.{end}"));
         fs::write(&out, "mine").unwrap();
         let ran = export("quarter_car", kind, &out, &[]);
-        refused(&ran, &["`--out`", "there already", "take another name"]);
+        refused(&ran, &["`--out`", "there already", "choose another name"]);
         assert_eq!(fs::read_to_string(&out).unwrap(), "mine", "{kind}");
     }
     // The header alone is there: the source is not written either.

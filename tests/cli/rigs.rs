@@ -206,7 +206,7 @@ fn two_roads_that_move_in_one_sweep_are_refused() {
         &[
             "fast.csv",
             "roads that move at once: `pad_f`, `pad_r`",
-            "drive one at a time",
+            "move one at a time",
         ],
     );
     ended(

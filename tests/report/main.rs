@@ -150,7 +150,7 @@ fn records_are_drawn_beside_what_the_models_make_of_them() {
     assert!(strings(&found["tables"]).contains(&"NRMS of each run"), "{found}");
     let lead = found["paragraphs"][0].as_str().unwrap();
     assert!(
-        lead.starts_with("Partly explained by ") && lead.ends_with("Much is left."),
+        lead.starts_with("Partly explained by ") && lead.ends_with("Large residuals remain."),
         "{lead}"
     );
     let text = found["units"]["mm"].as_str().unwrap();

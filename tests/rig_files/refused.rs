@@ -164,7 +164,7 @@ fn samples_that_were_lost_inside_the_window_are_refused() {
         &[
             "channel `FL_Body_Acc_Z` at 0.5000 s",
             "3 samples without values",
-            "cannot be guessed",
+            "cannot be filled in",
         ],
     );
     let beside = folder(&sections("from = 0.6"), ("rig.txt", lost.as_bytes()));

@@ -228,7 +228,7 @@ fn messages_of_a_bus_are_interpolated_linearly() {
         campaign.notices
     );
     assert!(
-        campaign.notices[0].contains("samples come unevenly"),
+        campaign.notices[0].contains("samples are uneven"),
         "{:?}",
         campaign.notices
     );

@@ -1,4 +1,4 @@
-//! The structure: what is held, what is solvable, what takes energy. Each rule is a function; [`check`] lists them.
+//! Rules of the structure: support, solvability, passivity. Each rule is a function; [`check`] lists them.
 
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};

@@ -1,4 +1,4 @@
-//! Mistakes of the structure: what is held, what can be solved, what takes energy.
+//! Mistakes of the structure: support, solvability, passivity.
 
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;

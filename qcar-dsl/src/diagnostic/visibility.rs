@@ -1,4 +1,4 @@
-//! Mistakes of what can be seen.
+//! Mistakes of outputs and identifiability.
 
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;

@@ -1,4 +1,4 @@
-//! What expressions are worth in a model: each is asked as a derived quantity of it.
+//! Values of expressions in a model: each is evaluated as one of its derived quantities.
 
 use super::base::Base;
 use crate::diagnostic::{Diagnostic, effects};

@@ -1,4 +1,4 @@
-//! A model as a tree that can be asked and changed: options taken, and what is zero left out.
+//! A model as a tree that can be queried and changed: options resolved, and zero parts left out.
 
 use super::rewrite;
 use crate::check::Checked;

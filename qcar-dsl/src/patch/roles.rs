@@ -1,4 +1,4 @@
-//! What the parts of a model are to each other, read from its structure, whatever they are called.
+//! The roles of the parts of a model, read from its structure and not from names.
 //!
 //! The tyre joins a mass to a road; that direction is the axle's own. A model without a road has one axle in every
 //! direction, and no wheel. Weights are the model's own expressions at the values that somebody knows.

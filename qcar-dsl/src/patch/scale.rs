@@ -1,4 +1,4 @@
-//! How far, how fast and how hard a place is moved in a campaign: what the range of an effect may be measured by.
+//! Amplitudes of travel, speed and force at a place in a campaign: scales for the ranges of an effect.
 
 use crate::front::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
 

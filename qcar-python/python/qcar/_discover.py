@@ -14,7 +14,7 @@ from . import _html, _native
 class Verdict:
     """What a search has found, as docs/json.md describes it."""
 
-    #: ``none``: the gap is noise; ``found``: `effects` explain it; ``class``: one of several; ``unknown``.
+    #: ``none``: noise explains the residuals; ``found``: `effects` explain it; ``class``: one of several; ``unknown``.
     verdict: str
     probability: float | None
     #: Each with ``name``, ``at``, ``form``, ``parameters``, ``stderr``, ``units`` and ``evidence``.
@@ -54,7 +54,7 @@ def _sentence(probability: float | None) -> str:
 
 
 def discover(campaign: str | os.PathLike[str], *, model: str | None = None) -> Verdict:
-    """Find the effect that a campaign has and its model lacks.
+    """Find the effect that a campaign shows and its model lacks.
 
     Fits the model to the runs with the role ``fit``, tries the effects of the catalogue wherever they apply, and judges them on the
     runs that are ``held_out``.

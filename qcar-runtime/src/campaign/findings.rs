@@ -1,4 +1,4 @@
-//! What measured samples show to be wrong with themselves, before anything is fitted to them.
+//! Flaws of measured samples, found before anything is fitted to them.
 
 use qcar_signals::resample::Grid;
 

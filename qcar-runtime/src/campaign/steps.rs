@@ -1,4 +1,4 @@
-//! How evenly times must come to be samples of one rate.
+//! How even times must be to be samples of one rate.
 
 /// Largest relative difference between the declared sample rate and that of the whole record. Below it, the phase error
 /// of a transmissibility is nil, since all channels share the clock, and frequencies are that exact.

@@ -1,4 +1,4 @@
-//! Which channel of a measured file a sensor is, and what makes SI of its values.
+//! Which channel of a measured file a sensor is, and how its values become SI.
 
 use super::contents::{Quantity, Tap, Trigger, Window};
 use super::fields::Section;

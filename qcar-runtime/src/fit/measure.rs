@@ -1,4 +1,4 @@
-//! From the runs of a campaign to what is fitted.
+//! From the runs of a campaign to the observations of a fit.
 
 use super::channels::{Channels, across_links, is_excitation};
 use super::observation::{Difference, Level, Observation, Pair};

@@ -1,4 +1,4 @@
-//! From the Jacobian at the optimum to honest error bars.
+//! Standard errors from the Jacobian at the optimum.
 //!
 //! The covariance is the sum of three parts, all propagated through the Jacobian at the optimum:
 //!

@@ -1,4 +1,4 @@
-//! What is driven over.
+//! Roads and obstacles.
 
 use crate::road::{Class, Random, Road, RoadError};
 use crate::simulate::{Cleat, Drive, Standard};

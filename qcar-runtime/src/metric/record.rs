@@ -1,4 +1,4 @@
-//! What a measure says of a record, and how that changes with the record.
+//! The value of a metric for a record, and its derivative by the record.
 
 use super::name::Measure;
 use crate::compare::Windows;

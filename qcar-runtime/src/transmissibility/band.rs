@@ -1,4 +1,4 @@
-//! At which frequencies a run can be asked, and whether it can answer.
+//! Frequencies at which a response can be estimated from a run.
 
 use std::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! The variables of a unit: parameters, inputs, states, their derivatives, outputs, kinks and time, in the order of the
+//! The variables of an FMU: parameters, inputs, states, their derivatives, outputs, kinks and time, in the order of the
 //! value references.
 
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! A and B as what is compared in the end: each a model with values, and what was measured of it.
+//! A and B as sides of a comparison: each a model with values, and its measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What is compared: two parameter sets, two models or two campaigns, told by what A and B are.
+//! The kind of a comparison: two parameter sets, two models or two campaigns.
 
 use std::path::{Path, PathBuf};
 

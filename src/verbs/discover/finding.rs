@@ -1,4 +1,4 @@
-//! A finding in words: what it closes, its parameters, and what else it might be.
+//! A finding in words: the share that it explains, its parameters, and its rivals.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;

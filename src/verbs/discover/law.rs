@@ -1,4 +1,4 @@
-//! The law that was learned where no effect of the catalogue explains the gap: as an effect file, as a model, and in words.
+//! The law that was learned if no effect of the catalogue explains the residuals: as an effect file, as a model, and in words.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -130,7 +130,7 @@ const ALIKE: f64 = 0.1;
 /// A point is mentioned if its standard error is below this share of the curve's value at rest.
 const DETERMINED: f64 = 0.5;
 
-/// `over the speed it goes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions`
+/// `over the speed it changes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions`
 fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let named = |name: &str| parameters.iter().find(|own| own.effect_name == name);
     let scale = curve.scale.as_deref().and_then(named);
@@ -273,7 +273,7 @@ mod tests {
     fn a_curve_is_told_by_its_points() {
         assert_eq!(
             said([0.5, 0.5, 0.5, 0.5], [0.01; 4]),
-            "over the speed it goes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions"
+            "over the speed it changes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions"
         );
         assert!(
             said([0.5, 0.5, 2.0, 1.5], [0.01; 4])
@@ -312,7 +312,7 @@ mod tests {
         let said = said([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);
         assert_eq!(
             said,
-            "over the speed it goes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
+            "over the speed it changes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
         );
     }
 }

@@ -1,4 +1,4 @@
-//! What was discovered, as text for people and as JSON for programs.
+//! The answer of a search, as text for people and as JSON for programs.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;

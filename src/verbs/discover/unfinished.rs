@@ -1,4 +1,4 @@
-//! What a search leaves that is stopped: the model that it has come to, its parameters and its gap. Nothing of it has been
+//! Results of an interrupted search: its current model, its parameters and residuals. Nothing of it has been
 //! judged, and each file says so.
 
 use std::fs;

@@ -1,4 +1,4 @@
-//! Where rows go: a file that has another name until it is whole, and that is continued where a run was stopped.
+//! The destination of rows: a file with a temporary name until it is complete, which an interrupted run resumes.
 
 use std::fs::{File, OpenOptions};
 use std::io;

@@ -1,4 +1,4 @@
-//! What the rig leaves open and K&C curves say: a parameter that no channel sees takes the value that its curve gives.
+//! Parameters that no channel of the rig determines, but a K&C curve does: they take the value from the curve.
 
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{NoError, ParameterFit};

@@ -1,4 +1,4 @@
-//! The fit of a nonlinear model: to all that a campaign holds, each level as it was driven.
+//! The fit of a nonlinear model: to all runs of a campaign, each level as it was driven.
 //!
 //! The residuals are those of discovery, over their uncertainty, and so are the errors of sensors that go with them.
 

@@ -1,4 +1,4 @@
-//! What is odd about a fit, but no error.
+//! Oddities of a fit that are no errors.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::fit::{Fit, Level};

@@ -1,4 +1,4 @@
-//! `qcar new campaign`: a folder with a campaign.toml for a model, and folders for what is still to be measured.
+//! `qcar new campaign`: a folder with a campaign.toml for a model, and folders for the measurements.
 
 use std::fmt::Write;
 use std::fs;

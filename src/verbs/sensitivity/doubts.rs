@@ -1,4 +1,4 @@
-//! What is not known of a subject's parameters: the errors of its fit, tolerances of its parts, and the temperature.
+//! Uncertainty of a subject's parameters: the errors of its fit, tolerances of its parts, and the temperature.
 
 use std::collections::BTreeMap;
 use std::str::FromStr;

@@ -1,4 +1,4 @@
-//! Rides over roads without a measured run: what they do to the masses and to the tyre.
+//! Rides over roads without a measured run: vibration of the masses and load of the tyre.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What was simulated as text, JSON and CSV.
+//! The results of a simulation as text, JSON and CSV.
 
 use std::collections::BTreeMap;
 use std::path::Path;

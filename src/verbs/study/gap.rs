@@ -1,4 +1,4 @@
-//! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
+//! The residuals of a model: where they are, which place explains them, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;

@@ -1,4 +1,4 @@
-//! All verbs on one campaign, each leaving its files as soon as it is done.
+//! All verbs on one campaign; each writes its files as soon as it is done.
 
 use std::path::Path;
 use std::time::Instant;

@@ -1,4 +1,4 @@
-//! `targets.toml`: what is wanted of an axle, and what may move.
+//! `targets.toml`: targets of an axle, and the parameters that may change.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! What a task gives: a design, a front and a box.
+//! The results of a task: a design, a front and a box.
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;

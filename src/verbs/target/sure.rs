@@ -1,4 +1,4 @@
-//! How sure the results of a design are, and how often it meets its targets when all turns out as it may.
+//! Uncertainty of the results of a design, and the share of draws in which it meets its targets.
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::sensitivity::{Interval, Source, direction};

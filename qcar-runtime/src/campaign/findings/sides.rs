@@ -1,4 +1,4 @@
-//! Sensors that are wired or mounted wrongly, as the other side of the car shows: in a sweep both sides do nearly the same.
+//! Sensors that are wired or mounted wrongly, found by comparison with the other side of the car: in a sweep both sides move nearly alike.
 
 use super::super::contents::{Channel, Run, Side};
 use super::super::finding::Finding;

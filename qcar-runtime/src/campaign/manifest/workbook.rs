@@ -1,4 +1,4 @@
-//! The workbook that a campaign points at. What the campaign states itself goes before what the workbook states.
+//! The workbook that a campaign refers to. Values of the campaign take precedence over those of the workbook.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! What a tap makes of a channel.
+//! A channel as its tap reads it.
 
 use std::borrow::Cow;
 use std::ops::Range;

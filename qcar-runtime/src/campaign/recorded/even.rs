@@ -1,4 +1,4 @@
-//! Samples that come evenly and are all there.
+//! Even samples without gaps.
 
 use std::ops::Range;
 

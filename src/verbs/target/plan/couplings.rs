@@ -1,4 +1,4 @@
-//! What must hold between parameters.
+//! Couplings between parameters.
 
 use qcar_runtime::target::{Coupling, Knob, Move};
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! What may move: parameters with their ranges, steps and costs.
+//! Parameters that may change, with their ranges, steps and costs.
 
 use qcar_runtime::target::{Knob, Move};
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! What must hold of metrics: targets with the readings that they are of, as limits.
+//! Targets as limits of readings of metrics.
 
 use qcar_runtime::metric::Reading;
 use qcar_runtime::target::{Limit, Sense};

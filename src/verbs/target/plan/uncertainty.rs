@@ -1,4 +1,4 @@
-//! What is not known of the parameters, whatever design is chosen.
+//! Uncertainty of the parameters, for every design.
 
 use std::collections::BTreeMap;
 
