@@ -253,7 +253,7 @@ fn sets_that_are_impossible_have_rows_without_metrics() {
     let line = "explore quarter_car --set m_corner=190 --vary m_wheel=10..190 --design grid --count 3 --metrics modes --out sets.csv";
     let ran = qcar_in(folder.path(), &line.split(' ').collect::<Vec<_>>());
     assert_eq!(ran.status, 0, "{}", ran.stderr);
-    for said in ["1 rows", "set 2", "`mass body"] {
+    for said in ["1 of the rows", "set 2", "`mass body"] {
         assert!(ran.stdout.contains(said), "{}", ran.stdout);
     }
     let table = columns(&fs::read(folder.path().join("sets.csv")).unwrap());
@@ -272,7 +272,7 @@ fn a_design_without_any_metrics_is_a_finding() {
     );
     assert_eq!(ran.status, 1, "{}{}", ran.stdout, ran.stderr);
     assert!(
-        ran.stdout.contains("2 rows") && ran.stdout.contains("sample rate"),
+        ran.stdout.contains("2 of the rows") && ran.stdout.contains("sample rate"),
         "{}",
         ran.stdout
     );

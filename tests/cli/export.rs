@@ -116,7 +116,7 @@ fn files_that_are_there_stay_as_they_are() {
         let out = folder.path().join(format!("own.{end}"));
         fs::write(&out, "mine").unwrap();
         let ran = export("quarter_car", kind, &out, &[]);
-        refused(&ran, &["`--out`", "there already", "choose another name"]);
+        refused(&ran, &["`--out`", "exists already", "choose another name"]);
         assert_eq!(fs::read_to_string(&out).unwrap(), "mine", "{kind}");
     }
     // The header alone is there: the source is not written either.
@@ -124,7 +124,7 @@ fn files_that_are_there_stay_as_they_are() {
     fs::write(&header, "mine").unwrap();
     refused(
         &export("quarter_car", "c", &folder.path().join("half.c"), &[]),
-        &["half.h", "there already"],
+        &["half.h", "exists already"],
     );
     assert!(!folder.path().join("half.c").exists());
 }
