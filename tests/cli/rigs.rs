@@ -225,7 +225,14 @@ fn a_curve_of_a_model_in_which_nothing_yields_is_evidence() {
     let answer: Value = serde_json::from_str(&found.stdout).unwrap();
     assert!(answer["verdict"].is_string(), "{answer}");
     assert!(!answer["notices"].to_string().contains("left out"), "{answer}");
-    ended(&run_line(folder.path(), "study . --out study"), 0, &[]);
+    let study = run_line(folder.path(), "study . --out study --format json");
+    ended(&study, 0, &[]);
+    let [printed, written] = [
+        study.stdout,
+        fs::read_to_string(folder.path().join("study/study.json")).unwrap(),
+    ]
+    .map(|text| serde_json::from_str::<Value>(&text).unwrap());
+    assert_eq!(printed, written);
     let gradients = fs::read_to_string(folder.path().join("study/kc/gradients.json")).unwrap();
     let gradients: Value = serde_json::from_str(&gradients).unwrap();
     assert_eq!(gradients[0]["parameter"], "k", "{gradients}");

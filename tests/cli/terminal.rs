@@ -4,8 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::repository;
-
-const COLUMNS: usize = 100;
+use crate::studied::{COLUMNS, Studied};
 
 /// Runs `qcar` with variables of the environment.
 fn run(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Output {
@@ -46,7 +45,6 @@ const PRINTS: &[&str] = &[
     "score models/campaigns/axle_a_rig",
     "import models/recordings/sweep_low.mf4 models/recordings/sweep_high.mf4 --out out/imported",
     "discover models/campaigns/axle_c_study",
-    "study models/campaigns/axle_c_study --out out/study",
     "new axle my_axle",
     "new campaign my_rig",
     "new template vehicle.xlsx",
@@ -61,15 +59,21 @@ fn no_line_is_wider_than_the_terminal() {
     for line in PRINTS {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let ran = run(folder.path(), &[("COLUMNS", "100")], &arguments);
-        let out = text(&ran.stdout);
         assert!(
             ran.status.code().is_some_and(|code| code < 2),
             "qcar {line}\n{}",
             text(&ran.stderr)
         );
-        let wide = out.lines().find(|line| line.chars().count() > COLUMNS);
-        assert!(wide.is_none(), "qcar {line}\n{}", wide.unwrap_or_default());
+        fits(line, &text(&ran.stdout));
     }
+    let study = Studied::new("axle_c_study");
+    fits("study", &study.said.replace(study.folder.to_str().unwrap(), "results"));
+}
+
+#[track_caller]
+fn fits(line: &str, printed: &str) {
+    let wide = printed.lines().find(|line| line.chars().count() > COLUMNS);
+    assert!(wide.is_none(), "qcar {line}\n{}", wide.unwrap_or_default());
 }
 
 #[test]

@@ -5,11 +5,14 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+/// How wide a terminal its text is for.
+pub const COLUMNS: usize = 100;
+
 /// A study of a shipped campaign.
 pub struct Studied {
     /// The folder of its results.
     pub folder: PathBuf,
-    /// What it has printed.
+    /// What it has printed for a terminal of [`COLUMNS`].
     pub said: String,
 }
 
@@ -39,6 +42,7 @@ fn study(campaign: &Path, out: &Path) -> String {
     let _ = fs::remove_dir_all(out);
     let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
         .args([Path::new("study"), campaign, Path::new("--out"), out])
+        .env("COLUMNS", COLUMNS.to_string())
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
