@@ -40,7 +40,6 @@ const PRINTS: &[&str] = &[
     "simulate models/campaigns/silverbox",
     "sensitivity models/campaigns/axle_a_rig --sobol 200",
     "sensitivity models/campaigns/axle_a_rig --list",
-    "target models/targets/axle_a.toml",
     "compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig",
     "score models/campaigns/axle_a_rig",
     "import models/recordings/sweep_low.mf4 models/recordings/sweep_high.mf4 --out out/imported",
@@ -66,8 +65,9 @@ fn no_line_is_wider_than_the_terminal() {
         );
         fits(line, &text(&ran.stdout));
     }
-    let study = Studied::new("axle_c_study");
-    fits("study", &study.said.replace(study.folder.to_str().unwrap(), "results"));
+    for (verb, made) in [("study", Studied::new("axle_c_study")), ("target", Studied::targets())] {
+        fits(verb, &made.said.replace(made.folder.to_str().unwrap(), "results"));
+    }
 }
 
 #[track_caller]

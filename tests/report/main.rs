@@ -321,9 +321,7 @@ const TARGETS: [&str; 3] = ["front", "cut", "ride"];
 #[test]
 fn targets_are_whole_in_a_browser() {
     let Some(browser) = browser_or_word() else { return };
-    let folder = tempfile::tempdir().unwrap();
-    qcar(&["target", "models/targets/axle_a.toml"], folder.path());
-    let page = page_in(folder.path());
+    let page = page(&Studied::targets());
     for (width, theme) in PAGES {
         let found = look(&browser, &page, width, theme);
         let place = format!("{width} px, {theme}: {found}");
