@@ -270,7 +270,7 @@ fn what_outputs_cannot_tell_apart_stops_a_fit_alone() {
         checked.stdout
     );
     assert!(
-        checked.stdout.contains("no output can tell `m`, `k` and `c` apart"),
+        checked.stdout.contains("no output can distinguish `m`, `k` and `c`"),
         "{}",
         checked.stdout
     );
@@ -278,6 +278,6 @@ fn what_outputs_cannot_tell_apart_stops_a_fit_alone() {
     assert_eq!(simulated["runs"][0]["mass"], "body", "{simulated}");
     refused(
         &run_line(folder.path(), "fit ."),
-        &["`m`, `k`, `c`, of which its outputs see 2", "--fix"],
+        &["`m`, `k`, `c`, of which its outputs determine 2", "--fix"],
     );
 }

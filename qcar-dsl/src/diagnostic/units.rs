@@ -36,7 +36,7 @@ pub fn units_differ(left: (Span, String), right: (Span, String), what: &str) -> 
     Diagnostic::error(Code::UnitsDiffer, message)
         .label(right.0, format!("this is in {}", right.1))
         .label(left.0, format!("this is in {}", left.1))
-        .hint("write both in the same unit: a factor may be missing or superfluous; a number can have a unit, `40 mm`")
+        .hint("write both in the same unit: a factor or a unit, as in `40 mm`, may be missing or superfluous")
 }
 
 /// A quantity in another unit than its place asks for.

@@ -15,7 +15,7 @@ pub(super) fn named(folder: &Path, top: &Section<'_>, files: &Files) -> Option<W
             top.wrong(
                 "axle",
                 "no `workbook`",
-                "also `workbook = \"vehicle.xlsx\"`",
+                "`workbook = \"vehicle.xlsx\"` as well",
                 "add it, or remove `axle`",
             );
         }
