@@ -86,7 +86,7 @@ fn sweeps_of_one_recording_become_runs() {
         "{said}"
     );
     let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("s: the pad moves and does not sweep"), "{said}");
+    assert!(words.contains("s: the pad moves but does not sweep"), "{said}");
     let duration = all[0].len() as f64 / rate;
     for (at, (run, level)) in campaign.runs.iter().zip([0.025, 0.05, 0.1]).enumerate() {
         let Test::Sweep(sweep) = &run.test else {
