@@ -247,7 +247,7 @@ fn a_class_is_told_as_one_of_several() {
         assert!(
             has(
                 "paragraphs",
-                format!("These data cannot tell apart {best} and {other}.")
+                format!("These data cannot distinguish {best} and {other}.")
             ),
             "{place}"
         );
@@ -261,7 +261,7 @@ fn a_class_is_told_as_one_of_several() {
         );
         let consequence = found["paragraphs"][1].as_str().unwrap();
         assert!(
-            consequence.contains(&format!("With {other} instead the fitted runs are explained as well")),
+            consequence.contains(&format!("With {other} instead the fitted runs are explained equally well")),
             "{place}"
         );
     }
