@@ -170,7 +170,7 @@ pub fn compiled_wanted(model: &str, wanted: Wanted) -> Result<Compiled, Failure>
     compile(model, wanted)?.map_err(|report| Failure::Input(report.to_string()))
 }
 
-/// The same of a model whose text is at hand; a family that it begins from is looked for beside the file that `name` would be.
+/// The same for the text of a model; its family is searched beside the file that `name` would be.
 ///
 /// # Errors
 /// A model that the compiler refuses.

@@ -14,15 +14,15 @@ use crate::verbs::{
 ///
 /// A MODEL is the name of a shipped model (`qcar show` lists them) or the path of a model file.
 /// Results go to standard output, progress and errors to standard error.
-/// The exit status is 0 when all is well, 1 for a finding, 2 for an input that cannot be used, 130 after Ctrl-C.
+/// The exit status is 0 for success, 1 for a finding, 2 for unusable input, 130 after Ctrl-C.
 #[derive(Parser)]
 // The same width everywhere, so that help reads in a terminal as it does in the tests.
 #[command(name = "qcar", version, verbatim_doc_comment, term_width = 0)]
 pub struct Cli {
-    /// Show results in these units: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays SI
+    /// Units of results: si, engineering, or a unit for each kind such as N/mm,mm,g; JSON stays in SI
     #[arg(long, global = true, value_name = "UNITS", display_order = 900)]
     units: Option<Units>,
-    /// When to colour: auto (on a terminal, unless NO_COLOR is set), always or never
+    /// Use colours: auto (on a terminal, unless NO_COLOR is set), always or never
     #[arg(
         long,
         global = true,

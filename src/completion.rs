@@ -1,4 +1,4 @@
-//! What a shell may complete: names of shipped models and effects, beside paths.
+//! Completion in a shell: names of shipped models and effects, and paths.
 
 use std::ffi::OsStr;
 

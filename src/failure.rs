@@ -7,7 +7,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 /// Why a verb stops.
 #[derive(Debug)]
 pub enum Failure {
-    /// The work is done and something is wrong with what was looked at: the text for standard output. Exit status 1.
+    /// The work is done and has found something wrong: the text for standard output. Exit status 1.
     Finding(String),
     /// What was given cannot be used: the text for standard error. Exit status 2.
     Input(String),

@@ -30,7 +30,7 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
     match fs::write(&probe, "").and_then(|()| fs::remove_file(&probe)) {
         Ok(()) => Ok(folder),
         Err(error) => Err(format!(
-            "found {}: {error}, expected a place to write to; choose another folder, or make room there",
+            "found {}: {error}, expected a writable place; choose another folder, or free some space there",
             existing.display()
         )),
     }
@@ -39,7 +39,7 @@ pub fn folder_for_results(name: &str) -> Result<PathBuf, String> {
 /// The files that stand complete, in the order in which they were written; held while one is being written.
 static WRITTEN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// Writes a file whole under another name, then renames it, so that nothing half-written looks complete.
+/// Writes a file whole under another name, then renames it, so that no half-written file seems complete.
 ///
 /// # Errors
 /// A folder that cannot be made or written to.
@@ -57,20 +57,20 @@ pub fn put(folder: &Path, name: &str, content: &(impl AsRef<[u8]> + ?Sized)) -> 
         Err(error) => {
             // Of no use to anybody; where even that fails, its name says what it is.
             let _ = fs::remove_file(&unfinished);
-            let remedy = "choose another folder, or make room there";
-            Err(Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into())
+            let remedy = "choose another folder, or free some space there";
+            Err(Problem::new(path, Place::File, error.to_string(), "a writable place", remedy).into())
         }
     }
 }
 
-/// Gives a file that is whole the name under which it is looked for.
+/// Gives a complete file its final name.
 ///
 /// # Errors
 /// What the system says.
 pub fn finish(unfinished: &Path, path: &Path) -> Result<(), InputError> {
     let mut written = close();
     fs::rename(unfinished, path).map_err(|error| {
-        let remedy = "move what stands there away, and repeat the command";
+        let remedy = "move the existing file away, and repeat the command";
         Problem::new(
             path,
             Place::File,

@@ -1,4 +1,4 @@
-//! Simulated time histories as files: CSV for tables, MAT and MDF for the viewers in which the measurement lies.
+//! Simulated time histories as files: CSV as tables, MAT and MDF for viewers of measurements.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -14,11 +14,11 @@ use crate::units;
 /// A kind of file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Kind {
-    /// A table: time, and a column for each channel, with units in brackets
+    /// A table: time and a column for each channel, with units in brackets
     Csv,
     /// MAT version 5: a structure with X (time) and Y, each with Name, Unit and Data
     Mat,
-    /// MDF 4.10, not packed: one group with the time of the run
+    /// MDF 4.10, uncompressed: one group with the time of the run
     Mdf,
 }
 

@@ -1,4 +1,4 @@
-//! Masses that a parameter set makes zero or negative: what such a model answers means nothing.
+//! Masses that a parameter set makes zero or negative, so that results would be meaningless.
 
 use qcar_dsl::expr::{Expr, Graph, Symbol};
 use qcar_dsl::model::CoordinateKind;

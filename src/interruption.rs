@@ -1,4 +1,4 @@
-//! Ctrl-C: what is done stays, nothing is left half-written, and the user is told which is which.
+//! Ctrl-C: finished files stay, no file is left half-written, and the user learns which files are finished.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -52,7 +52,10 @@ pub fn listen() {
     let _ = ctrlc::set_handler(end);
 }
 
-#[expect(clippy::disallowed_methods, reason = "files are whole here, and no other is begun")]
+#[expect(
+    clippy::disallowed_methods,
+    reason = "complete files are here, and no other was started"
+)]
 fn end() {
     let unwritten: Vec<String> = left()
         .iter()

@@ -1,4 +1,4 @@
-//! What a model leaves of each sensor, in percent of what it measured.
+//! The residual of each sensor, in percent of its signal.
 
 use qcar_runtime::campaign::Role;
 use qcar_runtime::discover::Evidence;

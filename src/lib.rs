@@ -9,51 +9,51 @@ pub mod files;
 pub mod terminal;
 // The units in which results are shown.
 pub mod units;
-// Results for people, programs and eyes.
+// Results as text tables,
 pub mod table;
-// The same for other programs.
+// as JSON,
 pub mod json;
-// And drawn.
+// as figures,
 pub mod figure;
-// Simulated time histories.
+// as time histories of simulations,
 pub mod histories;
-// And all of it on one page.
+// and as one page with everything.
 pub mod report;
 // Results as workbooks.
 pub mod spreadsheet;
 // Results as columns of numbers.
 pub mod parquet;
-// Work that is given up
+// Cancelled work
 pub mod stopping;
-// at one of its signs of life.
+// stops at its next progress report.
 pub mod progress;
-// What becomes of both when the user stops the work.
+// What happens to files and progress on Ctrl-C.
 pub mod interruption;
 // Parameter values from files and flags.
 pub mod parameters;
-// What a parameter set must not do to a model.
+// Parameter sets that would make an inertia zero or negative.
 pub mod inertias;
 // Roads as a user names them.
 pub mod roads;
 // Models by name or path.
 pub mod catalogue;
-// Effects that a model may miss.
+// Effects that a model may lack.
 pub mod effects;
 // Names that a shell completes.
 pub mod completion;
-// How far and how hard the parts of a model move in a campaign.
+// Amplitudes of the parts of a model in a campaign.
 pub mod scales;
-// Models with effects in them.
+// Models with effects added.
 pub mod workshop;
-// What a model leaves of each sensor, in percent.
+// The residual of each sensor, in percent.
 mod left;
 // Dense and named matrices.
 pub mod state_space;
 // Models for other tools.
 pub mod export;
-// What the user can ask for.
+// The verbs of the command line.
 pub mod verbs;
-// The list of it.
+// The list of them.
 pub mod cli;
 
 /// The guide for users of the library, whose code runs as tests.

@@ -193,7 +193,7 @@ pub fn out_of_range(about: &About, p: &[f64]) -> Vec<String> {
         let shown = |value| units::value(value, &parameter.unit);
         let (name, unit, model) = (&parameter.name, units::name(&parameter.unit), &about.name);
         let sentence = format!(
-            "{name} = {} {unit} is outside {} to {} {unit}, which model {model} takes for plausible",
+            "{name} = {} {unit} is outside {} to {} {unit}, the plausible range of model {model}",
             shown(value),
             shown(low),
             shown(high)
@@ -235,7 +235,7 @@ pub fn bound(parameters: &mut [campaign::Parameter], about: &About, campaign: &C
             continue;
         };
         let expected = match of_model.range {
-            None => "`range = [lower, upper]`, since the model gives it none".into(),
+            None => "`range = [lower, upper]`, because the model gives none".into(),
             Some((low, high)) if !(low..=high).contains(&own.value) => {
                 format!("`range = [lower, upper]`, or a value from {low} to {high}, the range of the model")
             }

@@ -1,4 +1,4 @@
-//! Signs of life on standard error, for work that may take longer than a second: what is being done, and how far it is.
+//! Progress on standard error of work that may take longer than a second: the task, and how far it is.
 //! They are seen on a terminal alone, never in a pipe or a file.
 
 use std::sync::{Mutex, PoisonError};

@@ -154,7 +154,7 @@ impl Asked {
         }
         if whole < SHORTEST {
             let found = format!("a road that takes {whole:.3} s");
-            let remedy = "drive over it more slowly, or give a longer road";
+            let remedy = "choose a lower speed, or give a longer road";
             let expected = format!("a ride of at least {SHORTEST} s");
             return Err(Problem::new(file, Place::File, found, expected, remedy).into());
         }
@@ -175,7 +175,7 @@ pub fn courses(roads: &[Asked], beside: &[Course]) -> Result<Vec<Course>, InputE
         let course = road.course()?;
         if courses.iter().chain(beside).any(|own| own.name == course.name) {
             let found = format!("two rides called {}", course.name);
-            let remedy = "leave one out; another seed, channel, speed or duration makes another ride";
+            let remedy = "remove one of them; another seed, channel, speed or duration makes another ride";
             return Err(road.problem(found, "each ride once", remedy).into());
         }
         courses.push(course);

@@ -1,4 +1,4 @@
-//! How far, how fast and how hard the parts of a model are moved in a campaign, as the model without any effect has it:
+//! Amplitudes of the parts of a model in a campaign, computed by the model without any effect:
 //! what the ranges of effects are measured by.
 //!
 //! Sweeps count by their measured amplitude, line by line, other records by the RMS value of what drove them, and both
@@ -20,7 +20,7 @@ use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::spectrum::transform;
 use qcar_runtime::transmissibility::Point;
 
-/// Frequencies at which a record is looked at: thirds of an octave are coarse for a resonance, but a scale is no more than
+/// Frequencies at which a record is evaluated: thirds of an octave are coarse for a resonance, but a scale is no more than
 /// an order of magnitude.
 const BANDS_PER_OCTAVE: f64 = 3.0;
 

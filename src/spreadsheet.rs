@@ -53,7 +53,10 @@ pub fn filled(file: &Path, fill: impl FnOnce(&mut Workbook) -> Result<(), XlsxEr
         workbook.save_to_buffer()
     });
     bytes.map_err(|error| {
-        let (expected, remedy) = ("what Excel can hold", "shorten the names, or take fewer runs");
+        let (expected, remedy) = (
+            "a workbook within the limits of Excel",
+            "shorten the names, or take fewer runs",
+        );
         Problem::new(file, Place::File, error.to_string(), expected, remedy).into()
     })
 }

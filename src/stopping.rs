@@ -29,7 +29,7 @@ pub fn unless<T>(stop: &Stop, work: impl FnOnce() -> T) -> Option<T> {
     }
 }
 
-/// Whether the work of this thread is to stop, for threads that help it; `None` where nobody can say so.
+/// Whether the work of this thread is to stop, for threads that help it; `None` if nothing can stop it.
 pub fn of_this_work() -> Option<Stop> {
     STOP.with_borrow(Clone::clone)
 }

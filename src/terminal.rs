@@ -86,7 +86,7 @@ const BOLD: &str = "1";
 const RED: &str = "31";
 const YELLOW: &str = "33";
 
-/// Standard output and standard error; a library that nobody has told about a terminal writes for files.
+/// Standard output and standard error; without a terminal, a library writes as for files.
 static OUTLETS: OnceLock<[Outlet; 2]> = OnceLock::new();
 
 /// Finds out how wide each outlet is and whether it has colours. The first call in a process decides.

@@ -41,7 +41,7 @@ impl Units {
             })?;
             if let Some(twice) = units.of_kind(&declared.coherent) {
                 return Err(format!(
-                    "`{name}` and `{}` are of one kind; leave one of them out",
+                    "`{name}` and `{}` are of the same kind; leave one of them out",
                     twice.name
                 ));
             }
@@ -96,7 +96,7 @@ pub fn choose(units: Units) {
     let _ = CHOSEN.set(units);
 }
 
-/// The unit in which what is `si` inside is shown: SI where nobody has chosen.
+/// The unit in which a value in `si` is shown: SI without a choice.
 pub fn name(si: &str) -> &str {
     CHOSEN.get().map_or(si, |units| units.name(si))
 }
@@ -114,7 +114,7 @@ pub fn with_unit(shown: &str, si: &str) -> String {
     }
 }
 
-/// What makes a page open in the units that were chosen; nothing where nobody has, and the page has its own.
+/// A script with which a page opens in the chosen units; empty without a choice, when the page uses its own.
 pub fn script() -> String {
     CHOSEN.get().map_or(String::new(), Units::script)
 }

@@ -1,4 +1,4 @@
-//! One file a verb: its flags, and what it does with them. A verb gives the text for standard output.
+//! One file per verb: its flags, and what it does with them. A verb returns the text for standard output.
 
 use std::path::PathBuf;
 
@@ -14,7 +14,7 @@ pub mod completions;
 pub mod new;
 // checked,
 pub mod check;
-// looked at,
+// examined,
 pub mod show;
 // beside another,
 pub mod diff;
@@ -64,7 +64,7 @@ pub struct ModelArguments {
     /// Parameter values: a TOML file with [parameters], or a campaign folder
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// One value, in place of that of the file; may be repeated
+    /// A single value, which takes precedence over that of the file; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
 }

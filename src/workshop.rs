@@ -1,4 +1,4 @@
-//! Models with effects in them, for the search of what is missing: patched, compiled and ready to run.
+//! Models with effects added, for discovery: patched, compiled and ready to run.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;

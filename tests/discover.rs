@@ -531,7 +531,10 @@ fn a_damper_that_fades_gets_a_law_over_the_run() {
     let found = law["parameters"][middle].as_f64().expect("its middle");
     assert!((found / expected - 1.0).abs() < 0.05, "{found} for {expected}");
     let words = law["words"].as_str().expect("a sentence");
-    assert!(words.starts_with("it goes from 1 when a run begins to"), "{words}");
+    assert!(
+        words.starts_with("it changes from 1 at the start of a run to"),
+        "{words}"
+    );
     assert!(!words.contains("after 100"), "no run takes so long: {words}");
 }
 

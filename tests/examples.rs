@@ -19,7 +19,7 @@ macro_rules! run {
         $(
             #[test]
             fn $name() {
-                if let Err(error) = crate::$name::main() {
+                if let Err(error) = super::$name::main() {
                     panic!("{error}");
                 }
             }

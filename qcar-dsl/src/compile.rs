@@ -12,7 +12,7 @@ use crate::diagnostic::Report;
 use crate::program::schedule::{Compiled, schedule};
 use crate::source::{Load, Source};
 
-/// Reads, checks and looks at a model file: all that can be said of it, and no programs.
+/// Reads and checks a model file, with all its diagnostics, but derives no programs.
 ///
 /// # Errors
 /// The report of every mistake that is found.

@@ -1,4 +1,4 @@
-//! Model files from disk, for the doors. The compiler itself takes texts; nothing but this file reads one.
+//! Model files from disk. The compiler itself takes texts; only this file reads files.
 
 use std::cell::RefCell;
 use std::path::{Path, PathBuf};

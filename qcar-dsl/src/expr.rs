@@ -1,4 +1,4 @@
-//! Expressions: one hash-consed graph for a model, identities applied at birth.
+//! Expressions: one hash-consed graph for a model; identities are applied on construction.
 //!
 //! An [`Expr`] is a name for a node of its [`Graph`]; equal expressions are the same name, so that common
 //! subexpressions are shared without any search. Nothing is multiplied out: the physics stays factored.
@@ -144,7 +144,7 @@ impl Graph {
         self.nodes.len()
     }
 
-    /// The node behind a name.
+    /// The node of a name.
     pub fn node(&self, e: Expr) -> Node {
         self.nodes[e.0 as usize]
     }
@@ -330,7 +330,7 @@ impl Graph {
         }
     }
 
-    /// The curve behind a name.
+    /// The curve of a name.
     pub fn curve(&self, id: CurveId) -> &Curve<Expr> {
         &self.curves[id.0 as usize]
     }

@@ -24,7 +24,7 @@ pub mod derive;
 pub mod program;
 // Printed for other programs and for people.
 pub mod back;
-// Models with effects in them.
+// Models with effects added.
 pub mod patch;
 // The whole compiler in one function.
 pub mod compile;

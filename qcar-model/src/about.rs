@@ -74,7 +74,7 @@ pub struct Parameter {
     pub unit: Cow<'static, str>,
     /// Sentence.
     pub doc: Cow<'static, str>,
-    /// What it is when nobody gives it a value.
+    /// Its default.
     pub default: Default,
     /// Bounds.
     pub range: Option<(f64, f64)>,
@@ -93,7 +93,7 @@ pub enum Clock {
     PartOfRun,
 }
 
-/// What a parameter is when nobody gives it a value.
+/// The default of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Default {
     /// It must be given.

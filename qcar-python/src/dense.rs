@@ -9,7 +9,7 @@ use rayon::prelude::*;
 /// A, B, C and D, in that order.
 pub const ALL: [Matrix; 4] = [Matrix::A, Matrix::B, Matrix::C, Matrix::D];
 
-/// Below so many sets neither threads nor a look for signals pay.
+/// Below this number of sets, neither threads nor checks for signals are worthwhile.
 pub const FEW: usize = 64;
 
 /// Where matrices are taken: a row of parameters, states and inputs for each set.
@@ -76,7 +76,7 @@ fn shape(about: &About, matrix: Matrix) -> (usize, usize) {
     }
 }
 
-/// Where the entries of one matrix stand: among the nonzeros, and in the matrix.
+/// The positions of the entries of one matrix: among the nonzeros, and in the matrix.
 fn places<'a>(entries: impl Iterator<Item = &'a Entry>, matrix: Matrix) -> Vec<(usize, [usize; 2])> {
     let own = entries.enumerate().filter(|(_, entry)| entry.matrix == matrix);
     own.map(|(nth, entry)| (nth, [entry.row.into(), entry.column.into()]))

@@ -1,4 +1,4 @@
-//! The extension module behind the Python package `qcar`: arrays in, arrays out. Names, docstrings and shapes that a user sees are in
+//! The extension module of the Python package `qcar`: arrays in, arrays out. Names, docstrings and shapes that a user sees are in
 //! `python/qcar`.
 
 // What Python raises.

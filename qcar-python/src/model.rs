@@ -1,4 +1,4 @@
-//! A model behind Python's `qcar.Model`.
+//! The model of Python's `qcar.Model`.
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -66,7 +66,7 @@ fn measured(path: &Path) -> io::Result<Content<'static>> {
 /// What to do about an error of [`measured`]: raise the limit, or what `else_do` says.
 fn remedy<'a>(error: &io::Error, else_do: &'a str) -> &'a str {
     match error.kind() {
-        ErrorKind::FileTooLarge => "if the file is what it should be, raise the limit",
+        ErrorKind::FileTooLarge => "if the file is the right one, raise the limit",
         ErrorKind::OutOfMemory => "close other programs, or split the file",
         _ => else_do,
     }

@@ -9,7 +9,7 @@ mod unit;
 mod table;
 // How evenly times come.
 mod steps;
-// What is odd about samples, as it is told.
+// Flaws of samples, as they are reported.
 mod finding;
 // What was read of a run.
 mod reading;

@@ -1,4 +1,4 @@
-//! A simulated cleat run beside the measured one: the thesis's two metrics (section 3.6.2), and what a driver feels.
+//! A simulated cleat run compared with the measured one: the thesis's two metrics (section 3.6.2), and vibration comfort.
 
 mod comfort;
 mod errors;

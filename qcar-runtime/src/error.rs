@@ -1,4 +1,4 @@
-//! What every part of the workbench reports through when what it was given cannot be used.
+//! The errors with which every part of the workbench reports unusable input.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -17,9 +17,9 @@ pub struct InputError {
 
 /// One thing that is wrong with the input, where, and what to do about it.
 ///
-/// The texts are fragments of one sentence: `found "mm/s", expected "m/s"; convert the column and declare m/s`.
+/// The texts are fragments of one sentence: `found "mm/s", expected "m/s"; convert the column and declare m/s`. Of a
+/// [refusal](Problem::refused), `found` is the whole sentence.
 #[derive(Clone, Debug, Error, PartialEq)]
-#[error("{file}{place}: found {found}, expected {expected}; {remedy}", file = .file.display())]
 pub struct Problem {
     /// The file at fault, as it was opened.
     pub file: PathBuf,
@@ -31,6 +31,23 @@ pub struct Problem {
     pub expected: String,
     /// What to do about it.
     pub remedy: String,
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Problem {
+            place,
+            found,
+            expected,
+            remedy,
+            ..
+        } = self;
+        let file = self.file.display();
+        match expected.is_empty() {
+            true => write!(out, "{file}{place}: {found}"),
+            false => write!(out, "{file}{place}: found {found}, expected {expected}; {remedy}"),
+        }
+    }
 }
 
 /// A place in a file. Lines and columns count from 1.
@@ -95,6 +112,13 @@ impl Problem {
             expected,
             remedy,
         }
+    }
+}
+
+impl Problem {
+    /// A problem in the words of an error that says itself what is expected and what to do.
+    pub fn refused(file: impl Into<PathBuf>, place: Place, what: &str, error: impl fmt::Display) -> Self {
+        Problem::new(file, place, format!("{what}: {error}"), "", "")
     }
 }
 

@@ -1,4 +1,4 @@
-//! What generated models stand on.
+//! Support for generated models.
 //!
 //! Here slices become arrays of fixed size, once for a call, so that no bounds check is left in straight-line code; and
 //! here a frequency response is cut into blocks of lines, over which that code runs in a loop that LLVM vectorises.

@@ -71,13 +71,13 @@ pub enum KcError {
     #[error("the curve does not determine its gradients; expected travel in both directions")]
     OneWay,
     #[error(
-        "the force does not grow with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
+        "the force does not increase with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
          expected both positive in compression, or forwards"
     )]
     NoSlope { slope: f64, error: f64 },
 }
 
-/// Share of the travel, in its middle, that is taken for linear.
+/// Share of the travel, in its middle, that counts as linear.
 const LINEAR_SHARE: f64 = 0.5;
 /// Share of the peak velocity below which the friction of a sine is about to change sign.
 const SLOW_SHARE: f64 = 0.1;

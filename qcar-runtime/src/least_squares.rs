@@ -113,11 +113,11 @@ impl Stop {
     pub fn sentence(self) -> &'static str {
         match self {
             Stop::Gradient => "the gradient vanished",
-            Stop::Cost => "the cost no longer fell",
-            Stop::Step => "the step no longer changed the parameters",
-            Stop::NothingToFit => "there was nothing to fit",
-            Stop::Evaluations => "the evaluations were used up before it converged",
-            Stop::NotFinite => "the model gave a value that is not a finite number",
+            Stop::Cost => "the cost no longer decreased",
+            Stop::Step => "the step became too small to change the parameters",
+            Stop::NothingToFit => "no parameter was free",
+            Stop::Evaluations => "it did not converge within the allowed evaluations",
+            Stop::NotFinite => "the model returned a value that is not finite",
         }
     }
 }

@@ -6,17 +6,17 @@ pub use nalgebra;
 /// What a compiled axle model offers: one trait, and its description.
 pub use qcar_model as model;
 
-// What records have for a size.
+// Means and RMS values.
 pub mod mean;
 // Dense matrices of a model at rest.
 pub mod matrices;
 // Loops for every instruction set.
 mod vectors;
-// What generated models stand on.
+// Support for generated models.
 pub mod generated;
-// What every part reports through.
+// Errors of every part.
 pub mod error;
-// What a misspelt name was meant to be.
+// Suggestions for misspelt names.
 pub mod spelling;
 // Random numbers, the same everywhere.
 pub mod random;
@@ -32,9 +32,9 @@ pub mod roles;
 pub mod spectrum;
 // Sweeps to transmissibilities, with their uncertainty.
 pub mod transmissibility;
-// The model seen as the measurement sees it.
+// Responses of the model at the measured points.
 pub mod response;
-// What it does when nothing drives it.
+// Free vibration of the model.
 pub mod modes;
 // Bounded nonlinear least squares.
 pub mod least_squares;
@@ -50,15 +50,15 @@ pub mod solver;
 pub mod simulate;
 // Peak and after-shake errors, comfort metrics.
 pub mod compare;
-// Thousands of parameter sets, each driven over rides and measured.
+// Metrics of thousands of parameter sets over rides.
 pub mod ensemble;
 // Numbers that say how an axle feels, and their derivatives.
 pub mod metric;
-// What they depend on.
+// How these depend on the parameters.
 pub mod sensitivity;
-// What an axle must be for them to be as they are wanted.
+// Designs for which these meet targets.
 pub mod target;
 // Gradients of K&C curves.
 pub mod kc;
-// Where the measurement disagrees with the model, and what would explain it.
+// What explains the difference between measurement and model.
 pub mod discover;

@@ -1,4 +1,4 @@
-//! Numbers that say how an axle feels: one name, one value, one derivative by each parameter.
+//! Metrics of an axle: one name, one value, one derivative by each parameter.
 //!
 //! A [`Metric`] is spelled the same wherever it is asked for: `body_x.peak`, `wheel_z.vdv`, `tyre.dynamic_load`,
 //! `suspension.travel`, `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] measures them of a model.

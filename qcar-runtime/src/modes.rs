@@ -1,4 +1,4 @@
-//! How a model moves when nothing drives it: natural frequencies, damping ratios and shapes.
+//! Free vibration of a model: natural frequencies, damping ratios and mode shapes.
 //!
 //! The equations of motion are linearised at rest, `dx = A x`; a mode is a pair of complex eigenvalues of A with its
 //! eigenvector. See Ewins, "Modal Testing", 2nd ed., section 2.5, for modes of nonproportional damping.

@@ -1,4 +1,4 @@
-//! How far work is, for whoever waits for it.
+//! Progress of long work.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -53,7 +53,7 @@ pub enum RoadError {
         "x falls from {before} m to {x} m at sample {sample}; x must never decrease (two points at one x are a step)"
     )]
     NotMonotonic { sample: usize, before: f64, x: f64 },
-    #[error("all points of the road lie at x = {x} m; expected a road that goes on")]
+    #[error("all points of the road lie at x = {x} m; expected a road with a length")]
     NoLength { x: f64 },
     #[error(
         "slope {slope} at x = {x} m contradicts the heights there, which rise by {rise}; slope is that of the segment to the right of its point, and a step stands alone"
@@ -104,7 +104,7 @@ impl Road {
         Ok(Self::through(samples::simplify(&points, samples::RESOLUTION)))
     }
 
-    /// A shape after `run_in` metres of flat road, which goes on flat behind it.
+    /// A shape after `run_in` metres of flat road, followed by flat road.
     ///
     /// # Errors
     /// A dimension of the shape or a run-in that is not positive.
@@ -125,7 +125,7 @@ impl Road {
         Self::through(vec![[0.0, z], [1.0, z]])
     }
 
-    /// The same road with flat ground behind its end, at least to `x` (m).
+    /// The same road with flat ground after its end, at least to `x` (m).
     pub fn reaching(&self, x: f64) -> Self {
         let [end, z] = *self.vertices.last().expect("a road has points");
         let further = (x > end).then_some([x, z]);
@@ -320,7 +320,7 @@ impl Index {
 
     #[inline]
     fn cell(&self, x: f64) -> usize {
-        // The cast saturates: what lies before the road is in the first cell, what lies behind it in the last.
+        // The cast saturates: points before the road fall into the first cell, points after it into the last.
         (((x - self.first) * self.cells_per_metre) as usize).min(self.vertices_before.len() - 1)
     }
 

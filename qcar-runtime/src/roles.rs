@@ -40,13 +40,13 @@ pub enum RoleError {
     #[error("model `{model}` has no tyre that can roll; give its tyre link between a mass and a road")]
     NoTyre { model: String },
     #[error(
-        "model `{model}` has {} tyres ({}), and its roads are driven over one at a time; take a model with one tyre", .tyres.len(), .tyres.join(", ")
+        "model `{model}` has {} tyres ({}), but only one road can be simulated; use a model with one tyre", .tyres.len(), .tyres.join(", ")
     )]
     SeveralTyres { model: String, tyres: Vec<String> },
-    #[error("model `{model}` has no mass but `{wheel}` along {axis} that could be its body")]
+    #[error("model `{model}` has no mass along {axis} that could be its body, only `{wheel}`")]
     NoBody { model: String, wheel: String, axis: String },
     #[error(
-        "which mass of model `{model}` is its body does not follow from its structure ({}); name it in campaign.toml: \
+        "the body of model `{model}` does not follow from its structure ({}); name it in campaign.toml: \
          `[roles]` and below it `body = \"{}\"`", .masses.join(", "), .masses[0]
     )]
     OpenBody { model: String, masses: Vec<String> },

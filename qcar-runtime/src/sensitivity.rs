@@ -1,4 +1,4 @@
-//! What metrics depend on: locally by derivatives, all over a range by shares of variance, and how sure they are.
+//! How metrics depend on parameters, locally by derivatives and over a range by shares of variance, and how uncertain they are.
 
 // Derivatives at a design.
 mod local;

@@ -54,11 +54,11 @@ pub trait System {
     /// Takes an accepted step.
     fn accept(&mut self, _step: &Step<'_>) {}
 
-    /// The first time after `from` at which the right-hand side will bend, as far as it can be foreseen from the state at
+    /// The first time after `from` at which the right-hand side will have a kink, as predicted from the state at
     /// `t` and its rate; infinite where nothing is in sight.
     ///
-    /// A method of high order loses it over a bend. So a step ends there: the error control would find that out, too,
-    /// but by steps that fail, and by short ones until the bend is behind.
+    /// A method of high order loses its order across a kink, so a step ends there. The error control would find that too,
+    /// but by failed steps, and short ones until the kink is passed.
     fn next_bend(&self, _t: f64, _x: &[f64], _dx: &[f64], _from: f64) -> f64 {
         f64::INFINITY
     }
@@ -150,8 +150,8 @@ impl std::fmt::Display for Report {
             Reason::End => write!(f, "reached the end at t = {t} s"),
             Reason::Event(index) => write!(f, "stopped by event {index} at t = {t} s"),
             Reason::NotFinite => write!(f, "the state or its derivative is not finite after t = {t} s"),
-            Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s, however short the step"),
-            Reason::Crowded => write!(f, "events follow one another without an end after t = {t} s"),
+            Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s with any step"),
+            Reason::Crowded => write!(f, "endless events after t = {t} s"),
             Reason::TooManySteps => write!(
                 f,
                 "{} steps were not enough: it got to t = {t} s; the model may be too stiff for an explicit method",

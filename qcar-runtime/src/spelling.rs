@@ -1,4 +1,4 @@
-//! Which known name a wrong one was meant to be.
+//! The known name that is nearest to an unknown one.
 
 use strsim::levenshtein;
 

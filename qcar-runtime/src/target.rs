@@ -1,4 +1,4 @@
-//! What an axle must be: the design of least cost that meets all targets, the front between metrics, and the box of
+//! Design for targets: the design of least cost that meets all targets, the front between metrics, and the box of
 //! parameter intervals in which all targets hold.
 
 // What is wanted, and what may move.

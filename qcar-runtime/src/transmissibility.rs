@@ -210,7 +210,7 @@ pub fn signal(history: &History, point: &Point) -> Result<Vec<f64>, InputError> 
     if sensors.is_empty() {
         let measured: Vec<_> = points(history).iter().map(Point::to_string).collect();
         let place = Place::Name(point.to_string());
-        let remedy = "leave this out, or add the channel to the run";
+        let remedy = "remove this, or add the channel to the run";
         return Err(Problem::new(&history.file, place, "no such channel", measured.join(", "), remedy).into());
     }
     let share = 1.0 / sensors.len() as f64;
@@ -317,7 +317,7 @@ fn check_alive(history: &History, points: &[Point]) -> Result<(), InputError> {
     let dead = recorded.filter(|(_, samples)| samples.iter().all(|sample| *sample == samples[0]));
     let problem = |channel: &Channel| {
         let place = Place::Name(channel.name.clone());
-        let remedy = "leave the column out if its sensor was dead, or export the record again";
+        let remedy = "remove the column if its sensor was dead, or export the record again";
         Problem::new(
             &history.file,
             place,

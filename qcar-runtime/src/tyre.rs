@@ -163,7 +163,7 @@ impl Tyre {
     /// The contact of a wheel with a road; none where the circle is clear of the ground.
     ///
     /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled
-    /// (except [`Geometry::Radial`], which looks at each piece of the road in the circle).
+    /// (except [`Geometry::Radial`], which evaluates each piece of the road in the circle).
     pub fn touch(&self, road: &Road, wheel: &Wheel) -> Option<Touch> {
         self.touch_near(road, wheel, &Cell::new(0))
     }

@@ -236,7 +236,7 @@ fn a_channel_that_no_run_recorded_is_noticed() {
     );
     let notices = Campaign::open(campaign(&[header]).path()).unwrap().notices;
     assert!(
-        notices.len() == 1 && notices[0].contains("`pad_left_z` is recorded in no run"),
+        notices.len() == 1 && notices[0].contains("no run records the channel `pad_left_z`"),
         "{notices:?}"
     );
 }

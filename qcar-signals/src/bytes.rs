@@ -79,7 +79,7 @@ impl<'a> Bytes<'a> {
     fn unreadable(&self, at: u64, what: &str) -> impl FnOnce(io::Error) -> Box<Fault> {
         let (place, what) = (self.place(at), what.to_string());
         move |error| {
-            let remedy = "look after the disk or the network, and try again";
+            let remedy = "check the disk or the network, and try again";
             Fault::new(place, format!("an error of the system: {error}"), what, remedy)
         }
     }

@@ -125,7 +125,7 @@ impl Disk {
         Ok(to(&both))
     }
 
-    /// A page, out of those that are kept while it is looked at.
+    /// A page, out of those that are kept while it is in use.
     fn page(&self, number: u64) -> io::Result<Box<[u8]>> {
         let known = self.pages.borrow_mut().remove(&number);
         if let Some(page) = known {

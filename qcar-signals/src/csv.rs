@@ -8,7 +8,7 @@ use crate::error::{Fault, Place, Read};
 use crate::signal::Recording;
 use crate::table::{Cell, Column, Filled, Layout};
 
-/// How many rows are looked at to tell how a table is written and where its numbers begin.
+/// Number of rows from which the form of a table and the first row of numbers are determined.
 const HEAD: usize = 200;
 
 /// Reads a table of numbers with names.

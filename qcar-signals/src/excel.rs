@@ -16,7 +16,7 @@ pub(crate) const MAGIC: &[u8] = b"PK\x03\x04";
 pub(crate) const OLD_MAGIC: &[u8] = b"\xd0\xcf\x11\xe0";
 /// What stands before the directory at the end of a ZIP file, at most so many bytes before the end.
 const DIRECTORY_END: (&[u8], usize) = (b"PK\x05\x06", 65_557);
-/// How many rows are looked at to find where the numbers of a sheet begin.
+/// Number of rows that are searched for the first numbers of a sheet.
 const HEAD: usize = 64;
 /// Columns of a sheet.
 const MOST_COLUMNS: u32 = 16_384;

@@ -1,4 +1,4 @@
-//! What is wrong with the samples of a channel, as far as they show it themselves.
+//! Flaws that the samples of a channel show.
 
 /// A flaw of a channel.
 #[derive(Clone, Debug, PartialEq)]
@@ -44,7 +44,7 @@ pub fn flaws(samples: &[f64], drift: bool) -> Vec<Flaw> {
 
 /// Samples at the extreme in a row, at least, that are clipped and no peak.
 const FLAT: usize = 4;
-/// A smooth peak falls off by 8 of its smallest steps within its own width before it looks flat; a clipped one by many more.
+/// A smooth peak falls off by 8 of its smallest steps within its own width before it counts as flat; a clipped one by many more.
 const STEEP: f64 = 30.0;
 /// Fewer different values than these make steps, as those of a valve, and no signal that was cut.
 const LEVELS: usize = 16;

@@ -165,7 +165,7 @@ impl<'a> Records<'a> {
     }
 }
 
-/// How often the bits of a record may be taken for channels, all in all. Parts of a value may be channels of their own, but
+/// How often in total the bits of a record may be used by channels. Parts of a value may be channels of their own, but
 /// a small file shall not become a large one.
 const MOST_USES: usize = 16;
 

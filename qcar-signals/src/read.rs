@@ -1,4 +1,4 @@
-//! The door: which format a file is, by its content, and its channels.
+//! The entry point: the format of a file, recognised by its content, and its channels.
 
 use std::fs::File;
 use std::io;

@@ -46,7 +46,7 @@ pub fn resample(samples: &[f64], from: Grid, to: Grid) -> Vec<f64> {
     (0..to.count).map(|k| kernel.at(samples, at(k))).collect()
 }
 
-/// How far the filter between two rates looks to each side, s.
+/// Half the length of the filter between two rates, s.
 pub fn reach(from: f64, to: f64) -> f64 {
     Kernel::half_length(from.min(to))
 }

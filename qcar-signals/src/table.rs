@@ -15,7 +15,7 @@ pub(crate) enum Cell {
 
 /// Where the numbers begin, and what they are.
 pub(crate) struct Layout {
-    /// The first row of numbers, an index into the rows that were looked at.
+    /// The first row of numbers, an index into the rows that were scanned.
     pub(crate) first: usize,
     /// Name and unit of each column that has numbers, with the index of the column.
     pub(crate) columns: Vec<Column>,

@@ -3,7 +3,7 @@
 //!
 //! Source: "TDMS File Format Internal Structure" of National Instruments.
 
-// What is told of an object.
+// The description of an object.
 mod metadata;
 // From raw to physical values.
 mod scaling;

@@ -1,4 +1,4 @@
-//! Which texts are units. Nothing is converted here, but times into seconds.
+//! Texts that are units. Only times are converted here, into seconds.
 
 /// Symbols that stand alone.
 const ALONE: [&str; 36] = [

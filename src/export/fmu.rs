@@ -1,4 +1,4 @@
-//! A Functional Mock-up Unit: the model's C99 behind the functions of the interface, and the description of both.
+//! A Functional Mock-up Unit: the model's C99, the functions of the interface around it, and the description of both.
 //!
 //! The same model and values give the same bytes, but for the library, which is the compiler's.
 
@@ -142,7 +142,7 @@ fn model_header(subject: Subject, variables: &Variables) -> String {
     let nominals = variables.all.iter().filter_map(Variable::nominal).chain([1.0]);
     let nominals: Vec<String> = nominals.map(|nominal| format!("{nominal:?}")).collect();
     format!(
-        "/* What the unit is made of. */\n#ifndef FMU_MODEL_H\n#define FMU_MODEL_H\n\n#include \"{name}.h\"\n\n\
+        "/* Names and sizes of the model. */\n#ifndef FMU_MODEL_H\n#define FMU_MODEL_H\n\n#include \"{name}.h\"\n\n\
          #define MODEL(name) {name}_##name\n{sizes}#define TOLERANCE {TOLERANCE:?}\n#define NOMINALS {{{nominals}}}",
         name = about.name,
         nominals = nominals.join(", "),

@@ -176,7 +176,7 @@ impl Reader<'_> {
         };
         for key in table.keys().filter(|key| !NEIGHBOURS.contains(&&**key.get_ref())) {
             if !["parameters", "vehicle"].contains(&&**key.get_ref()) {
-                let remedy = "put parameters under [parameters] and facts of the vehicle under [vehicle]";
+                let remedy = "put parameters under [parameters] and vehicle data under [vehicle]";
                 let found = format!("`{}`", key.get_ref());
                 self.wrong(
                     key.span().start,
@@ -233,7 +233,7 @@ impl Reader<'_> {
             .collect()
     }
 
-    /// Refuses what a parameter's table has and nobody reads: most often a misspelt `unit`.
+    /// Refuses unknown keys of a parameter's table, most often a misspelt `unit`.
     fn refuse_unknown(&mut self, key: &str, table: &DeTable) {
         for name in table.keys().filter(|name| !KEYS.contains(&&**name.get_ref())) {
             let own = name.get_ref();

@@ -1,4 +1,4 @@
-//! What `qcar fit` has written: `fit.json`, which has standard errors beside the values. `study.json` holds one, too.
+//! The results of `qcar fit`: `fit.json`, with values and standard errors. `study.json` holds one, too.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -44,7 +44,7 @@ impl Answer {
         let text = read_text(path)?;
         let json: Value = serde_json::from_str(&text).map_err(|error| {
             let place = Place::Key(error.line(), error.column(), String::new());
-            let remedy = "write the file again with `qcar fit --out`";
+            let remedy = "create the file again with `qcar fit --out`";
             Problem::new(path, place, error.to_string(), "JSON", remedy)
         })?;
         let fit = json.get("fit").unwrap_or(&json);

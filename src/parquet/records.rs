@@ -1,4 +1,4 @@
-//! What Parquet says of its pages and of the whole file, field by field as `parquet.thrift` numbers them.
+//! The metadata of Parquet's pages and of the whole file, field by field as `parquet.thrift` numbers them.
 
 use super::thrift::Value::{self, Int, List, Long, Struct, Text};
 use super::{GROUP, Shape, chunk_length};

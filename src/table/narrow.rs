@@ -1,4 +1,4 @@
-//! A table in less space than it takes: texts and headings go on below, and columns that have no room below the table.
+//! A table made narrower: texts and headings continue on further lines, and columns without room below the table.
 
 use super::{SPACE, Shape, lines};
 

@@ -16,10 +16,10 @@ use crate::terminal::prose;
 // Of measurements.
 mod campaign;
 
-/// Check models and say what to write instead, or campaigns and say what their samples show
+/// Check models for mistakes and suggest remedies, or campaigns for flaws of their samples
 ///
-/// Without a name, all shipped models are checked. The exit status is 1 where a model is refused, or where a sweep that is to be
-/// fitted has a dead channel. What else is odd about a measurement (clipping, spikes, drift, dead channels) is a warning.
+/// Without a name, all shipped models are checked. The exit status is 1 if a model is refused, or if a sweep to be
+/// fitted has a dead channel. Other flaws of a measurement (clipping, spikes, drift, dead channels) are warnings.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar check models/axles/quarter_car.axle\n  qcar check models/campaigns/axle_a_rig\n  qcar check --members models/families/corner.axle"
@@ -28,7 +28,7 @@ pub struct Arguments {
     /// Names of shipped models, paths of model files, or folders of campaigns
     #[arg(add = ArgValueCompleter::new(completion::models))]
     models: Vec<String>,
-    /// Of a family's file, check every member that its options allow
+    /// For the file of a family, check every member that its options allow
     #[arg(long)]
     members: bool,
 }

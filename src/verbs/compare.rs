@@ -40,11 +40,11 @@ mod render;
 
 use subject::Subject;
 
-/// Compare two parameter sets, two models or two campaigns, and write a report of it
+/// Compare two parameter sets, two models or two campaigns, and write a report
 ///
-/// A and B are two of a kind: parameter files (.toml, the fit.json of a fit, or its folder), models (by name or path),
-/// or campaign folders, each fitted with its own model. What moved, and what that does to modes, transmissibilities and
-/// peaks over cleats: those of --campaign, those that both campaigns drove, else 20, 30 and 40 km/h over 10 to 40 mm.
+/// A and B are of the same kind: parameter files (.toml, the fit.json of a fit, or its folder), models (by name or path),
+/// or campaign folders, each fitted with its own model. The comparison shows what changed, and its consequences for modes, transmissibilities and
+/// peaks over cleats: those of --campaign, those that both campaigns measured, or else 20, 30 and 40 km/h over 10 to 40 mm.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar compare axle_c axle_c_rigid_tm --params models/campaigns/axle_c_study --out compared\n  qcar compare models/campaigns/axle_a_rig models/campaigns/axle_c_study --format json\n  qcar compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig"
@@ -53,28 +53,28 @@ pub struct Arguments {
     /// Parameter file, model or campaign folder
     #[arg(value_name = "A")]
     first: String,
-    /// The same kind of thing, to compare with it
+    /// The other one, of the same kind
     #[arg(value_name = "B")]
     second: String,
-    /// The model of both parameter sets or campaigns, by name or path, in place of their own
+    /// The model of both parameter sets or campaigns, by name or path, instead of their own
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Hold both against the runs of this campaign; its values lie below all others
+    /// Compare both with the runs of this campaign; all other values take precedence over its values
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
-    /// Parameter values of both, below those of A and B: a TOML file with [parameters], fit.json or a campaign folder
+    /// Parameter values of both, over which those of A and B take precedence: a TOML file with [parameters], fit.json or a campaign folder
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// One value for both, above those of all files; may be repeated
+    /// A single value for both, which takes precedence over all files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
-    /// Frequencies where no run gives them: first and last in Hz and the number of lines, spaced logarithmically
+    /// Frequencies of channels that no run measures: first and last in Hz and the number of lines, spaced logarithmically
     #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:50:300")]
     frequencies: Frequencies,
     /// Write report.html, compare.json and the tables as CSV into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

@@ -1,4 +1,4 @@
-//! `qcar completions`: a script that lets a shell ask qcar how a line may go on.
+//! `qcar completions`: a script with which a shell asks qcar for completions.
 
 use clap::{Args, Command, ValueEnum};
 use clap_complete::env::{Bash, EnvCompleter, Fish, Powershell, Zsh};
@@ -8,7 +8,7 @@ use crate::failure::Failure;
 /// The variable by which a shell asks.
 pub const VARIABLE: &str = "QCAR_COMPLETE";
 
-/// Print a script that lets a shell complete verbs, flags and their values, names of models and effects
+/// Print a script with which a shell completes verbs, flags and their values, and names of models and effects
 ///
 /// bash: put it into ~/.local/share/bash-completion/completions/qcar
 /// zsh: put it into a folder of $fpath, as _qcar
@@ -17,7 +17,7 @@ pub const VARIABLE: &str = "QCAR_COMPLETE";
 #[derive(Args)]
 #[command(verbatim_doc_comment, after_help = "Example:\n  qcar completions bash")]
 pub struct Arguments {
-    /// Which shell
+    /// The shell
     shell: Shell,
 }
 

@@ -1,4 +1,4 @@
-//! `qcar diff`: in what two models differ.
+//! `qcar diff`: the differences between two models.
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
@@ -12,7 +12,7 @@ use crate::json::{self, Ordered};
 use crate::terminal::prose;
 use crate::verbs::Format;
 
-/// Show what a model has that another has not: parameters, masses, links, equations
+/// Show the differences between two models: parameters, masses, links, equations
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar diff axle_c axle_c_rigid_tm\n  qcar diff axle_a models/axles/axle_c.axle --format json"
@@ -24,7 +24,7 @@ pub struct Arguments {
     /// The model to compare with it
     #[arg(add = ArgValueCompleter::new(completion::models))]
     second: String,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

@@ -1,4 +1,4 @@
-//! `qcar discover`: where a model and a campaign disagree, and which effect is missing.
+//! `qcar discover`: the residuals of a model, and which effect is missing.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -45,17 +45,17 @@ mod figure;
 // What a search leaves that is stopped.
 mod unfinished;
 
-/// Find the effect that a campaign has and its model lacks
+/// Find the effect that a campaign shows and its model lacks
 ///
-/// Fits the model to the runs with the role `fit`, looks at what is left in units of its uncertainty, tries the effects
-/// of the catalogue at every place where they apply, and judges them on the runs that are `held_out`.
-/// The verdict is `none` where the gap is noise, `found`, `class` where several effects explain it alike, or `unknown`.
+/// Fits the model to the runs with the role `fit`, examines the residuals in standard deviations, tries the effects
+/// of the catalogue at every place where they apply, and checks them on the `held_out` runs.
+/// The verdict is `none` if noise explains the residuals, `found`, `class` if several effects explain them equally well, or `unknown`.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar discover models/campaigns/axle_a_rig --out results")]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Start from this model, by name or path, in place of the campaign's
+    /// Start from this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Write the patched model file, parameters.toml, discovery.json and gap.svg into this folder; stopped by Ctrl-C, what is known by then into `unfinished` in it
@@ -64,7 +64,7 @@ pub struct Arguments {
     /// Multiply numbers that the search assumes, to see what the answer owes to them
     #[arg(long, hide = true, value_name = "NAME=FACTOR,…", value_parser = multiplied)]
     assume: Option<Numbers>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -77,7 +77,7 @@ pub struct Answer {
     pub evidence: Evidence,
     /// What was found.
     pub discovery: Discovery,
-    /// The model that was looked at.
+    /// The model that was examined.
     base: Checked,
     /// Where something would explain what it leaves of the sweeps.
     pub sweeps: Sweeps,
@@ -104,7 +104,7 @@ impl Answer {
 
     /// What is left of each sensor over frequency, before and after, as SVG.
     pub fn figure(&self) -> String {
-        let title = format!("{}: what the model leaves, 0 dB being the noise", self.campaign);
+        let title = format!("{}: residuals of the model; 0 dB is noise", self.campaign);
         figure::gap(title, [&self.discovery.before.gap, &self.discovery.after.gap]).svg()
     }
 
@@ -163,7 +163,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     })
 }
 
-/// Looks for what the model of the campaign in a folder lacks, and notes what is odd about the campaign.
+/// Searches for what the model of the campaign in a folder lacks, and notes oddities of the campaign.
 ///
 /// # Errors
 /// A campaign that cannot be read or says nothing of the model, or a model that the compiler refuses.
@@ -174,7 +174,7 @@ pub fn discover(folder: &Path, model: Option<&str>, out: Option<&Path>, numbers:
     Ok(answer)
 }
 
-/// Looks for what the model of a campaign lacks. Stopped on the way, it leaves what is known by then in `out`.
+/// Searches for what the model of a campaign lacks. If it is stopped, it writes what is known by then to `out`.
 ///
 /// # Errors
 /// A campaign that says nothing of the model, or a model that the compiler refuses.
@@ -216,7 +216,7 @@ pub(crate) fn answer(
     let discovery =
         discovery.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     evidence.notices.extend(offsets_of_the_model(&discovery));
-    // A model that cannot be held against the sweeps has no places.
+    // A model that cannot be compared with the sweeps has no places.
     let [before, after] = [0, 1].map(|of| with(bench.clone(), &discovery.nuisances[of]));
     let sweeps = Sweeps::new(before.model(), &discovery.before.refit, &evidence).unwrap_or_default();
     Ok(Answer {
@@ -236,7 +236,7 @@ pub(crate) fn answer(
 fn offsets_of_the_model(discovery: &Discovery) -> impl Iterator<Item = String> {
     let without = &discovery.after.refit.nuisance.without_offset;
     without.iter().map(|(sensor, own)| {
-        format!("{sensor}: `{own}` of the model stands for the offset of this sensor, which is given none")
+        format!("{sensor}: `{own}` of the model is the offset of this sensor, so no other offset is estimated for it")
     })
 }
 
@@ -283,7 +283,7 @@ fn units(mut bench: Bench, discovery: &Discovery) -> Vec<BTreeMap<String, String
 fn found(bench: Bench, discovery: &Discovery) -> Option<Written> {
     let (before, after) = (&discovery.before.gap, &discovery.after.gap);
     let evidence = format!(
-        "Evidence: the gap of held-out runs over their uncertainty fell from {:.2} to {:.2}.",
+        "Evidence: the RMS residual of held-out runs fell from {:.2} to {:.2} standard deviations.",
         before.held_out, after.held_out
     );
     match discovery.verdict {

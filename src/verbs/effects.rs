@@ -1,4 +1,4 @@
-//! `qcar effects`: the catalogue of effects that a model may miss.
+//! `qcar effects`: the catalogue of effects that a model may lack.
 
 mod described;
 
@@ -16,9 +16,9 @@ use crate::terminal::prose;
 use crate::verbs::Format;
 use described::Described;
 
-/// List the effects that may be missing in a model, and where each applies
+/// List the effects that a model may lack, and where each applies
 ///
-/// Without a model, the whole catalogue is listed. An effect is described with its forms and parameters.
+/// Without an argument, the whole catalogue is listed. For an effect, its forms and parameters are described.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar effects\n  qcar effects axle_c\n  qcar effects coulomb_friction --format json"
@@ -27,7 +27,7 @@ pub struct Arguments {
     /// Name of a shipped model or effect, or path of a file of either
     #[arg(value_name = "MODEL_OR_EFFECT", add = ArgValueCompleter::new(completion::models_and_effects))]
     name: Option<String>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

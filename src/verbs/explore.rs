@@ -1,4 +1,4 @@
-//! `qcar explore`: thousands of parameter sets, each over the same rides, measured.
+//! `qcar explore`: metrics of thousands of parameter sets over the same rides.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -40,12 +40,12 @@ use over::Over;
 use part::Part;
 use vary::Vary;
 
-/// Compute metrics of many parameter sets, each driven over the same cleats, as a table
+/// Compute metrics of many parameter sets over the same cleats, as a table
 ///
-/// A row is a parameter set and a ride: its number, what varies, and the metrics. Rows come in the order of the design and are the
-/// same whatever the number of threads. A command that was stopped goes on where it is repeated: rows stand in FILE.part until
-/// all of them are there, and FILE.design.json says what they are of.
-/// Rides need r_tire, static_tire_def and static_tire_load, facts of the vehicle, in the file or campaign of --params.
+/// A row is a parameter set and a ride: its number, the varied parameters, and the metrics. Rows are in the order of the design
+/// and do not depend on the number of threads. An interrupted command resumes when it is repeated: rows are in FILE.part until
+/// all are complete, and FILE.design.json describes them.
+/// Rides need the vehicle data r_tire, static_tire_def and static_tire_load, in the file or campaign of --params.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar explore quarter_car --vary k_tire=180..220N/mm --vary m_wheel=-10%..10% --count 1000 --out sets.csv\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --vary c_wheel_z=-30%..30% --count 16 --rides 20mm@30km/h,standard --out rides.parquet\n  qcar explore axle_a --params models/campaigns/axle_a_rig --vary k_tire=-10%..10% --design grid --count 5 --metrics modes --part 2/4 --out part-2.csv"
@@ -53,7 +53,7 @@ use vary::Vary;
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,
-    /// A parameter that varies between two values, with their unit or as percents of its value; may be repeated
+    /// A parameter to vary between two values, with their unit or in percent of its value; may be repeated
     #[arg(
         long,
         value_name = "NAME=LO..HI",
@@ -61,28 +61,28 @@ pub struct Arguments {
         conflicts_with = "posterior"
     )]
     vary: Vec<Vary>,
-    /// Vary what a fit has estimated, as probable as it says: its fit.json
+    /// Draw parameter sets from the distribution that a fit has estimated: its fit.json
     #[arg(long, value_name = "FILE")]
     posterior: Option<PathBuf>,
-    /// How sets are chosen [default: sobol, or posterior with --posterior]
+    /// How the sets are chosen [default: sobol, or posterior with --posterior]
     #[arg(long, value_enum)]
     design: Option<Chosen>,
-    /// Number of sets; of a grid the number of values of each parameter
+    /// Number of sets; for a grid, number of values of each parameter
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     count: u64,
-    /// Another seed gives another design of the same kind; 0 is Sobol's sequence as it is published
+    /// Seed of the design; 0 is the published Sobol sequence
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
     /// Cleats to drive over: `standard` (three speeds, four heights), or HEIGHT@SPEED such as 20mm@30km/h
     #[arg(long, value_delimiter = ',', value_name = "RIDES")]
     rides: Vec<Over>,
-    /// What is measured [default: peak, after-shake and vdv of rides; without rides transmissibility and modes]
+    /// The metrics to compute [default: peak, after-shake and vdv of rides; without rides transmissibility and modes]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "NAMES")]
     metrics: Vec<Metric>,
-    /// Transmissibilities of these channels alone
+    /// Transmissibilities of these channels only
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     channels: Vec<String>,
-    /// Compute the K-th of N equal parts of the design, for as many machines
+    /// Compute the K-th of N equal parts of the design, to share it among N machines
     #[arg(long, value_name = "K/N", default_value = "1/1", hide_default_value = true)]
     part: Part,
     /// Write the rows into this file: .csv or .parquet
@@ -95,11 +95,11 @@ pub struct Arguments {
 enum Chosen {
     /// Every combination of equally spaced values
     Grid,
-    /// A Latin hypercube: each parameter has one value in each of as many intervals as there are sets
+    /// A Latin hypercube: as many intervals as sets, and each parameter has one value in each interval
     Lhs,
-    /// Sobol's sequence, whose points fill the space evenly however many of them are taken
+    /// Sobol's sequence, which fills the space evenly for any number of points
     Sobol,
-    /// Draws from what a fit has found
+    /// Draws from the distribution of a fit
     Posterior,
 }
 
@@ -112,7 +112,7 @@ enum Metric {
     AfterShake,
     /// Vibration dose of each acceleration, weighted by ISO 2631-1
     Vdv,
-    /// Highest magnitude of each channel from 0.5 to 50 Hz, and its frequency
+    /// Largest magnitude of each channel from 0.5 to 50 Hz, and its frequency
     Transmissibility,
     /// Natural frequencies and damping ratios, lowest frequency first
     Modes,

@@ -19,8 +19,8 @@ use crate::state_space::{StateSpace, state_space};
 
 /// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables
 ///
-/// Every parameter starts with the value that is given, and stays changeable where the tool can change it. Files that are
-/// there already stay as they are.
+/// Every parameter starts with the given value, and can be changed later where the tool allows it. Existing files are never
+/// overwritten.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu"
@@ -28,13 +28,13 @@ use crate::state_space::{StateSpace, state_space};
 pub struct Arguments {
     #[command(flatten)]
     model: ModelArguments,
-    /// For what
+    /// The kind of file
     #[arg(long = "as", value_enum, value_name = "KIND")]
     kind: Kind,
-    /// The version of the Functional Mock-up Interface of an FMU; 2 unless given
+    /// Version of the Functional Mock-up Interface of an FMU; default: 2
     #[arg(long, value_enum, value_name = "VERSION")]
     fmi: Option<Fmi>,
-    /// The file to write; it ends as the kind says
+    /// The file to write, with the ending of its kind
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
 }
@@ -42,7 +42,7 @@ pub struct Arguments {
 /// What is written.
 #[derive(Clone, Copy, ValueEnum)]
 enum Kind {
-    /// FILE.c, and a header beside it: equations, matrices, Jacobians, responses
+    /// FILE.c and a header: equations, matrices, Jacobians, responses
     C,
     /// FILE.fmu: Model Exchange and Co-Simulation, with C99 sources
     Fmu,
@@ -59,7 +59,7 @@ enum Kind {
     Js,
     /// FILE.json: A, B, C, D and their derivatives, as `qcar matrices` prints them
     Json,
-    /// FILE.csv: A, B, C and D, an entry a line
+    /// FILE.csv: A, B, C and D, one entry per line
     Csv,
     /// FILE.tex: equations and matrices, as `qcar show` prints them
     Latex,
@@ -158,12 +158,12 @@ fn must_be_free(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
     }
-    let found = format!("{}, which is there already", path.display());
+    let found = format!("{}, which exists already", path.display());
     Err(flag(
         "--out",
         found,
-        "a name that is still free",
-        "take another name, or move the file away",
+        "a name that is not in use",
+        "choose another name, or move the file away",
     )
     .into())
 }
@@ -198,7 +198,7 @@ fn files(
                     "--as",
                     said,
                     "variables that MATLAB can hold",
-                    "rename one of both in the model",
+                    "rename one of them in the model",
                 )
             };
             (vec![own(file.map_err(refused)?)], String::new())
@@ -246,12 +246,12 @@ fn library(of: &Library) -> String {
     match of {
         Library::Compiled { place, compiler, .. } => format!("{place}: compiled by {compiler}\n"),
         Library::Absent(why) => {
-            format!("no library: {why}; the unit has C99 sources, which an importer that compiles sources can use\n")
+            format!("no library: {why}; the FMU has C99 sources, for importers that compile sources\n")
         }
     }
 }
 
 fn cannot_compile(message: &str) -> Failure {
-    let remedy = "name a C99 compiler in the environment variable CC, or make room for temporary files";
+    let remedy = "name a C99 compiler in the environment variable CC, or free some space for temporary files";
     flag("--as fmu", message.trim_end(), "a library of the model", remedy).into()
 }

@@ -45,14 +45,13 @@ pub(crate) mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign
 ///
-/// A linear model is fitted to transmissibilities, level after level in one cost. A nonlinear one is fitted to all runs that
-/// it predicts, cleats, K&C curves and dynamometer tables too: to the first three harmonics of sweeps by harmonic balance, to
-/// records sample by sample, and to what each says by its own uncertainty; `--all-runs` fits a linear model so.
-/// Runs with the role `fit` are fitted; those that are `held_out` are only compared with. Estimated are the parameters
-/// that the campaign wants fitted, and what the model has beside them with a default and a range, but for what it calls
-/// known. A parameter that no fitted channel depends on takes its value from the K&C curve that measures it, where the
-/// campaign has one.
-/// The exit status is 1 where the search does not end at a minimum, or where every parameter ends at a bound of its range.
+/// A linear model is fitted to transmissibilities, with all levels in one cost. A nonlinear model is fitted to all runs that it
+/// predicts, including cleats, K&C curves and dynamometer tables: to the first three harmonics of sweeps by harmonic balance, and to
+/// records sample by sample, each with its own uncertainty. `--all-runs` does the same for a linear model.
+/// Runs with the role `fit` are fitted; `held_out` runs are only compared with. Estimated are the parameters with `fit = true` in the
+/// campaign, and those that only the model gives, with a default and a range, unless they are `known`. A parameter that no fitted
+/// channel depends on takes its value from the K&C curve that determines it, if the campaign has one.
+/// The exit status is 1 if the search does not end at a minimum, or if every parameter ends at a bound of its range.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/silverbox --format json"
@@ -62,10 +61,10 @@ pub struct Arguments {
     campaign: PathBuf,
     #[command(flatten)]
     choices: Choices,
-    /// Write parameters.toml, fit.json and, of a linear model, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
+    /// Write parameters.toml, fit.json and, for a linear model, transmissibility.csv, transmissibility.svg and results.xlsx into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -73,13 +72,13 @@ pub struct Arguments {
 /// What may differ from the campaign's own plan.
 #[derive(Args, Default)]
 pub struct Choices {
-    /// Fit this model, by name or path, in place of the campaign's
+    /// Fit this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     pub model: Option<String>,
-    /// Searches: the first from the campaign's start values, the others from all over its ranges
+    /// Number of searches: the first from the campaign's start values, the others from random points in the ranges
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub starts: Option<u16>,
-    /// Fit to these channels, such as pad_to_wheel, in place of those over the model's force elements
+    /// Fit to these channels, such as pad_to_wheel, instead of those across the model's force elements
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub channels: Vec<String>,
     /// Fit these parameters too
@@ -88,10 +87,10 @@ pub struct Choices {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub fix: Vec<String>,
-    /// Fit a linear model as a nonlinear one is: to all runs, each by its own uncertainty
+    /// Fit a linear model like a nonlinear one: to all runs, each with its own uncertainty
     #[arg(long)]
     pub all_runs: bool,
-    /// Find intervals of these parameters by their profile likelihoods too; `all` for every one that is fitted
+    /// Also find intervals of these parameters by profile likelihood; `all` for every fitted one
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub profile: Vec<String>,
 }
@@ -267,7 +266,7 @@ fn profiled(plan: &Plan, about: &About, free: &[usize], names: &[String]) -> Res
         let expected = "a parameter that is fitted, or `all`";
         let (found, remedy) = match unseen {
             true => (
-                format!("`{name}`, which no fitted channel depends on"),
+                format!("`{name}`, on which no fitted channel depends"),
                 "leave it out".into(),
             ),
             false => (format!("`{name}`"), spelling::remedy(name, fitted())),
@@ -301,12 +300,12 @@ fn refuse_unseen(model: &Loaded, plan: &Plan) -> Result<(), InputError> {
                 format!("model {}", model.about().name),
                 Place::Name("parameters".into()),
                 format!(
-                    "{}, of which its outputs see {} combinations",
+                    "{}, of which its outputs determine {} combinations",
                     fitted.join(", "),
                     unseen.seen
                 ),
-                "parameters that a measurement can tell apart",
-                "set `fit = false` for those that are known otherwise, or name them with --fix",
+                "parameters that the outputs can distinguish",
+                "set `fit = false` for those that are known from elsewhere, or name them with --fix",
             )
         };
         (fitted.len() > unseen.seen).then(wrong)

@@ -37,7 +37,7 @@ pub struct Arguments {
     /// First and last frequency in Hz and the number of lines, spaced logarithmically
     #[arg(long, value_name = "FROM:TO:LINES", default_value = "0.5:30:300")]
     frequencies: Frequencies,
-    /// How to print; JSON holds the parameter Jacobian too
+    /// Output format; JSON includes the parameter Jacobian
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     format: TableFormat,
 }

@@ -1,4 +1,4 @@
-//! `qcar import`: measured files looked into, and a campaign of them begun.
+//! `qcar import`: a new campaign from measured files.
 
 use std::path::{Path, PathBuf};
 
@@ -25,11 +25,11 @@ mod swept;
 // Which kind of run a file is.
 mod kind;
 
-/// Look into measured files and begin a campaign with them
+/// Create a campaign from measured files
 ///
-/// Lists the channels of each file, proposes which sensor of the model each is, by its name and unit, and which kind of run the file
-/// is: of a sweep the frequencies and the velocity of the pad. Several sweeps in one recording, with 1.5 s of rest between, become
-/// runs of their own. The new folder holds a campaign.toml that says what is still to be filled in. The files stay where they are.
+/// Lists the channels of each file, proposes from name and unit which sensor of the model each is, and recognises the kind of run;
+/// for a sweep it also finds the frequencies and the velocity of the pad. A recording with several sweeps, separated by 1.5 s of rest, is split into
+/// runs. The new folder has a campaign.toml that says what to fill in. The files stay where they are.
 #[derive(Args)]
 #[command(
     after_help = "Example:\n  qcar import models/campaigns/axle_a_rig/rig/sweep_025.csv.gz models/campaigns/axle_a_rig/rig/sweep_100.csv.gz --out imported --model axle_a"
@@ -38,10 +38,10 @@ pub struct Arguments {
     /// Measured files: MDF, RPC III, UFF 58, TDMS, MAT, .xlsx or text
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// The folder to write, which must not be there
+    /// The folder to write; it must not exist
     #[arg(long, value_name = "CAMPAIGN")]
     out: PathBuf,
-    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    /// The model to fit: name of a shipped model, or path of a model file
     #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }
@@ -86,12 +86,12 @@ fn must_be_new(folder: &Path) -> Result<(), Failure> {
     match folder.exists() {
         false => Ok(()),
         true => {
-            let found = format!("{}, which is there already", folder.display());
+            let found = format!("{}, which exists already", folder.display());
             Err(flag(
                 "--out",
                 found,
-                "a folder that is still to be made",
-                "take another name, or move it away",
+                "a folder that does not exist yet",
+                "choose another name, or move it away",
             )
             .into())
         }
@@ -128,7 +128,7 @@ fn told(
     text += &sensors::table(proposed);
     let out = arguments.out.display();
     text += &format!(
-        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and give what stands after a `#` with `give yours`\n"
+        "\n{out}/campaign.toml written. Now\n1. read it from top to bottom, and fill in every line marked `give yours`\n"
     );
     text += &format!("2. qcar check {out}\n3. qcar fit {out}\n");
     text

@@ -24,7 +24,7 @@ const DIGITS: usize = 6;
 
 /// List the channels of a measured file: units, rates, ranges
 ///
-/// The content says which format it is: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or text.
+/// The format is recognised from the content: MDF 3 and 4, RPC III, UFF 58, TDMS, MAT 5 to 7.3, .xlsx, OpenCRG, or text.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz\n  qcar inspect models/campaigns/axle_a_rig/rig/sweep_025.csv.gz --format json"
@@ -32,7 +32,7 @@ const DIGITS: usize = 6;
 pub struct Arguments {
     /// The file
     file: PathBuf,
-    /// How to print it
+    /// Output format it
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

@@ -24,7 +24,7 @@ use crate::verbs::Format;
 // Start values in campaign.toml.
 mod write;
 
-/// Print stiffness, damping and friction from the K&C curves of a campaign, beside its start values
+/// Print stiffness, damping and friction from the K&C curves of a campaign, and its start values
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar kc models/campaigns/axle_a_rig\n  qcar kc models/campaigns/axle_a_rig --format json"
@@ -32,10 +32,10 @@ mod write;
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Put the gradients into campaign.toml as start values of the parameters they stand for
+    /// Write the gradients to campaign.toml as start values of the parameters that they determine
     #[arg(long)]
     write: bool,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -252,7 +252,7 @@ fn parameter_value(
     let place = known.or_else(|| kc::parameter_for(&**model, values, asked));
     let place = place.ok_or_else(|| {
         format!(
-            "model {} has no parameter between `{}` and what it is linked to that gives its {} along {axis} with `{}` held",
+            "model {} has no parameter between `{}` and the parts linked to it that determines its {} along {axis} while `{}` is held",
             about.name, on.wheel, gradient.quantity, on.body
         )
     })?;
@@ -261,7 +261,7 @@ fn parameter_value(
     let value = value.ok_or_else(|| {
         let (curve, quantity) = (gradient.test, gradient.quantity);
         format!(
-            "no `{name}` within its range gives model {} the {quantity} of the {curve} curve with `{}` held",
+            "with no `{name}` in its range model {} has the {quantity} of the {curve} curve while `{}` is held",
             about.name, on.body
         )
     });

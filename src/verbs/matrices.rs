@@ -24,7 +24,7 @@ pub struct Arguments {
     /// Only this axis, such as z or x
     #[arg(long)]
     axis: Option<String>,
-    /// How to print; JSON holds the parameter Jacobians too
+    /// Output format; JSON includes the parameter Jacobians
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

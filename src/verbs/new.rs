@@ -1,4 +1,4 @@
-//! `qcar new`: files to begin with, which are never put over others.
+//! `qcar new`: first files, which never overwrite others.
 
 use std::path::{Path, PathBuf};
 
@@ -13,9 +13,9 @@ pub(super) mod campaign;
 // The workbook of a vehicle.
 mod template;
 
-/// Write the first files of an axle, of a campaign or of a vehicle, with comments that say how to go on
+/// Create first files for an axle, a campaign or a vehicle, with comments that explain the next steps
 ///
-/// Files that are there already stay as they are.
+/// Existing files are never overwritten.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar new axle city_car\n  qcar new campaign city_car_rig --model city_car.axle\n  qcar new template vehicle.xlsx"
@@ -46,7 +46,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 struct Named {
     /// Lower-case letters, digits and `_`, a letter first
     name: String,
-    /// The folder to write into in place of the current one, made where it is not there
+    /// The folder to write into instead of the current one; created if missing
     #[arg(long, value_name = "DIR")]
     dir: Option<PathBuf>,
 }
@@ -75,7 +75,7 @@ fn must_be_new(path: &Path) -> Result<(), Failure> {
     if !path.exists() {
         return Ok(());
     }
-    let found = format!("{}, which is there already", path.display());
-    let remedy = "take another name, choose another folder with --dir, or move it away";
-    Err(flag("NAME", found, "a name that is still free", remedy).into())
+    let found = format!("{}, which exists already", path.display());
+    let remedy = "choose another name or another folder with --dir, or move it away";
+    Err(flag("NAME", found, "a name that is not in use", remedy).into())
 }

@@ -13,11 +13,11 @@ use crate::failure::Failure;
 use crate::files::put;
 use crate::parameters;
 
-/// Write a model with an effect in it
+/// Add an effect to a model and write the new model file
 ///
-/// The new file holds all of the model, its options taken, and compiles like any other. Ranges and start values that
-/// depend on the model's own parameters are taken at the values that are given, at the defaults, or else in the middle
-/// of the ranges.
+/// The new file contains the whole model, with its options resolved, and compiles like any other. Ranges and start values that
+/// depend on the model's own parameters are evaluated at the given values, at the defaults, or else in the middle of the
+/// ranges.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar patch axle_c coulomb_friction --at damper\n  qcar patch axle_a bushing_relaxation --at top_mount --params models/campaigns/axle_a_rig --out softer.axle"
@@ -31,10 +31,10 @@ pub struct Arguments {
     /// The place: a link, mass or sensor location of the model
     #[arg(long, value_name = "PLACE")]
     at: String,
-    /// One of the effect's forms; the usual one where none is given
+    /// One of the effect's forms; default: the usual one
     #[arg(long, value_name = "FORM")]
     form: Option<String>,
-    /// File to write; standard output where none is given
+    /// File to write; default: standard output
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
 }

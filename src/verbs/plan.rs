@@ -1,4 +1,4 @@
-//! `qcar plan`: which further sensor, run or level says most about the parameters of a fit.
+//! `qcar plan`: which further sensor, run or level would tell most about the parameters of a fit.
 
 use std::path::PathBuf;
 
@@ -25,14 +25,13 @@ use crate::units;
 use crate::verbs::Format;
 use crate::verbs::fit::{self, Choices, nonlinear};
 
-/// Print which further sensor, run or level would say most about the parameters of a campaign
+/// Print which further sensor, run or level would tell most about the parameters of a campaign
 ///
-/// The model is fitted, and each measurement that could be added is judged by the rise of the log determinant of the
-/// information about the parameters (D-optimality), with the standard errors that a fit with it is expected to have. Added are,
-/// one at a time: a sensor at each output of the model that no fitted run records, a run driven by an excitation that none uses, a
-/// fitted run once more, at its level and at twice of it, and beyond either end of its band. A new sensor is taken to be as noisy as
-/// those that there are. A nonlinear model is fitted to all runs; added are to it sensors, runs once more, sines at twice their level, and a
-/// dynamometer's table of each link.
+/// The model is fitted. Each candidate measurement is then judged by the rise of the log determinant of the Fisher
+/// information about the parameters (D-optimality), and the standard errors to expect are printed. Candidates are: a sensor at each
+/// output of the model that no fitted run records, a run driven by an unused excitation, and a fitted run repeated at its level, at twice
+/// its level, or beyond either end of its band. A new sensor is assumed as noisy as the existing ones. A nonlinear model is fitted to
+/// all runs; its candidates are sensors, repeated runs, sines at twice their level, and a dynamometer's table of each link.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar plan models/campaigns/axle_a_rig\n  qcar plan models/campaigns/axle_a_rig --parameters c_wheel_z,c_tire --format json"
@@ -40,10 +39,10 @@ use crate::verbs::fit::{self, Choices, nonlinear};
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Fit this model, by name or path, in place of the campaign's
+    /// Fit this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Ask for these parameters alone; the others are estimated beside them
+    /// Consider these parameters only; the others are still estimated
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     parameters: Vec<String>,
     /// Fit these parameters too
@@ -52,10 +51,10 @@ pub struct Arguments {
     /// Keep these parameters at their start values
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     fix: Vec<String>,
-    /// Fit a linear model as a nonlinear one is: to all runs, each by its own uncertainty
+    /// Fit a linear model like a nonlinear one: to all runs, each with its own uncertainty
     #[arg(long)]
     all_runs: bool,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -218,16 +217,16 @@ impl Planned {
     fn text(&self) -> String {
         let count = counted(self.parameters.0.len(), "parameter");
         let mut out = format!(
-            "{}: what would say most about {count} of {}\n",
+            "{}: candidates by what they tell about {count} of {}\n",
             self.campaign, self.model
         );
         out += &noted(&self.notices);
         if self.further.is_empty() {
-            return out + "Nothing could be added: every output and excitation of the model is in use.\n";
+            return out + "Nothing can be added: every output and excitation of the model is in use.\n";
         }
         out += "\n";
         out += &self.measurements().text();
-        out += "\nStandard errors in percent, as they are and as expected with the first of these:\n\n";
+        out += "\nStandard errors in percent, now and as expected with each of the first candidates:\n\n";
         out + &self.errors().text()
     }
 

@@ -1,4 +1,4 @@
-//! `qcar score`: fits campaigns that are published with their answer, and compares.
+//! `qcar score`: fits campaigns with known parameters, and compares.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -17,16 +17,16 @@ use crate::verbs::fit::{self, Choices, Fitted};
 /// A standard error below this part of the value means that the data determine it well.
 const WELL_DETERMINED: f64 = 0.02;
 
-/// Fit campaigns that have a truth.toml beside them, and compare
+/// Fit campaigns whose true parameters are known (truth.toml), and compare
 ///
-/// The exit status is 1 where a parameter that the fit calls well determined (standard error below 2 %) is off.
+/// The exit status is 1 if a well determined parameter (standard error below 2 %) has a larger error than allowed.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar score models/campaigns")]
 pub struct Arguments {
     /// Campaign folders, or folders of campaigns
     #[arg(required = true)]
     folders: Vec<PathBuf>,
-    /// How far a well determined parameter may be off, in percent
+    /// Allowed error of a well determined parameter, in percent
     #[arg(long, value_name = "PERCENT", default_value_t = 3.0)]
     within: f64,
 }

@@ -1,11 +1,11 @@
-//! `qcar sensitivity`: what metrics of an axle depend on, and how sure they are.
+//! `qcar sensitivity`: how metrics of an axle depend on parameters, and how uncertain they are.
 
 use std::path::PathBuf;
 use std::str::FromStr;
 
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
-use qcar_runtime::error::InputError;
+use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::metric::{Ground, MetricError};
 use qcar_runtime::sensitivity::Plan;
 
@@ -30,19 +30,19 @@ pub(crate) mod doubts;
 pub(crate) mod gather;
 // As text and CSV.
 pub(crate) mod render;
-// And drawn.
+// as figures,
 mod figure;
 
 use doubts::{Doubts, Temperatures};
 use gather::Asked;
 use subject::{Beneath, Subject};
 
-/// Print what metrics of an axle depend on: elasticities, shares of variance, and how sure they are
+/// Print how metrics of an axle depend on its parameters: elasticities, shares of variance, and uncertainty
 ///
 /// Metrics are peaks and after-shakes of each mass, weighted vibration (ISO 2631-1), dynamic tyre load and suspension travel over
-/// cleats, peaks of transmissibilities, and frequencies and damping ratios of vibrations; `--list` prints their names.
-/// The cleats are those of the campaign, else twelve standard ones. A campaign is fitted first, unless values are given; its
-/// standard errors then say how sure each metric is.
+/// cleats, peaks of transmissibilities, and frequencies and damping ratios of modes; `--list` prints their names.
+/// The cleats are those of the campaign, or else twelve standard ones. A campaign is fitted first, unless values are given; its
+/// standard errors then give the uncertainty of each metric.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar sensitivity models/campaigns/axle_a_rig --out results\n  qcar sensitivity axle_a --campaign models/campaigns/axle_a_rig --metrics body_x.peak,wheel_z.* --tolerance k_tire=5%\n  qcar sensitivity quarter_car --list"
@@ -51,52 +51,52 @@ pub struct Arguments {
     /// A model, by name or path, a campaign's folder, or the folder of a fit's results
     #[arg(add = ArgValueCompleter::new(completion::models))]
     subject: String,
-    /// Start values, facts of the vehicle and cleat runs of this campaign
+    /// Take start values, vehicle data and cleat runs from this campaign
     #[arg(long, value_name = "DIR")]
     campaign: Option<PathBuf>,
     /// Parameter values above those: a TOML file with [parameters] and perhaps [vehicle], or the fit.json of a fit
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
-    /// One value, in place of that of the files; may be repeated
+    /// A single value, which takes precedence over that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
     /// A road beside the cleats: a class of ISO 8608 or a measured profile, such as C@60km/h or road.crg#v=0.5@50km/h; may be repeated
     #[arg(long, value_name = "ROAD@SPEED")]
     road: Vec<roads::Asked>,
-    /// Only these runs; a * stands for any letters
+    /// Only these runs; a * stands for any characters
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     runs: Vec<String>,
-    /// These metrics; a * stands for any letters
+    /// Only these metrics; a * stands for any characters
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     metrics: Vec<String>,
-    /// By these parameters, in place of all that the model does not call known
+    /// Only these parameters, instead of all that are not `known` in the model
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     parameters: Vec<String>,
-    /// A part lies within so much of its value, such as k_tire=5%; may be repeated
+    /// Tolerance of a part relative to its value, such as k_tire=5%; may be repeated
     #[arg(long, value_name = "NAME=PERCENT")]
     tolerance: Vec<Tolerance>,
     /// Parts are at a temperature from so many to so many kelvin above that for which the values hold, such as -30..50
     #[arg(long, value_name = "LOW..HIGH", requires = "per_kelvin", allow_hyphen_values = true)]
     temperature: Option<Temperatures>,
-    /// A parameter changes by so much of its value per kelvin, such as c_wheel_z=-0.3%; may be repeated
+    /// Relative change of a parameter per kelvin, such as c_wheel_z=-0.3%; may be repeated
     #[arg(long, value_name = "NAME=PERCENT", requires = "temperature")]
     per_kelvin: Vec<PerKelvin>,
-    /// Find Sobol indices by so many designs
+    /// Compute Sobol indices from this number of designs
     #[arg(long, value_name = "DESIGNS", value_parser = clap::value_parser!(u32).range(50..=10_000_000))]
     sobol: Option<u32>,
-    /// For these, each parameter lies within so many percent of its value
+    /// Range of each parameter for the Sobol indices, in percent of its value
     #[arg(long, value_name = "PERCENT", default_value = "10%")]
     spread: Percent,
-    /// Of the random numbers of these designs
+    /// Seed of the random numbers of these designs
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
-    /// Print the names of all metrics instead
+    /// Print the names of all metrics and stop
     #[arg(long)]
     list: bool,
     /// Write sensitivity.json, sensitivity.csv and sensitivity.svg into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     format: TableFormat,
 }
@@ -218,9 +218,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 fn list(ground: &Ground<'_>) -> String {
     if ground.metrics().is_empty() {
         let name = &ground.about().name;
-        return format!(
-            "{name} has no metric: nothing of it vibrates, no road drives it, and it declares no channel\n"
-        );
+        return format!("{name} has no metric: it has no vibrating mode, no road and no channel\n");
     }
     let mut table = Table::new(["metric", "unit", "meaning"]);
     for metric in ground.metrics() {
@@ -237,8 +235,8 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
         match chosen::parameter(subject.model.about(), &subject.values, name, problem) {
             Ok(place) if parameters.contains(&place) => return Some(place),
             Ok(_) => {
-                let found = format!("`{name}`, which is not looked at");
-                problems.push(problem(&found, "one of the parameters", "name it in --parameters, too"));
+                let found = format!("`{name}`, which is not among the parameters");
+                problems.push(problem(&found, "one of the parameters", "add it to --parameters"));
             }
             Err(error) => problems.extend(error.problems),
         }
@@ -262,6 +260,6 @@ fn doubts(subject: &Subject, parameters: &[usize], arguments: &Arguments) -> Res
 
 /// A metric that cannot be measured.
 pub(crate) fn refused(subject: &str, error: &MetricError) -> Failure {
-    let remedy = "correct the run, the vehicle or the parameters, or leave the metric out";
-    flag(subject, error, "an axle whose metrics can be measured", remedy).into()
+    let place = Place::Name(subject.into());
+    Problem::refused("command line", place, "its metrics cannot be computed", error).into()
 }

@@ -21,7 +21,7 @@ pub struct Arguments {
     /// Name of a shipped model, or path of a model file
     #[arg(add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Which stage
+    /// The stage to show
     #[arg(long, value_enum, default_value_t = Stage::Equations)]
     stage: Stage,
 }
@@ -29,7 +29,7 @@ pub struct Arguments {
 /// The stages, in the order of the data.
 #[derive(Clone, Copy, ValueEnum)]
 enum Stage {
-    /// The model as a file, its options taken
+    /// The model as a file, with its options resolved
     Model,
     /// The equations of motion
     Equations,

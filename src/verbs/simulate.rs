@@ -39,13 +39,12 @@ use records::Record;
 
 /// Simulate the runs of a campaign and compare them with the measurement
 ///
-/// Sweeps and time histories are replayed: what was recorded of the inputs drives the model, from a state at the beginning
-/// that is estimated where a time history is. Their error is the root mean square of the difference over that of the
-/// measured signal without its mean (NRMS).
-/// With `--road` the model rolls over roads without a measured run instead, on the tyre of the campaign: what a class of ISO
-/// 8608 or a measured profile does to each mass, weighted as ISO 2631-1 has it, and to the load of the tyre.
-/// Of cleat runs the errors are those of the thesis's section 3.6.2: of the peak within the impact, and of the after-shake's root mean
-/// square, after both records are aligned at the peak of the wheel.
+/// Sweeps and time histories are replayed: the recorded inputs drive the model, for a time history from an estimated initial
+/// state. Their error is the RMS of the difference over the RMS of the measured signal without its mean (NRMS).
+/// The errors of cleat runs are those of section 3.6.2 of the thesis, after both records are aligned at the peak of the wheel: the error of the peak
+/// during the impact, and that of the RMS after-shake.
+/// With `--road` the model rolls over roads instead of the runs, on the tyre of the campaign. This gives the vibration of each mass on a class of
+/// ISO 8608 or a measured profile, weighted by ISO 2631-1, and the load of the tyre.
 #[derive(Args)]
 #[command(
     after_help = "Examples:\n  qcar simulate models/campaigns/axle_a_rig --out rides\n  qcar simulate models/campaigns/axle_a_rig --set k_tire=2.3e5 --variant vertical --format csv\n  qcar simulate models/campaigns/silverbox --out replays\n  qcar simulate models/campaigns/axle_a_rig --out viewer --as mdf\n  qcar simulate models/campaigns/axle_a_rig --road C@80km/h --road B#3@120km/h:20s --out spectra"
@@ -63,10 +62,10 @@ pub struct Arguments {
     /// SVG; of a road power spectral densities as CSV and SVG
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// What kind of files
+    /// Format of the files
     #[arg(long = "as", value_enum, value_name = "KIND", default_value_t = Kind::Csv, requires = "out")]
     kind: Kind,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = TableFormat::Text)]
     format: TableFormat,
 }
@@ -74,16 +73,16 @@ pub struct Arguments {
 /// What is simulated.
 #[derive(Args, Default)]
 pub struct Choices {
-    /// Simulate this model, by name or path, in place of the campaign's
+    /// Simulate this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     pub model: Option<String>,
-    /// Parameter values above the start values of the campaign: a TOML file with [parameters]
+    /// Parameter values that take precedence over the start values of the campaign: a TOML file with [parameters]
     #[arg(long, value_name = "FILE")]
     pub params: Option<PathBuf>,
-    /// One value, in place of that of the files; may be repeated
+    /// A single value, which takes precedence over that of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     pub set: Vec<Setting>,
-    /// How much of the model is simulated over cleats
+    /// Which part of the model is simulated over cleats
     #[arg(long, value_enum, default_value_t = VariantName::Complete)]
     pub variant: VariantName,
 }
@@ -94,9 +93,9 @@ pub enum VariantName {
     /// All of it
     #[default]
     Complete,
-    /// All moves along the road at constant speed
+    /// Everything moves along the road at constant speed
     Locked,
-    /// Locked, and the tyre feels the height below the wheel's centre alone
+    /// Locked, and the tyre follows the height below the wheel's centre only
     Vertical,
 }
 
@@ -322,23 +321,20 @@ pub(crate) fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, InputError> {
     InputError::unless_empty(problems, Some(found))
 }
 
+/// What a run says that cannot be simulated.
+const NO_RIDE: &str = "this run cannot be simulated";
+
 /// The rides, if there is one for every run. What keeps several of them from being simulated is said once.
 fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<Vec<Ride>, InputError> {
     let (mut done, mut problems): (Vec<Ride>, Vec<Problem>) = (Vec::new(), Vec::new());
     for (cleat, ride) in cleats.iter().zip(rides) {
         match ride {
             Ok(ride) => done.push(ride),
-            Err(error) if problems.iter().any(|told| told.found == error.to_string()) => {}
             Err(error) => {
-                let remedy = "correct the run, the vehicle or the parameters";
-                let file = &cleat.measured.file;
-                problems.push(Problem::new(
-                    file,
-                    Place::File,
-                    error.to_string(),
-                    "a ride that can be simulated",
-                    remedy,
-                ));
+                let problem = Problem::refused(&cleat.measured.file, Place::File, NO_RIDE, error);
+                if problems.iter().all(|told| told.found != problem.found) {
+                    problems.push(problem);
+                }
             }
         }
     }

@@ -42,22 +42,22 @@ mod program;
 // All of it for the page, and without the curves for programs.
 mod contents;
 
-/// Fit, simulate and discover in one go, and write a report of it
+/// Fit, simulate and discover at once, and write a report
 ///
-/// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, looks for what the model lacks,
-/// and drives the model, before and after, over the cleats. The report is one HTML file that needs no network.
+/// Fits the model of a campaign to its rig runs, takes the gradients of its K&C curves, searches for what the model lacks,
+/// and simulates the model, before and after, over the cleats. The report is one HTML file that needs no network.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar study models/campaigns/axle_c_study --out results")]
 pub struct Arguments {
     /// Folder with a campaign.toml
     campaign: PathBuf,
-    /// Start from this model, by name or path, in place of the campaign's
+    /// Start from this model, by name or path, instead of the campaign's
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
     /// Write report.html, study.json, results.xlsx and the files of each step into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: PathBuf,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }

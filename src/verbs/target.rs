@@ -1,4 +1,4 @@
-//! `qcar target`: what an axle must be to meet targets.
+//! `qcar target`: designs that meet targets.
 
 use std::path::{Path, PathBuf};
 
@@ -38,26 +38,26 @@ use file::Read;
 use gather::Answer;
 use plan::Plan;
 
-/// Find what an axle must be to meet targets: the cheapest design, the front between metrics, and the box of good designs
+/// Find designs that meet targets: the cheapest one, the Pareto front, and the box of good designs
 ///
-/// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names), and parameters that
-/// may move, with ranges, steps, costs and couplings; docs/targets.md describes it.
-/// The exit status is 1 where no design was found that meets all targets.
+/// The file names a model or campaign, targets for its metrics (`qcar sensitivity MODEL --list` prints their names), and the parameters
+/// that may change, with ranges, steps, costs and couplings; docs/targets.md describes it.
+/// The exit status is 1 if no design is found that meets all targets.
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar target models/targets/axle_a.toml --out results")]
 pub struct Arguments {
-    /// File with targets and parameters
+    /// A file with targets and parameters
     targets: PathBuf,
-    /// A value that differs from those of the files; may be repeated
+    /// A single value, which takes precedence over those of the files; may be repeated
     #[arg(long, value_name = "NAME=VALUE")]
     set: Vec<Setting>,
-    /// Of the random numbers
+    /// Seed of the random numbers
     #[arg(long, value_name = "SEED", default_value_t = 1)]
     seed: u64,
     /// Write report.html, target.json, results.xlsx and parameters.toml with the design into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
-    /// How to print
+    /// Output format
     #[arg(long, value_enum, default_value_t = Format::Text)]
     format: Format,
 }
@@ -80,7 +80,10 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     let wanted = [read.file.front.is_some(), read.file.space.is_some()];
     let chance = plan.doubts.chance(&subject)?;
     let answer = gather::gather((&subject, &ground), &plan, chance, arguments.seed, wanted).ok_or_else(|| {
-        let (found, expected) = ("no design in range that can be driven", "ranges with designs that can");
+        let (found, expected) = (
+            "no design in range that can be simulated",
+            "ranges that contain such designs",
+        );
         read.problem(
             &read.file.subject,
             "parameter.range",

@@ -6,7 +6,7 @@ use qcar_runtime::road::{Class, Random, Road};
 use qcar_runtime::simulate::{Method, Ride, Settings, SimulateError, ride};
 use qcar_runtime::solver::Reason;
 
-use crate::cleat;
+use super::cleat;
 
 fn ridden(kmh: f64, height: f64, tolerance: f64) -> Ride {
     let (parameters, road) = (cleat::parameters(), cleat::cleat(height));

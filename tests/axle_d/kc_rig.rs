@@ -6,7 +6,7 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::OnRig;
 
-use crate::cleat;
+use super::cleat;
 
 fn place(name: &str) -> usize {
     let mut parameters = AxleD.about().parameters.iter();

@@ -7,7 +7,7 @@ use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::{Doubt, elasticities};
 
-use crate::cleat;
+use super::cleat;
 
 fn ground(values: &Values) -> Ground<'static> {
     let parameters = cleat::parameters();

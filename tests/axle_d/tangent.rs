@@ -13,7 +13,7 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::direction;
 use qcar_runtime::simulate::{Car, Drive, Method, Settings, Tangent, ride, tangent, variation};
 
-use crate::cleat;
+use super::cleat;
 
 /// Points a sample of derivatives, in the last fits of a search and in those before.
 const FINE: usize = 2;

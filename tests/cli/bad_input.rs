@@ -88,12 +88,7 @@ fn flags_are_read_with_care() {
 /// Before the work, whose result nobody would see.
 #[test]
 fn a_folder_that_cannot_be_written_to_is_refused() {
-    let said: &[&str] = &[
-        "--out <DIR>",
-        "given.toml",
-        "a place to write to",
-        "choose another folder",
-    ];
+    let said: &[&str] = &["--out <DIR>", "given.toml", "a writable place", "choose another folder"];
     for verb in ["fit", "simulate", "discover", "study"] {
         refused("", &[verb, "models/campaigns/axle_a_rig", "--out", "FILE"], said);
     }
@@ -239,7 +234,7 @@ fn records_with_holes_are_refused() {
     });
     fit_refused(
         gap.path(),
-        &["sweep.csv, line 501, column `time`", "a gap cannot be guessed"],
+        &["sweep.csv, line 501, column `time`", "a gap cannot be filled"],
     );
     let renamed = damaged(|line, cells| {
         let text = cells.join(",");

@@ -68,7 +68,7 @@ fn an_oscillator_moves_as_its_formula_says() {
     }
     let said = found["notices"].to_string();
     assert!(
-        said.contains("no channel in common") && said.contains("no tyre that can roll"),
+        said.contains("no common channel") && said.contains("no tyre that can roll"),
         "{said}"
     );
 }
@@ -77,7 +77,7 @@ fn an_oscillator_moves_as_its_formula_says() {
 fn what_no_rig_run_has_seen_is_told_of_both_campaigns() {
     let said = compared(&[AXLE, STUDY])["notices"].to_string();
     for (campaign, names) in [(AXLE, "c_wheel_x, k_pwt_x, c_pwt_x"), (STUDY, "c_wheel_x")] {
-        let told = format!("{campaign}: no rig run sees {names}: start values.");
+        let told = format!("{campaign}: no rig run determines {names}, which have start values.");
         assert!(said.contains(&told), "{told} is not in {said}");
     }
 }
@@ -317,7 +317,7 @@ fn what_cannot_be_compared_is_refused_with_a_remedy() {
         }
     };
     refused(&["axle_a", AXLE], &["is a model", "is a campaign", "two of one kind"]);
-    refused(&["axle_q", "axle_a"], &["`axle_q`, which is no file", "`A`"]);
+    refused(&["axle_q", "axle_a"], &["`axle_q`, which does not exist", "`A`"]);
     refused(&["axle_a", &empty], &["without campaign.toml or fit.json", "`B`"]);
     refused(&["axle_a", note], &["notes.txt", "ending"]);
     refused(&[&a, &a], &["no model", "--model NAME"]);

@@ -205,7 +205,7 @@ fn what_is_wrong_with_a_table_is_told_with_its_place() {
     says(
         sure,
         "velocity,force\n-0.1,200\n",
-        &["damper.csv, line 2", "`force`", "pushes along", "sign = -1"],
+        &["damper.csv, line 2", "`force`", "supports the motion", "sign = -1"],
     );
     says(sure, "speed,force\n0.1,200\n", &["damper.csv, line 1", "`velocity`"]);
     says(
@@ -476,7 +476,10 @@ fn a_linear_model_is_fitted_to_all_runs_on_request() {
     let run = "\n[[run]]\nkind = \"dynamometer\"\nfile = \"damper.csv\"\nrole = \"fit\"\nlink = \"damper\"\namplitude = 0.05\nuncertainty = 10\n";
     fs::write(&file, fs::read_to_string(&file).unwrap() + run).unwrap();
     let path = own.to_str().unwrap();
-    assert!(succeeds(&["fit", path, "--starts", "1"]).contains("damper.csv: the table of a dynamometer has no part"));
+    assert!(
+        succeeds(&["fit", path, "--starts", "1"])
+            .contains("damper.csv: a fit to transmissibilities does not use the table of a dynamometer")
+    );
     let all = succeeds(&["fit", path, "--starts", "1", "--all-runs", "--format", "json"]);
     let fitted: Value = serde_json::from_str(&all).unwrap();
     assert!(fitted["gap"]["fit"].as_f64().unwrap() < 1.2, "{fitted}");

@@ -116,7 +116,7 @@ fn groups_that_were_written_are_kept() {
         assert_eq!(ran.status, 0, "{}", ran.stderr);
         assert!(fs::read(&done).unwrap() == whole, "cut at {cut}");
         assert_eq!(
-            ran.stdout.contains("16384 of them were there already"),
+            ran.stdout.contains("16384 of them existed already"),
             kept,
             "{}",
             ran.stdout
@@ -145,7 +145,11 @@ fn a_run_that_was_killed_goes_on() {
     child.wait().unwrap();
     assert!(written(folder.path(), &line, "rides.csv") == whole);
     let again = run_line(folder.path(), &format!("{line} --out rides.csv"));
-    assert!(again.stdout.contains("they were there already"), "{}", again.stdout);
+    assert!(
+        again.stdout.contains("the file was already complete"),
+        "{}",
+        again.stdout
+    );
 }
 
 fn refused(ran: &Ran, said: &[&str]) {
@@ -176,18 +180,18 @@ fn results_of_something_else_are_refused() {
     );
     refused(&run(&format!("{line} --set m_corner=410")), &["`parameters`"]);
     refused(&run(&format!("{line} --units engineering")), &["`columns`"]);
-    // A row that this command would not have written, at the end of those that it had.
+    // A row that this command would not write, at the end of those that it had.
     let [done, part] = ["sets.csv", "sets.csv.part"].map(|name| folder.path().join(name));
     fs::remove_file(&done).unwrap();
     let text = String::from_utf8(whole).unwrap();
     let mut rows: Vec<String> = text.lines().take(4).map(String::from).collect();
     rows[3] = rows[3].replacen("3,", "2,", 1).replace(",0", ",7");
     fs::write(&part, rows.join("\n") + "\n").unwrap();
-    refused(&run(&line), &["sets.csv.part", "would not have written"]);
+    refused(&run(&line), &["sets.csv.part", "would not write"]);
     fs::remove_file(&part).unwrap();
     fs::write(&done, "mine\n").unwrap();
     fs::remove_file(folder.path().join("sets.csv.design.json")).unwrap();
-    refused(&run(&line), &["sets.csv", "nothing tells what it is"]);
+    refused(&run(&line), &["sets.csv", "without its .design.json"]);
     assert_eq!(fs::read_to_string(&done).unwrap(), "mine\n");
 }
 
@@ -234,7 +238,7 @@ fn wishes_are_read_with_care() {
     let tyre = format!("{AXLE} --vary static_tire_load=-5%..5% --count 2 --rides 20mm@30km/h --out sets.csv");
     refused(
         &run_line(folder.path(), &tyre),
-        &["--vary static_tire_load", "a fact of the vehicle with --rides"],
+        &["--vary static_tire_load", "vehicle data with --rides"],
     );
     let other = run_line(folder.path(), &format!("{CAR} --count 2 --out sets.txt"));
     refused(&other, &["sets.txt", ".parquet"]);
@@ -249,7 +253,7 @@ fn sets_that_are_impossible_have_rows_without_metrics() {
     let line = "explore quarter_car --set m_corner=190 --vary m_wheel=10..190 --design grid --count 3 --metrics modes --out sets.csv";
     let ran = qcar_in(folder.path(), &line.split(' ').collect::<Vec<_>>());
     assert_eq!(ran.status, 0, "{}", ran.stderr);
-    for said in ["1 rows", "set 2", "`mass body"] {
+    for said in ["1 of the rows", "set 2", "`mass body"] {
         assert!(ran.stdout.contains(said), "{}", ran.stdout);
     }
     let table = columns(&fs::read(folder.path().join("sets.csv")).unwrap());
@@ -268,7 +272,7 @@ fn a_design_without_any_metrics_is_a_finding() {
     );
     assert_eq!(ran.status, 1, "{}{}", ran.stdout, ran.stderr);
     assert!(
-        ran.stdout.contains("2 rows") && ran.stdout.contains("sample rate"),
+        ran.stdout.contains("2 of the rows") && ran.stdout.contains("sample rate"),
         "{}",
         ran.stdout
     );

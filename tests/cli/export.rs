@@ -116,7 +116,7 @@ fn files_that_are_there_stay_as_they_are() {
         let out = folder.path().join(format!("own.{end}"));
         fs::write(&out, "mine").unwrap();
         let ran = export("quarter_car", kind, &out, &[]);
-        refused(&ran, &["`--out`", "there already", "take another name"]);
+        refused(&ran, &["`--out`", "exists already", "choose another name"]);
         assert_eq!(fs::read_to_string(&out).unwrap(), "mine", "{kind}");
     }
     // The header alone is there: the source is not written either.
@@ -124,7 +124,7 @@ fn files_that_are_there_stay_as_they_are() {
     fs::write(&header, "mine").unwrap();
     refused(
         &export("quarter_car", "c", &folder.path().join("half.c"), &[]),
-        &["half.h", "there already"],
+        &["half.h", "exists already"],
     );
     assert!(!folder.path().join("half.c").exists());
 }
@@ -137,7 +137,7 @@ fn what_cannot_be_written_is_said_before_anything_is() {
     refused(&wrong_end, &["own.zip", "ends in .fmu", "write --out", "own.fmu"]);
     fs::write(path("file"), "").unwrap();
     let in_a_file = export("quarter_car", "csv", &path("file/own.csv"), &[]);
-    refused(&in_a_file, &["own.csv", "a place to write to"]);
+    refused(&in_a_file, &["own.csv", "a writable place"]);
     let keyword = export("quarter_car", "matlab", &path("end.m"), &[]);
     refused(&keyword, &["`end.m`", "no keyword", "quarter_car.m"]);
     refused(

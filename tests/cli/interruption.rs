@@ -77,7 +77,7 @@ fn a_search_that_is_stopped_leaves_what_it_has_come_to() {
     let left = folder.path().join("results/unfinished");
     for name in ["parameters.toml", "gap.svg"] {
         let text = fs::read_to_string(left.join(name)).unwrap();
-        assert!(text.contains("unfinished, the search was stopped"), "{text}");
+        assert!(text.contains("unfinished: the search was stopped"), "{text}");
         assert!(told.contains(&format!("results/unfinished/{name}")), "{told}");
     }
     assert_eq!(

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde_json::Value;
 
 use crate::common::succeeds;
+use crate::studied::Studied;
 
 const AXLE: &str = "models/campaigns/axle_a_rig";
 
@@ -35,6 +36,10 @@ fn result(line: &str) -> Value {
     serde_json::from_str(&succeeds(&words)).unwrap()
 }
 
+fn written(of: &Studied, file: &str) -> Value {
+    serde_json::from_str(&fs::read_to_string(of.folder.join(file)).unwrap()).unwrap()
+}
+
 #[test]
 fn verbs_print_the_keys_that_are_documented() {
     agree("inspect", &result(&format!("inspect {AXLE}/rig/sweep_025.csv.gz")));
@@ -53,15 +58,14 @@ fn verbs_print_the_keys_that_are_documented() {
         "sensitivity",
         &result(&format!("sensitivity axle_a --campaign {AXLE} --metrics body_x.peak")),
     );
-    agree("target", &result("target models/targets/axle_a.toml"));
+    agree("target", &written(&Studied::targets(), "target.json"));
     let response = result("frf quarter_car --frequencies 1:2:2");
     agree("frf", &response["channels"]["pad_to_body"]);
 }
 
 #[test]
 fn a_study_holds_the_results_of_the_verbs() {
-    let folder = tempfile::tempdir().unwrap();
-    let study = result(&format!("study {AXLE} --out {}", folder.path().display()));
+    let study = written(&Studied::new("axle_c_study"), "study.json");
     agree("study", &study);
     agree("discover", &study["discover"]);
     agree("fit", &study["fit"]);

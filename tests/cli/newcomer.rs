@@ -40,7 +40,7 @@ fn a_new_axle_never_stands_over_another() {
     for name in ["first", "second"] {
         let ran = in_folder(folder.path(), &format!("new axle {name}"));
         assert_eq!(ran.status, 2);
-        assert!(ran.stderr.contains("there already"), "{}", ran.stderr);
+        assert!(ran.stderr.contains("exists already"), "{}", ran.stderr);
     }
     assert_eq!(fs::read_to_string(folder.path().join("first.axle")).unwrap(), "mine");
     assert_eq!(
@@ -94,7 +94,7 @@ fn a_new_campaign_says_what_to_put_where_and_fits_once_it_is_there() {
     assert!(fitted.contains("city_car fitted to rig: converged"), "{fitted}");
     let again = in_folder(folder.path(), "new campaign rig --dir data");
     assert!(
-        again.status == 2 && again.stderr.contains("there already"),
+        again.status == 2 && again.stderr.contains("exists already"),
         "{}",
         again.stderr
     );

@@ -102,7 +102,7 @@ fn what_cannot_be_planned_or_profiled_is_refused() {
     for (line, said) in [
         ("plan AXLE --parameters k_tyre", "did you mean `k_tire`?"),
         ("fit AXLE --profile k_tyre", "did you mean `k_tire`?"),
-        ("fit AXLE --profile c_wheel_x", "which no fitted channel depends on"),
+        ("fit AXLE --profile c_wheel_x", "on which no fitted channel depends"),
         ("fit AXLE --model bent.axle --profile k_tyre", "did you mean `k_tire`?"),
     ] {
         let ran = run_line(folder.path(), &line.replace("AXLE", AXLE));

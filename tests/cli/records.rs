@@ -191,7 +191,7 @@ fn an_offset_is_told_and_counted_once() {
     let (offset, error) = (own["offset"].as_f64().unwrap(), own["stderr"].as_f64().unwrap());
     assert!((offset - 2e-4).abs() < 3.0 * error && error < 4e-5, "{own}");
     let said = succeeds(&["discover", path, "--out", out.to_str().unwrap()]);
-    assert!(said.contains("what the sensors of records read at zero"), "{said}");
+    assert!(said.contains("zero offsets of the sensors of records"), "{said}");
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     assert!(file.contains("# offset of body_z displacement: "), "{file}");
     let parameters = parameters + &parameter("f_offset", 0.0, "N", "range = [-10.0, 10.0]\n");

@@ -203,7 +203,7 @@ fn what_is_odd_about_the_campaign_is_said_with_the_result() {
         let said = succeeds(&[verb, folder.path().to_str().unwrap()]);
         let said = said.split_whitespace().collect::<Vec<_>>().join(" ");
         assert!(
-            said.contains("note: ") && said.contains("`spare` is recorded in no run"),
+            said.contains("note: ") && said.contains("no run records the channel `spare`"),
             "{verb}: {said}"
         );
     }

@@ -121,6 +121,24 @@ fn ended(ran: &Ran, status: i32, said: &[&str]) {
         .for_each(|fragment| assert!(all.contains(fragment), "expected `{fragment}` in\n{all}"));
 }
 
+/// The fitted sweep calls for no effect, and the held-out one is of an axle with another spring.
+#[test]
+fn residuals_of_held_out_runs_are_not_called_noise() {
+    let folder = sound();
+    let header = "time,pad_z,rear_pad_z,body_z,body_right_z,hub_z,hub_right_z";
+    fs::write(folder.path().join("other.csv"), sweep(0.1, header, [1.3 * SPRING, 0.0])).unwrap();
+    let manifest = folder.path().join("campaign.toml");
+    let text = fs::read_to_string(&manifest).unwrap();
+    let fitted = text.split("[[run]]").nth(1).unwrap();
+    let held_out = fitted
+        .replace("fast.csv", "other.csv")
+        .replace("\"fit\"", "\"held_out\"");
+    fs::write(&manifest, format!("{text}\n[[run]]{held_out}")).unwrap();
+    let ran = run_line(folder.path(), "discover .");
+    let said = "no effect found, but the held-out runs have residuals of";
+    ended(&ran, 0, &[said, "standard deviations"]);
+}
+
 #[test]
 fn a_fit_that_ends_at_all_bounds_is_a_finding() {
     let folder = sound();
@@ -188,7 +206,7 @@ fn two_roads_that_move_in_one_sweep_are_refused() {
         &[
             "fast.csv",
             "roads that move at once: `pad_f`, `pad_r`",
-            "drive one at a time",
+            "move one at a time",
         ],
     );
     ended(
@@ -207,7 +225,14 @@ fn a_curve_of_a_model_in_which_nothing_yields_is_evidence() {
     let answer: Value = serde_json::from_str(&found.stdout).unwrap();
     assert!(answer["verdict"].is_string(), "{answer}");
     assert!(!answer["notices"].to_string().contains("left out"), "{answer}");
-    ended(&run_line(folder.path(), "study . --out study"), 0, &[]);
+    let study = run_line(folder.path(), "study . --out study --format json");
+    ended(&study, 0, &[]);
+    let [printed, written] = [
+        study.stdout,
+        fs::read_to_string(folder.path().join("study/study.json")).unwrap(),
+    ]
+    .map(|text| serde_json::from_str::<Value>(&text).unwrap());
+    assert_eq!(printed, written);
     let gradients = fs::read_to_string(folder.path().join("study/kc/gradients.json")).unwrap();
     let gradients: Value = serde_json::from_str(&gradients).unwrap();
     assert_eq!(gradients[0]["parameter"], "k", "{gradients}");

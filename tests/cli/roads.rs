@@ -329,7 +329,10 @@ fn roads_carry_the_notes_of_their_campaign() {
     assert!(!guessed.is_empty() && result["notices"].is_array());
     let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
     assert!(
-        text.contains(&format!("at the campaign's start values: {}", guessed.join(", "))),
+        text.contains(&format!(
+            "note: {} still have the start values of the campaign",
+            guessed.join(", ")
+        )),
         "{text}"
     );
 }

@@ -4,8 +4,7 @@ use std::path::Path;
 use std::process::{Command, Output};
 
 use crate::common::repository;
-
-const COLUMNS: usize = 100;
+use crate::studied::{COLUMNS, Studied};
 
 /// Runs `qcar` with variables of the environment.
 fn run(folder: &Path, variables: &[(&str, &str)], arguments: &[&str]) -> Output {
@@ -41,12 +40,10 @@ const PRINTS: &[&str] = &[
     "simulate models/campaigns/silverbox",
     "sensitivity models/campaigns/axle_a_rig --sobol 200",
     "sensitivity models/campaigns/axle_a_rig --list",
-    "target models/targets/axle_a.toml",
     "compare models/campaigns/axle_a_rig/campaign.toml models/campaigns/axle_a_rig/truth.toml --campaign models/campaigns/axle_a_rig",
     "score models/campaigns/axle_a_rig",
     "import models/recordings/sweep_low.mf4 models/recordings/sweep_high.mf4 --out out/imported",
     "discover models/campaigns/axle_c_study",
-    "study models/campaigns/axle_c_study --out out/study",
     "new axle my_axle",
     "new campaign my_rig",
     "new template vehicle.xlsx",
@@ -61,15 +58,22 @@ fn no_line_is_wider_than_the_terminal() {
     for line in PRINTS {
         let arguments: Vec<&str> = line.split_whitespace().collect();
         let ran = run(folder.path(), &[("COLUMNS", "100")], &arguments);
-        let out = text(&ran.stdout);
         assert!(
             ran.status.code().is_some_and(|code| code < 2),
             "qcar {line}\n{}",
             text(&ran.stderr)
         );
-        let wide = out.lines().find(|line| line.chars().count() > COLUMNS);
-        assert!(wide.is_none(), "qcar {line}\n{}", wide.unwrap_or_default());
+        fits(line, &text(&ran.stdout));
     }
+    for (verb, made) in [("study", Studied::new("axle_c_study")), ("target", Studied::targets())] {
+        fits(verb, &made.said.replace(made.folder.to_str().unwrap(), "results"));
+    }
+}
+
+#[track_caller]
+fn fits(line: &str, printed: &str) {
+    let wide = printed.lines().find(|line| line.chars().count() > COLUMNS);
+    assert!(wide.is_none(), "qcar {line}\n{}", wide.unwrap_or_default());
 }
 
 #[test]

@@ -213,8 +213,8 @@ fn a_curve_without_slope_or_in_another_unit_is_refused() {
         head + &lines.map(scale).collect::<String>() + "\n"
     };
     let cases = [
-        (scaled(1.0, 0.0), "the force does not grow with the displacement"),
-        (scaled(1.0, -1.0), "the force does not grow with the displacement"),
+        (scaled(1.0, 0.0), "the force does not increase with the displacement"),
+        (scaled(1.0, -1.0), "the force does not increase with the displacement"),
         (scaled(1e3, 1.0), "found a stiffness of 31"),
         (scaled(1e-5, 1.0), "write displacements in m"),
     ];
@@ -270,7 +270,7 @@ fn what_outputs_cannot_tell_apart_stops_a_fit_alone() {
         checked.stdout
     );
     assert!(
-        checked.stdout.contains("no output can tell `m`, `k` and `c` apart"),
+        checked.stdout.contains("no output can distinguish `m`, `k` and `c`"),
         "{}",
         checked.stdout
     );
@@ -278,6 +278,6 @@ fn what_outputs_cannot_tell_apart_stops_a_fit_alone() {
     assert_eq!(simulated["runs"][0]["mass"], "body", "{simulated}");
     refused(
         &run_line(folder.path(), "fit ."),
-        &["`m`, `k`, `c`, of which its outputs see 2", "--fix"],
+        &["`m`, `k`, `c`, of which its outputs determine 2", "--fix"],
     );
 }

@@ -268,7 +268,7 @@ fn units_of_another_kind_are_refused() {
             "a unit of the kind of N/m",
         ),
         (["frf", "quarter_car", "--units", "N/mmm"], "found `N/mmm`"),
-        (["frf", "quarter_car", "--units", "m,mm"], "are of one kind"),
+        (["frf", "quarter_car", "--units", "m,mm"], "are of the same kind"),
     ] {
         let ran = qcar(&arguments);
         assert_eq!(ran.status, 2, "{arguments:?}");

@@ -46,7 +46,7 @@ fn a_nonlinear_model_has_a_word_in_place_of_sliders() {
     let nonlinear = linear.replace("const PROGRAM = ", "const PROGRAM = null;\nconst UNUSED = ");
     assert_ne!(linear, nonlinear);
     let words = |page: &str| strings(&look(&browser, page, 400, "light")["ofRig"]).join(" ");
-    assert!(words(&nonlinear).contains("There are no sliders here: this model is not linear"));
+    assert!(words(&nonlinear).contains("There are no sliders here: this model is nonlinear"));
     assert!(!words(&linear).contains("no sliders"));
 }
 
@@ -75,7 +75,7 @@ fn columns(text: &Value) -> Vec<Vec<f64>> {
         .collect()
 }
 
-/// The magnitude (dB) of a channel of the extended model with the values that were found, one of which may be in the middle of
+/// The magnitude (dB) of a channel of the extended model with the values found, one of which may be in the middle of
 /// its range by its logarithm.
 fn magnitude(channel: &str, frequency: &[f64], moved: bool) -> Vec<f64> {
     let folder = ONE_MISSING.folder.join("discovery");

@@ -13,12 +13,9 @@ fn beside_nothing_missing_stands_the_worst_sensor() {
     let found = look(&browser, &page(&NOTHING_MISSING), 1280, "light");
     let said = paragraphs(&found);
     let tables = found["tables"].to_string();
-    assert!(
-        tables.contains("Usual size over the least that would be certain"),
-        "{tables}"
-    );
-    assert!(said[0].starts_with("Nothing is missing"), "{said:?}");
-    assert!(said[1].contains("Most is left of body x in cleat runs: "), "{said:?}");
+    assert!(tables.contains("Usual size over the smallest certain size"), "{tables}");
+    assert!(said[0].starts_with("No effect found"), "{said:?}");
+    assert!(said[1].contains("Largest residual: body x in cleat runs, "), "{said:?}");
     assert!(
         said[1].contains(" % of the signal, 0.") || said[1].contains(" % of the signal, 1."),
         "{said:?}"
@@ -37,9 +34,9 @@ fn where_much_is_left_it_is_partly_explained() {
             data["discover"]["by_channel"]["wheel_z"]["after"] = json!(7.0);
         }),
     );
-    assert_eq!(partly[0], "Partly explained by suspended mass at body. Much is left.");
+    assert_eq!(partly[0], "Partly explained by suspended mass at body. Large residuals remain.");
     assert!(
-        partly[1].contains("Most is left of wheel z in sweeps: 18 % of the signal, 7.00"),
+        partly[1].contains("Largest residual: wheel z in sweeps, 18 % of the signal, 7.00"),
         "{partly:?}"
     );
 }
@@ -82,7 +79,7 @@ fn a_learned_law_is_told_without_a_cause() {
             });
         }),
     );
-    let law = "Learned from the data, without a cause: damping law at damper, which would explain 93.0 % of it.";
+    let law = "Learned from the data, without a physical cause: damping law at damper, which would explain 93.0 % of it.";
     assert!(said[1].contains(law), "{said:?}");
 }
 

@@ -95,7 +95,7 @@ fn sensors_that_were_swapped_are_said() {
             "`wheel_left_z`",
             "resembles `body_right_z` more than `wheel_right_z`",
             "`body_left_z`",
-            "look swapped",
+            "seem to be swapped",
         ],
     );
 }

@@ -86,7 +86,7 @@ fn sweeps_of_one_recording_become_runs() {
         "{said}"
     );
     let words = said.split_whitespace().collect::<Vec<_>>().join(" ");
-    assert!(words.contains("s: the pad moves and does not sweep"), "{said}");
+    assert!(words.contains("s: the pad moves but does not sweep"), "{said}");
     let duration = all[0].len() as f64 / rate;
     for (at, (run, level)) in campaign.runs.iter().zip([0.025, 0.05, 0.1]).enumerate() {
         let Test::Sweep(sweep) = &run.test else {
@@ -112,7 +112,7 @@ fn nothing_is_written_over_or_left_half_written() {
     files(folder.path());
     fs::create_dir(folder.path().join("rig")).unwrap();
     let (status, said) = qcar(folder.path(), "import low.mf4 --out rig");
-    assert!(status == 2 && said.contains("there already"), "{said}");
+    assert!(status == 2 && said.contains("exists already"), "{said}");
     assert_eq!(fs::read_dir(folder.path().join("rig")).unwrap().count(), 0);
     fs::write(folder.path().join("cut.mf4"), b"MDF     4.10    ").unwrap();
     let (status, said) = qcar(folder.path(), "import low.mf4 cut.mf4 --out other");

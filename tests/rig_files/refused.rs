@@ -118,7 +118,7 @@ fn mappings_are_read_with_care() {
     body(
         "source = \"FL_Body_Acc_Z\"\nzero = \"start\"\nzero_span = 5",
         "",
-        &["channel `FL_Body_Acc_Z`", "first 5 s", "shorten"],
+        &["channel `FL_Body_Acc_Z`", "first 5 s", "reduce"],
     );
     body("source = \"FL_Body_Acc_Z\"\nzero_span = 5", "", &["no `zero`"]);
     let run = "without = [\"body_left_y\"]";
@@ -133,7 +133,7 @@ fn mappings_are_read_with_care() {
 fn windows_without_samples_are_refused() {
     let body = |of_run: &str, said: &[&str]| body("source = \"FL_Body_Acc_Z\"", of_run, said);
     body("from = 1.0\nto = 1.0", &["`run[1].to`", "the window is empty"]);
-    body("from = 3.0", &["a window from 3 to 1.99 s", "goes from 0 to 1.99 s"]);
+    body("from = 3.0", &["a window from 3 to 1.99 s", "within the recording, from 0 to 1.99 s"]);
     body("to = 7.0", &["a window from 0 to 7 s"]);
     body("from = 1.001\nto = 1.008", &["a window from 1.001 to 1.008 s"]);
 }
@@ -164,7 +164,7 @@ fn samples_that_were_lost_inside_the_window_are_refused() {
         &[
             "channel `FL_Body_Acc_Z` at 0.5000 s",
             "3 samples without values",
-            "cannot be guessed",
+            "cannot be filled in",
         ],
     );
     let beside = folder(&sections("from = 0.6"), ("rig.txt", lost.as_bytes()));

@@ -228,14 +228,14 @@ fn messages_of_a_bus_are_interpolated_linearly() {
         campaign.notices
     );
     assert!(
-        campaign.notices[0].contains("samples come unevenly"),
+        campaign.notices[0].contains("samples are uneven"),
         "{:?}",
         campaign.notices
     );
     let cut = folder(&sections, ("can.txt", &messages(300..330)));
     let error = open(cut.path()).unwrap_err().to_string();
     assert!(
-        error.contains("Pad_FL") && error.contains("without values") && error.contains("beside it"),
+        error.contains("Pad_FL") && error.contains("without values") && error.contains("outside of it"),
         "{error}"
     );
 }

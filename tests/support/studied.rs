@@ -1,15 +1,18 @@
-//! Studies of shipped campaigns, which take a search each: made once for all test programs, also where these run at a time.
+//! Results of shipped campaigns and targets that take a search each: made once for all test programs, also where these run at a time.
 
 use std::fmt::Write;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// A study of a shipped campaign.
+/// How wide a terminal its text is for.
+pub const COLUMNS: usize = 100;
+
+/// A shipped campaign studied, or targets met.
 pub struct Studied {
     /// The folder of its results.
     pub folder: PathBuf,
-    /// What it has printed.
+    /// What it has printed for a terminal of [`COLUMNS`].
     pub said: String,
 }
 
@@ -17,7 +20,19 @@ impl Studied {
     /// By the name of the campaign's folder.
     pub fn new(campaign: &str) -> Self {
         let shipped = Path::new("models/campaigns").join(campaign);
-        let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("studies").join(campaign);
+        Self::once(campaign, ["study", shipped.to_str().unwrap()], &[&shipped])
+    }
+
+    /// `models/targets/axle_a.toml`, with its front and its solution space.
+    #[allow(dead_code, reason = "not every test program looks at targets")]
+    pub fn targets() -> Self {
+        let [file, campaign] = ["models/targets/axle_a.toml", "models/campaigns/axle_a_rig"];
+        Self::once("targets", ["target", file], &[Path::new(file), Path::new(campaign)])
+    }
+
+    /// What a verb makes of a subject, unless that is there already from the same program and the same files.
+    fn once(name: &str, arguments: [&str; 2], of: &[&Path]) -> Self {
+        let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("studies").join(name);
         fs::create_dir_all(&place).unwrap();
         let [folder, printed, subject] = ["results", "printed", "subject"].map(|name| place.join(name));
         let _others_wait = {
@@ -25,9 +40,9 @@ impl Studied {
             lock.lock().unwrap();
             lock
         };
-        let present = state(&shipped);
+        let present = state(of);
         if fs::read_to_string(&subject).ok().as_deref() != Some(&present) {
-            fs::write(&printed, study(&shipped, &folder)).unwrap();
+            fs::write(&printed, run(arguments, &folder)).unwrap();
             fs::write(&subject, present).unwrap();
         }
         let said = fs::read_to_string(&printed).unwrap();
@@ -35,10 +50,12 @@ impl Studied {
     }
 }
 
-fn study(campaign: &Path, out: &Path) -> String {
+fn run(arguments: [&str; 2], out: &Path) -> String {
     let _ = fs::remove_dir_all(out);
     let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
-        .args([Path::new("study"), campaign, Path::new("--out"), out])
+        .args(arguments)
+        .args([Path::new("--out"), out])
+        .env("COLUMNS", COLUMNS.to_string())
         .current_dir(env!("CARGO_MANIFEST_DIR"))
         .output()
         .unwrap();
@@ -46,13 +63,15 @@ fn study(campaign: &Path, out: &Path) -> String {
     String::from_utf8(output.stdout).unwrap()
 }
 
-/// What a study is of: the program and the campaign's files, as they were written last.
-fn state(campaign: &Path) -> String {
-    let mut files = vec![PathBuf::from(env!("CARGO_BIN_EXE_qcar"))];
-    let mut folders = vec![Path::new(env!("CARGO_MANIFEST_DIR")).join(campaign)];
-    while let Some(folder) = folders.pop() {
-        for path in fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            if path.is_dir() { &mut folders } else { &mut files }.push(path);
+/// What results are of: the program, and files or all files of folders, as they were written last.
+fn state(of: &[&Path]) -> String {
+    let mut files = Vec::new();
+    let mut paths = vec![PathBuf::from(env!("CARGO_BIN_EXE_qcar"))];
+    paths.extend(of.iter().map(|path| Path::new(env!("CARGO_MANIFEST_DIR")).join(path)));
+    while let Some(path) = paths.pop() {
+        match path.is_dir() {
+            true => paths.extend(fs::read_dir(path).unwrap().map(|entry| entry.unwrap().path())),
+            false => files.push(path),
         }
     }
     files.sort();

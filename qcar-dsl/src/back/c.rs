@@ -28,7 +28,7 @@ pub struct Sources {
     pub source: String,
 }
 
-/// A model as C whose parameters have `values` where nobody gives others; `stem` is what the files are called.
+/// A model as C with `values` as the defaults of its parameters; `stem` is what the files are called.
 pub fn sources(compiled: &Compiled, values: &[f64], stem: &str) -> Sources {
     let about = &compiled.about;
     let kinks = motion_kinks(compiled);

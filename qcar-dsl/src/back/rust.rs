@@ -4,7 +4,7 @@
 //! and its operation count; every statement is one operation, every result says what it is. It is written as text and
 //! not as tokens, since tokens carry no comments. It needs `qcar_runtime` and nothing else.
 
-// What the runtime is told about a model.
+// The description of a model for the runtime.
 mod about;
 // Identifiers.
 mod names;

@@ -12,7 +12,7 @@ use crate::back::notation::Notation;
 use crate::back::rust;
 use crate::program::schedule::Compiled;
 
-/// A stage that people can look at.
+/// A stage that can be shown.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Stage {
     /// The model as a file of its own, options taken. It reads back as the same model.

@@ -11,7 +11,7 @@ mod pieces;
 mod locals;
 // An operation as text.
 mod language;
-// Where a law bends.
+// Kinks of laws.
 mod kinks;
 
 use std::collections::BTreeMap;

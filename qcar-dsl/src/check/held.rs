@@ -1,4 +1,4 @@
-//! What is held: every mass by something, and against gravity by something that does not give way for ever.
+//! Support of masses: every mass is held by a link, and against gravity by a spring.
 
 use super::Scratch;
 use super::rank::{null_space, support};

@@ -1,4 +1,4 @@
-//! Inertias that cannot be: zero or negative.
+//! Inertias that are zero or negative.
 
 use super::Scratch;
 use super::extremes::extreme;

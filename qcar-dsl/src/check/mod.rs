@@ -1,4 +1,4 @@
-//! The structure: what is held, what is solvable, what takes energy. Each rule is a function; [`check`] lists them.
+//! Rules of the structure: support, solvability, passivity. Each rule is a function; [`check`] lists them.
 
 use std::ops::Deref;
 use std::sync::{Arc, OnceLock};
@@ -98,7 +98,7 @@ impl Checked {
         self.tree.get_or_init(read)
     }
 
-    /// Parameters that no measurement can tell from each other, or at all; empty as long as nobody has looked
+    /// Parameters that no measurement can tell from each other, or at all; empty before that check
     /// ([`crate::derive::visible`]).
     pub fn unseen(&self) -> &[Unseen] {
         self.unseen.as_deref().unwrap_or_default()

@@ -1,4 +1,4 @@
-//! What takes energy: a damper may only take, never give. An inerter may be negative as far as the masses around it
+//! Passivity: a damper may only dissipate energy, never supply it. An inerter may be negative as far as the masses around it
 //! outweigh it.
 
 use super::Scratch;

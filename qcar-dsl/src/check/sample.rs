@@ -1,5 +1,5 @@
 //! Generic values for the leaves of expressions. A property of the structure, such as a rank, shows at almost every
-//! point, so a few points that look random decide it, and the same ones every time keep the compiler deterministic.
+//! point, so a few pseudo-random points decide it, and the same ones every time keep the compiler deterministic.
 
 use std::cell::RefCell;
 

@@ -1,5 +1,5 @@
-//! What an output can see: a parameter that changes no response, or only together with others, cannot be estimated
-//! from any measurement. Decided by the rank of the derivatives of all responses at points that look random.
+//! Identifiability: a parameter that changes no response, or only together with others, cannot be estimated
+//! from any measurement. Decided by the rank of the derivatives of all responses at pseudo-random points.
 
 // Values with their derivatives.
 mod seen;

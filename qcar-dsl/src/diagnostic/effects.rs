@@ -6,18 +6,18 @@ use crate::source::Span;
 /// A file without an effect, or with more than one.
 pub fn not_one_effect(span: Span, found: usize) -> Diagnostic {
     let message = match found {
-        0 => "this file holds no effect".to_string(),
-        _ => format!("this file holds {found} effects"),
+        0 => "this file contains no effect".to_string(),
+        _ => format!("this file contains {found} effects"),
     };
     Diagnostic::error(Code::NotOneEffect, message)
-        .label(span, "one `effect` for each file")
+        .label(span, "one `effect` per file")
         .hint("write one `effect name at link l { … }` in a file of its own")
 }
 
 /// An effect that does not say what it is, where it comes from or how it shows.
 pub fn not_described(span: Span, effect: &str, what: &str, example: &str) -> Diagnostic {
     Diagnostic::error(Code::EffectNotDescribed, format!("effect `{effect}` has no {what}"))
-        .label(span, "nobody can judge it without")
+        .label(span, "an effect needs it")
         .hint(format!("write `{example}` into the effect"))
 }
 
@@ -67,27 +67,27 @@ pub fn no_such_place(span: Span, effect: &str, place: &str, model: &str, places:
 pub fn place_lacks(span: Span, said: &str, name: &str) -> Diagnostic {
     Diagnostic::error(
         Code::PlaceLacks,
-        format!("there is no `{said}`: `{name}` is missing, or has none"),
+        format!("there is no `{said}`: `{name}` does not exist, or has none"),
     )
     .label(span, "asked for here")
-    .hint("write what the place must have into the head of the effect: `with damper`, `given body`")
+    .hint("state in the head of the effect what the place must have: `with damper`, `given body`")
 }
 
 /// A name that the model has already.
 pub fn already_in_model(span: Span, name: &str, model: &str) -> Diagnostic {
-    Diagnostic::error(Code::AlreadyInModel, format!("{model} has `{name}` already"))
+    Diagnostic::error(Code::AlreadyInModel, format!("{model} already has `{name}`"))
         .label(span, "declared by the effect")
-        .hint("apply each effect to a model once; for a second part of the kind, write an effect with other names")
+        .hint("apply each effect to a model once; for a second part of this kind, write an effect with other names")
 }
 
 /// A state that the law of the link has already.
 pub fn already_in_link(span: Span, name: &str, link: &str) -> Diagnostic {
     Diagnostic::error(
         Code::AlreadyInLink,
-        format!("link `{link}` has the state `{name}` already"),
+        format!("link `{link}` already has the state `{name}`"),
     )
     .label(span, "declared by the effect")
-    .hint("apply each effect to a link once; for a second law of the kind, write an effect with other names")
+    .hint("apply each effect to a link once; for a second law of this kind, write an effect with other names")
 }
 
 /// A start or bound of another unit than its parameter.
@@ -116,7 +116,7 @@ pub fn start_outside_range(span: Span, name: &str, start: f64, low: f64, high: f
 pub fn second_strength(span: Span, first: Span, effect: &str, name: &str) -> Diagnostic {
     let message = format!("effect `{effect}` has `{name}` as a second strength");
     Diagnostic::error(Code::SecondStrength, message)
-        .label(span, "the effect would vanish with this too")
+        .label(span, "the effect would vanish with this parameter too")
         .label(first, "its strength")
         .hint("write `strength` before the one parameter with which all of the effect vanishes; leave it out elsewhere")
 }

@@ -22,7 +22,7 @@ pub mod structure;
 pub mod visibility;
 // Effects and their places.
 pub mod effects;
-// How a report looks.
+// The form of a report.
 mod render;
 
 pub use code::Code;

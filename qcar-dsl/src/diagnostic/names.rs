@@ -15,7 +15,7 @@ pub fn family_not_loaded(span: Span, path: &str, reason: &str) -> Diagnostic {
 
 /// `from` a file that holds no family.
 pub fn not_a_family(span: Span, path: &str) -> Diagnostic {
-    Diagnostic::error(Code::NotAFamily, format!("\"{path}\" holds no family"))
+    Diagnostic::error(Code::NotAFamily, format!("\"{path}\" contains no family"))
         .label(span, "an axle is chosen from a family")
         .hint("write `family name { … }` in that file, or name another file")
 }
@@ -53,7 +53,7 @@ pub fn option_not_chosen(span: Span, option: &str, values: &[String]) -> Diagnos
 pub fn requirement_failed(axle: Span, rule: Span, message: &str, condition: &str, state: &[String]) -> Diagnostic {
     Diagnostic::error(
         Code::RequirementFailed,
-        format!("these options do not go together: {message}"),
+        format!("these options cannot be combined: {message}"),
     )
     .label(axle, format!("chosen here: {}", state.join(", ")))
     .label(rule, "required here")
@@ -63,7 +63,7 @@ pub fn requirement_failed(axle: Span, rule: Span, message: &str, condition: &str
 /// An option that no condition asks about.
 pub fn unused_option(span: Span, option: &str) -> Diagnostic {
     Diagnostic::warning(Code::UnusedOption, format!("option `{option}` changes nothing"))
-        .label(span, "no `if` and no `require` asks about it")
+        .label(span, "no `if` and no `require` uses it")
         .hint(format!("write `if {option} == … {{ … }}`, or remove the option"))
 }
 
@@ -111,7 +111,7 @@ pub fn used_before_declared(span: Span, declared: Span, name: &str) -> Diagnosti
 pub fn element_is_closed(span: Span, name: &str, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ElementIsClosed,
-        format!("an element sees its arguments only, not `{name}`"),
+        format!("an element can use its arguments only, not `{name}`"),
     )
     .label(span, "declared outside of the element")
     .hint(format!(
@@ -128,7 +128,7 @@ pub fn law_variable_outside(span: Span, name: &str) -> Diagnostic {
     };
     Diagnostic::error(
         Code::LawVariableOutside,
-        format!("`{name}` is {meaning}, which only a law knows"),
+        format!("`{name}` is {meaning}, which only a law can use"),
     )
     .label(span, "outside of a law")
     .hint("write it inside `link … { force = …; }`, or use a parameter here")
@@ -138,10 +138,10 @@ pub fn law_variable_outside(span: Span, name: &str) -> Diagnostic {
 pub fn coordinate_in_expression(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(
         Code::CoordinateInExpression,
-        format!("`{name}` moves, and cannot stand in this expression"),
+        format!("`{name}` moves, so it cannot be used in this expression"),
     )
     .label(span, "a coordinate")
-    .hint("write it in the stretch of a link, `link name: a - b { … }`, whose law knows `s` and `v`")
+    .hint("write it in the stretch of a link, `link name: a - b { … }`, whose law uses `s` and `v`")
 }
 
 /// A name that several directions have, without its direction.
@@ -286,6 +286,6 @@ pub fn circular_default(span: Span, chain: &[String]) -> Diagnostic {
         Code::CircularDefault,
         format!("the defaults of {} refer to each other", all_of(chain)),
     )
-    .label(span, "no value to begin with")
+    .label(span, "no initial value")
     .hint("write a number as the default of one of them")
 }

@@ -54,7 +54,7 @@ pub fn stray_bracket(span: Span, found: char, open: Option<(Span, char)>) -> Dia
 /// Brackets or expressions nested beyond reason.
 pub fn nested_too_deep(span: Span) -> Diagnostic {
     Diagnostic::error(Code::NestedTooDeep, "this is nested too deep, or too long, to be read")
-        .label(span, "more than a reader can follow")
+        .label(span, "beyond the limit")
         .hint("write parts of it as `let part = …;`")
 }
 
@@ -75,7 +75,7 @@ pub fn number_too_large(span: Span) -> Diagnostic {
 /// A number of more digits than any needs.
 pub fn number_too_long(span: Span, digits: usize) -> Diagnostic {
     Diagnostic::error(Code::NumberTooLarge, format!("this number has {digits} digits"))
-        .label(span, "more than are read")
+        .label(span, "beyond the limit")
         .hint("write it with an exponent, such as 25.4e3")
 }
 
@@ -98,7 +98,7 @@ pub fn missing_operator(span: Span, left: &str, right: &str) -> Diagnostic {
 
 /// A comparison of options inside a law, or of values by `==`.
 pub fn equality_of_values(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::EqualityOfValues, "values that vary are never exactly equal")
+    Diagnostic::error(Code::EqualityOfValues, "varying values are never exactly equal")
         .label(span, "a law compares with `<`, `<=`, `>` or `>=`")
         .hint("write `if abs(a - b) < tolerance { … } else { … }`; options are compared by an `if` around statements")
 }
@@ -109,7 +109,7 @@ pub fn ambiguous_unit(span: Span, before: &str, after: &str) -> Diagnostic {
         Code::AmbiguousUnit,
         "a product after `/` in a unit can be read in two ways",
     )
-    .label(span, "above or below the fraction bar?")
+    .label(span, "numerator or denominator?")
     .hint(format!("write `{before}` or `{after}`"))
 }
 
@@ -145,7 +145,7 @@ pub fn effect_is_no_model(span: Span) -> Diagnostic {
 pub fn reserved_name(span: Span, name: &str, owner: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ReservedName,
-        format!("`{name}` cannot name anything: it is {owner}"),
+        format!("`{name}` cannot be used as a name: it is {owner}"),
     )
     .label(span, "taken")
     .hint(format!("write a name that says more, such as `{name}_tire`"))
@@ -161,10 +161,10 @@ pub fn name_not_lower_case(span: Span, name: &str) -> Diagnostic {
 /// A file without a model, or with more than one.
 pub fn not_one_model(span: Span, found: usize) -> Diagnostic {
     let message = match found {
-        0 => "this file holds no model".to_string(),
-        _ => format!("this file holds {found} models"),
+        0 => "this file contains no model".to_string(),
+        _ => format!("this file contains {found} models"),
     };
     Diagnostic::error(Code::NotOneModel, message)
-        .label(span, "one `axle` or `family` for each file")
+        .label(span, "one `axle` or `family` per file")
         .hint("write one `axle name { … }` in a file of its own; elements may stand beside it")
 }

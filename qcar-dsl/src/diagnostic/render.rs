@@ -1,4 +1,4 @@
-//! How a report looks: for people with the lines of the file, for build scripts one line each.
+//! The form of a report: for people with the lines of the file, for build scripts one line each.
 
 use std::fmt;
 
@@ -32,7 +32,7 @@ impl Report {
     fn further(&self) -> String {
         match self.diagnostics.len().saturating_sub(MOST) {
             0 => String::new(),
-            more => format!("and {more} more like these; correct the first ones and try again\n"),
+            more => format!("and {more} more of this kind; correct the first ones and try again\n"),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Mistakes of the structure: what is held, what can be solved, what takes energy.
+//! Mistakes of the structure: support, solvability, passivity.
 
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;
@@ -33,7 +33,7 @@ pub fn mass_not_held(masses: &Named) -> Diagnostic {
 /// Masses that gravity pulls down for ever.
 pub fn mass_sinks(masses: &Named) -> Diagnostic {
     let message = format!(
-        "gravity pulls {} down for ever: no spring carries the weight",
+        "gravity accelerates {} without limit: no spring carries the weight",
         names(masses)
     );
     let first = masses.first().map_or("body", |(_, name)| name);
@@ -77,7 +77,7 @@ pub fn node_nonlinear(span: Span, name: &str, link: (Span, &str), what: &str) ->
 /// Nodes that are connected with each other only.
 pub fn nodes_float(nodes: &Named, what: &str) -> Diagnostic {
     let message = format!(
-        "the balance of {} cannot be solved: the nodes are held at each other only",
+        "the balance of {} cannot be solved: the nodes are connected only to each other",
         names(nodes)
     );
     label_all(
@@ -123,45 +123,45 @@ pub fn negative_damping(span: Span, link: &str, what: &str, lowest: f64, at: &[S
         Code::NegativeDamping,
         format!("the {what} of link `{link}` can be {lowest}{place}"),
     )
-    .label(span, "would give energy instead of taking it")
+    .label(span, "would supply energy instead of dissipating it")
     .hint(
-        "write ranges within which it stays at zero or above, such as `in 0..5000`; or `active;` into the link, where it is meant to give energy",
+        "write ranges in which it is zero or positive, such as `in 0..5000`; or `active;` in the link, if it is meant to supply energy",
     )
 }
 
 /// A law that pushes along with the motion.
 pub fn law_gives_energy(span: Span, link: &str, s: f64, v: f64) -> Diagnostic {
-    let message = format!("the law of link `{link}` gives energy at s = {s:.3}, v = {v:.3}");
+    let message = format!("the law of link `{link}` supplies energy at s = {s:.3}, v = {v:.3}");
     Diagnostic::error(Code::LawGivesEnergy, message)
-        .label(span, "pushes along with the motion there")
-        .hint("write the force that resists, `force = c*v` with a positive `c`; or `active;` beside it, where it is meant to give energy")
+        .label(span, "supports the motion there")
+        .hint("write the force that resists, `force = c*v` with a positive `c`; or add `active;`, if it is meant to supply energy")
 }
 
 /// A law with inner states that pushes small vibrations on.
 pub fn law_feeds_vibrations(span: Span, link: &str, frequency: f64) -> Diagnostic {
-    let message = format!("the law of link `{link}` gives energy to vibrations about rest at {frequency} rad/s");
+    let message = format!("the law of link `{link}` supplies energy to vibrations about rest at {frequency} rad/s");
     Diagnostic::error(Code::LawGivesEnergy, message)
-        .label(span, "gives more in a cycle than it takes")
-        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or `active;` beside it, where it is meant to give energy")
+        .label(span, "supplies more energy in a cycle than it dissipates")
+        .hint("write a state that decays and a force that resists, `rate f = k*v - k/c*f; force = f;`; or add `active;`, if it is meant to supply energy")
 }
 
 /// Links whose laws use each other, and that together push along with the motion.
 pub fn links_give_energy(links: &Named, span: Span) -> Diagnostic {
-    let message = format!("the laws of {} together give energy", names(links));
+    let message = format!("the laws of {} together supply energy", names(links));
     Diagnostic::error(Code::LawGivesEnergy, message)
-        .label(span, "pushes along with the motion of the others")
-        .hint("write forces that resist the rates together; or `active;` beside one of them, where they are meant to give energy")
+        .label(span, "supports the motion of the others")
+        .hint("write forces that together resist the rates; or add `active;` to one of them, if they are meant to supply energy")
 }
 
 /// Two links whose elastic forces have no common potential.
 pub fn no_potential(links: &Named) -> Diagnostic {
     let message = format!(
-        "the laws of {} give energy along a closed path of their stretches",
+        "the laws of {} supply energy along a closed path of their stretches",
         names(links)
     );
     let diagnostic = Diagnostic::error(Code::LawGivesEnergy, message);
-    label_all(diagnostic, links, "pulls otherwise with the other's stretch than the other with this one's")
-        .hint("write both forces as slopes of one energy, ∂E/∂s of each stretch; or `active;` beside one of them, where it is meant to give energy")
+    label_all(diagnostic, links, "the coupling of these two forces is not symmetric")
+        .hint("write both forces as derivatives of one energy, ∂E/∂s of each stretch; or add `active;` to one of them, if it is meant to supply energy")
 }
 
 /// A law of several stretches at a massless node.
@@ -181,7 +181,7 @@ pub fn duplicate_link((span, first_span): (Span, Span), name: &str, first: &str,
     let message = format!("link `{name}` repeats the {kind} of link `{first}`");
     Diagnostic::error(Code::DuplicateLink, message)
         .label(span, "the same stretch")
-        .label(first_span, format!("has a {kind} already"))
+        .label(first_span, format!("already has a {kind}"))
         .hint(format!(
             "write one link with the sum, `{kind} a + b;`, or other ends for `{name}`"
         ))
@@ -197,7 +197,7 @@ pub fn motion_not_used(span: Span, name: &str) -> Diagnostic {
 /// A force input that has no point, and that no law uses.
 pub fn force_not_used(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(Code::ForceNotUsed, format!("force `{name}` acts on nothing"))
-        .label(span, "no point, and no law uses it")
+        .label(span, "not applied to a point, and used by no law")
         .hint(format!(
             "write `force {name} on body - wheel;`, or use it in a law, `force = -{name};`"
         ))
@@ -207,8 +207,8 @@ pub fn force_not_used(span: Span, name: &str) -> Diagnostic {
 pub fn force_rate_needed((span, node): (Span, &str), (force_span, force): (Span, &str), motion: &str) -> Diagnostic {
     let message = format!("the {motion} of the massless node `{node}` would need the rate of force `{force}`");
     Diagnostic::error(Code::ForceRateNeeded, message)
-        .label(force_span, "pushes it; its rate is no input")
-        .label(span, format!("its {motion} is shown, or a state of a law needs it"))
+        .label(force_span, "acts on it; its rate is no input")
+        .label(span, format!("its {motion} is an output, or a state of a law needs it"))
         .hint(format!(
             "write `mass {node} = …;` with the mass of the real part, or a damper beside its spring"
         ))

@@ -18,7 +18,7 @@ pub fn size(span: Span, found: usize, most: usize) -> Diagnostic {
     Diagnostic::error(Code::TableSize, format!("a table has {found} {points}"))
         .label(span, format!("{found} {points}"))
         .hint(format!(
-            "write two points at least and {most} at most; of a finer measurement, leave points out where the curve is smooth"
+            "write 2 to {most} points; of a finer measurement, leave points out where the curve is smooth"
         ))
 }
 

@@ -14,7 +14,7 @@ pub fn unknown_unit(span: Span, symbol: &str) -> Diagnostic {
 pub fn not_coherent(span: Span, unit: &str, coherent: &str, example: &str) -> Diagnostic {
     Diagnostic::error(
         Code::NotCoherent,
-        format!("values are kept in SI: `{unit}` cannot be a declared unit"),
+        format!("values are stored in SI: `{unit}` cannot be a declared unit"),
     )
     .label(span, format!("declare it in `{coherent}`"))
     .hint(format!("write `{example}`; a value may have any unit of its kind"))
@@ -36,7 +36,7 @@ pub fn units_differ(left: (Span, String), right: (Span, String), what: &str) -> 
     Diagnostic::error(Code::UnitsDiffer, message)
         .label(right.0, format!("this is in {}", right.1))
         .label(left.0, format!("this is in {}", left.1))
-        .hint("write both in one unit: a factor is missing, or one too many; a plain number takes a unit, `40 mm`")
+        .hint("write both in the same unit: a factor or a unit, as in `40 mm`, may be missing or superfluous")
 }
 
 /// A quantity in another unit than its place asks for.
@@ -50,7 +50,7 @@ pub fn wrong_unit(span: Span, what: &str, expected: &str, found: &str) -> Diagno
 pub fn argument_has_unit(span: Span, function: &str, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ArgumentHasUnit,
-        format!("`{function}` takes a plain number, not {unit}"),
+        format!("`{function}` takes a dimensionless number, not {unit}"),
     )
     .label(span, format!("this is in {unit}"))
     .hint(format!("write `{function}(x/x_ref)` with a reference value in {unit}"))
@@ -60,7 +60,7 @@ pub fn argument_has_unit(span: Span, function: &str, unit: &str) -> Diagnostic {
 pub fn exponent_not_constant(span: Span, unit: &str) -> Diagnostic {
     Diagnostic::error(
         Code::ExponentNotConstant,
-        format!("a quantity in {unit} can be raised to a plain number only"),
+        format!("a quantity in {unit} can only be raised to a constant number"),
     )
     .label(span, "its unit would depend on a value")
     .hint("write `(x/x_ref)^n` with a reference value, or a number as exponent")
@@ -135,7 +135,7 @@ pub fn empty_law(span: Span, name: &str) -> Diagnostic {
 /// A state whose rate is not given, or given twice.
 pub fn state_without_rate(span: Span, name: &str) -> Diagnostic {
     Diagnostic::error(Code::StateWithoutRate, format!("state `{name}` has no rate"))
-        .label(span, "how does it change?")
+        .label(span, "its rate is missing")
         .hint(format!("write `rate {name} = …;` beside it"))
 }
 

@@ -1,29 +1,32 @@
-//! Mistakes of what can be seen.
+//! Mistakes of outputs and identifiability.
 
 use super::{Code, Diagnostic, all_of};
 use crate::source::Span;
 
 /// A model with nothing to see.
 pub fn nothing_to_see(span: Span) -> Diagnostic {
-    Diagnostic::error(Code::NothingToSee, "there is nothing to see: no mass, and no output")
+    Diagnostic::error(Code::NothingToSee, "the model has no output: no mass, and no `output`")
         .label(span, "this model")
         .hint("write an output, such as `output damper.force;`")
 }
 
 /// A model that no input moves.
 pub fn nothing_moves(span: Span) -> Diagnostic {
-    Diagnostic::warning(Code::NothingMoves, "no road, motion or force moves this model")
+    Diagnostic::warning(Code::NothingMoves, "no road, motion or force excites this model")
         .label(span, "only free vibrations")
         .hint("write `road pad;`, `motion rod;` or `force f on body;`")
 }
 
 /// A parameter that no response depends on.
 pub fn parameter_not_seen(span: Span, name: &str) -> Diagnostic {
-    Diagnostic::warning(Code::ParameterNotSeen, format!("no output can see parameter `{name}`"))
-        .label(span, "changes no response")
-        .hint(format!(
-            "write `known param {name}: …` if it is given, or an output that depends on it"
-        ))
+    Diagnostic::warning(
+        Code::ParameterNotSeen,
+        format!("no output depends on parameter `{name}`"),
+    )
+    .label(span, "changes no response")
+    .hint(format!(
+        "write `known param {name}: …` if it is given, or an output that depends on it"
+    ))
 }
 
 /// Parameters of which outputs see fewer combinations than there are parameters.
@@ -35,11 +38,14 @@ pub fn only_together(parameters: &[(Span, &str)], seen: usize, combination: Opti
         (None, _) => format!("{seen} combinations of them"),
     };
     let given = all_of(&names[seen.min(names.len())..]);
-    let message = format!("no output can tell {} apart: it sees {what} only", all_of(&names));
+    let message = format!(
+        "no output can distinguish {}: it depends only on {what}",
+        all_of(&names)
+    );
     let diagnostic = Diagnostic::warning(Code::OnlyTogether, message).hint(format!(
-        "write `known param …` for {given} if given elsewhere, or one parameter for what is seen"
+        "write `known param …` for {given} if given elsewhere, or replace them by one parameter"
     ));
     parameters.iter().fold(diagnostic, |diagnostic, (span, _)| {
-        diagnostic.label(*span, "not to be told from the others")
+        diagnostic.label(*span, "not distinguishable from the others")
     })
 }

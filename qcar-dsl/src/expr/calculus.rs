@@ -1,4 +1,4 @@
-//! What an expression is worth, and how it changes: value and derivative of every operation.
+//! Values and derivatives of every operation.
 
 use super::{Expr, Function, Graph, Leaves, Node, Symbol};
 use crate::hash::HashMap;

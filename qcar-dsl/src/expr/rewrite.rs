@@ -1,4 +1,4 @@
-//! Expressions walked: what they depend on, what they become with other leaves, what they are worth.
+//! Traversals of expressions: their dependencies, substitution of their leaves, and their values.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,4 +1,4 @@
-//! What expressions are worth in a model: each is asked as a derived quantity of it.
+//! Values of expressions in a model: each is evaluated as one of its derived quantities.
 
 use super::base::Base;
 use crate::diagnostic::{Diagnostic, effects};
@@ -31,7 +31,7 @@ pub fn with_questions(base: &Base, questions: Vec<Statement>) -> (Model, Vec<Dia
     (model, found)
 }
 
-/// The number that an expression is; not a number where nobody knows.
+/// The value of an expression; NaN if unknown.
 pub fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
     let leaf = |symbol| match symbol {
         Symbol::Parameter(index) => known(model, index, values),
@@ -40,7 +40,7 @@ pub fn value(model: &Model, e: crate::expr::Expr, values: Values) -> f64 {
     model.graph.evaluate(e, &leaf)
 }
 
-/// The numbers that expressions are, in their order; not a number where nobody knows, or the model has mistakes.
+/// The values of expressions, in their order; NaN if unknown or if the model has mistakes.
 pub fn numbers(base: &Base, asked: &[Expression], values: Values) -> Vec<f64> {
     let name = |place: usize| format!("question {place}");
     let questions = asked.iter().enumerate();

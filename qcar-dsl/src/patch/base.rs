@@ -1,4 +1,4 @@
-//! A model as a tree that can be asked and changed: options taken, and what is zero left out.
+//! A model as a tree that can be queried and changed: options resolved, and zero parts left out.
 
 use super::rewrite;
 use crate::check::Checked;
@@ -157,7 +157,7 @@ impl Base {
         change_all(&mut self.axle.body, change);
     }
 
-    /// An option that takes a part away leaves `let m_part = 0 kg;` behind. Without it, the part can come back.
+    /// An option that removes a part leaves `let m_part = 0 kg;`. Without it, the part can come back.
     fn leave_out_zeros(&mut self) {
         let is_zero = |statement: &Statement| matches!(statement, Statement::Let(let_) if is_zero(&let_.value));
         let (zeros, body): (Vec<_>, Vec<_>) = std::mem::take(&mut self.axle.body).into_iter().partition(is_zero);

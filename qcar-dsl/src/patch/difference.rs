@@ -1,4 +1,4 @@
-//! In what two models differ: their parameters, masses, links and equations, line by line.
+//! The differences between two models: their parameters, masses, links and equations, line by line.
 
 use std::fmt::{self, Display, Formatter};
 

@@ -1,4 +1,4 @@
-//! Trees with other names in them.
+//! Trees with names replaced.
 
 use crate::front::syntax::{
     Comparison, Coordinate, CoordinateKind, Dotted, Expression, ExpressionKind, LawStatement, Let, List, Logic, Table,

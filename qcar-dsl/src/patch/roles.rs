@@ -1,4 +1,4 @@
-//! What the parts of a model are to each other, read from its structure, whatever they are called.
+//! The roles of the parts of a model, read from its structure and not from names.
 //!
 //! The tyre joins a mass to a road; that direction is the axle's own. A model without a road has one axle in every
 //! direction, and no wheel. Weights are the model's own expressions at the values that somebody knows.
@@ -198,7 +198,7 @@ impl Masses {
         Some(own.2)
     }
 
-    /// The heaviest mass of a direction but one; of equal ones, and of those that nobody knows, the first.
+    /// The heaviest mass of a direction but one; of equal or unknown ones, the first.
     fn heaviest(&self, direction: &str, but: Option<&str>) -> Option<String> {
         let others = self
             .0

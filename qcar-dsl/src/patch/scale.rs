@@ -1,4 +1,4 @@
-//! How far, how fast and how hard a place is moved in a campaign: what the range of an effect may be measured by.
+//! Amplitudes of travel, speed and force at a place in a campaign: scales for the ranges of an effect.
 
 use crate::front::syntax::{Name, Number, Parameter, ParameterDefault, UnitFactor, UnitText};
 
@@ -34,7 +34,7 @@ impl Scale {
         Scale::ALL.into_iter().find(|scale| scale.word() == word)
     }
 
-    /// The name by which the value of a link or mass is looked up: `z.damper.force_scale`.
+    /// The name under which the value of a link or mass is stored: `z.damper.force_scale`.
     pub fn name(self, direction: &str, place: &str) -> String {
         format!("{direction}.{place}.{}", self.word())
     }

@@ -1,4 +1,4 @@
-//! Where a search for an effect's parameters begins, and what is plausible: expressions of the model's own parameters,
+//! Start values and plausible ranges of an effect's parameters: expressions of the model's own parameters,
 //! as numbers.
 
 use std::collections::BTreeMap;

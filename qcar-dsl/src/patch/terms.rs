@@ -1,4 +1,4 @@
-//! What stands in the law of a link.
+//! The terms in the law of a link.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! What a patch leaves without use goes: the coefficient of a term that was replaced, the point that nothing is at.
+//! Removes what a patch leaves unused: the coefficient of a term that was replaced, the point that nothing is at.
 
 use std::collections::BTreeSet;
 

@@ -1,4 +1,4 @@
-//! A model that shows what all its parts do.
+//! A model that outputs the motion of all its parts.
 
 use super::base::{Base, coordinates, links};
 use crate::check::Checked;

@@ -14,7 +14,7 @@ from . import _html, _native
 class Verdict:
     """What a search has found, as docs/json.md describes it."""
 
-    #: ``none``: the gap is noise; ``found``: `effects` explain it; ``class``: one of several; ``unknown``.
+    #: ``none``: noise explains the residuals; ``found``: `effects` explain it; ``class``: one of several; ``unknown``.
     verdict: str
     probability: float | None
     #: Each with ``name``, ``at``, ``form``, ``parameters``, ``stderr``, ``units`` and ``evidence``.
@@ -45,7 +45,7 @@ class Verdict:
         )
         effects = _html.table(["effect", "at", "parameter", "value", "standard error", "unit"], rows)
         gaps = ((name, own["before"], own["after"]) for name, own in self.gap.items())
-        gap = _html.table(["gap over noise", "before", "after"], gaps)
+        gap = _html.table(["residual in sd", "before", "after"], gaps)
         return _html.titled(self.verdict, _sentence(self.probability), effects if self.effects else "", gap)
 
 
@@ -54,7 +54,7 @@ def _sentence(probability: float | None) -> str:
 
 
 def discover(campaign: str | os.PathLike[str], *, model: str | None = None) -> Verdict:
-    """Find the effect that a campaign has and its model lacks.
+    """Find the effect that a campaign shows and its model lacks.
 
     Fits the model to the runs with the role ``fit``, tries the effects of the catalogue wherever they apply, and judges them on the
     runs that are ``held_out``.

@@ -17,7 +17,7 @@ from ._ride import Ride, ride
 #: Rides whose records are in memory at once.
 AT_ONCE = 256
 
-#: What a design may vary beside the parameters of the model.
+#: What a design may vary in addition to the parameters of the model.
 DRIVEN = ("speed", "height")
 
 Design = Mapping[str, npt.ArrayLike]
@@ -43,7 +43,7 @@ def columns(design: Design) -> dict[str, Array]:
 
 
 def ride_metrics(model: Model, design: Design, *, vehicle: Vehicle, **options: Any) -> dict[str, Array]:
-    """One ride for each row of a design, and what it shows: the design's columns with those of the metrics beside them.
+    """One ride for each row of a design: the design's columns, followed by those of the metrics.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def ride_metrics(model: Model, design: Design, *, vehicle: Vehicle, **options: A
     design
         Columns by name: parameters of the model, ``speed`` (m/s) and ``height`` (of the cleat, m); a number stands for all rows.
     vehicle, options
-        As of `qcar.ride`; `speed` and `height` may stand here if they are the same for all.
+        As in `qcar.ride`; `speed` and `height` may be given here if they are the same for all.
 
     Returns
     -------

@@ -16,7 +16,7 @@ from ._named import Array, ComplexArray
 
 @dataclass(frozen=True, eq=False)
 class Ratio:
-    """A measured ratio of two signals, such as a transmissibility, beside that of the fitted model."""
+    """A measured ratio of two signals, such as a transmissibility, and that of the fitted model."""
 
     run: str
     #: ``fit`` or ``held_out``.

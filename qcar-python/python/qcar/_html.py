@@ -40,7 +40,7 @@ def _cell(content: Any) -> str:
 
 
 def titled(title: str, sentence: str, *parts: str) -> str:
-    """A heading, a sentence, and what stands below."""
+    """A heading, a sentence, and a body."""
     return f"<div><b>{escape(title)}</b> {escape(sentence)}{''.join(parts)}</div>"
 
 

@@ -62,7 +62,7 @@ class Model:
     def from_text(cls, text: str, name: str = "text.axle") -> Model:
         """The model in a text.
 
-        A family that it begins from (``from "corner.axle"``) is looked for beside the file that `name` would be.
+        A family that it begins from (``from "corner.axle"``) is searched beside the file that `name` would be.
         """
         model = cls.__new__(cls)
         model._begin(_native.Model.text(text, name), ("text", text, name))

@@ -76,7 +76,7 @@ class Excitation(NamedTuple):
 
 
 class StateSpace(NamedTuple):
-    """``dx/dt = A x + B u``, ``y = C x + D u``; batches of parameter sets stand along the first axes.
+    """``dx/dt = A x + B u``, ``y = C x + D u``; the first axes are those of a batch of parameter sets.
 
     Takes the place of ``A, B, C, D`` wherever SciPy wants them: ``scipy.signal.StateSpace(*model.matrices())``.
     """

@@ -85,9 +85,9 @@ def ride(
     height
         Of the cleat's step, m.
     descent, blend
-        The straight part of the cleat behind its step, and its return to the flat, m.
+        The straight part of the cleat after its step, and its return to the flat, m.
     run_in
-        Flat road before the cleat, m. The wheel stands over its beginning at t = 0.
+        Flat road before the cleat, m. The wheel is over its beginning at t = 0.
     road
         In place of a cleat, corners of a profile: x and z in m, x never decreasing; two corners at one x are a step. It goes on flat.
     duration, sample_rate
@@ -198,7 +198,7 @@ def read_vehicle(path: str | os.PathLike[str]) -> dict[str, float]:
 
 
 def read_parameters(path: str | os.PathLike[str], model: Model) -> dict[str, float]:
-    """The values of a model's parameters, SI, in a campaign, a parameter file or what a fit wrote; what it lacks is left out."""
+    """The values of a model's parameters, SI, from a campaign, a parameter file or the results of a fit; missing parameters are left out."""
     values = _native.read_values(path)[0]
     return {own.name: values[own.name] for own in model.parameters if own.name in values}
 

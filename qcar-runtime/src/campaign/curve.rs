@@ -111,7 +111,7 @@ pub(super) fn increasing(table: &mut Table, name: &str) -> Result<Vec<f64>, Inpu
         None => Ok(values),
         Some(row) => {
             let found = format!("{} after {}", values[row + 1], values[row]);
-            let remedy = "sort the file, and remove what is there twice";
+            let remedy = "sort the file, and remove duplicate rows";
             Err(Problem::new(&table.file, table.cell(row + 1, name), found, "a larger value", remedy).into())
         }
     }

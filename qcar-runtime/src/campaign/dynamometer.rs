@@ -90,7 +90,7 @@ impl ForceTable {
                 Problem::new(&self.file, place(row, name), format!("{found}"), expected, remedy)
             };
             if velocity == 0.0 {
-                let expected = "the speed with which the rod passes the middle of its travel, above or below zero";
+                let expected = "a nonzero speed of the rod at the middle of its travel";
                 problems.push(problem("velocity", velocity, expected, "remove the row"));
             }
             if uncertainty <= 0.0 {
@@ -103,14 +103,14 @@ impl ForceTable {
         }
         if let Some(&row) = turned.first() {
             let found = format!(
-                "a force of {} N at {} m/s, which pushes along with the motion, and {} such rows in all",
+                "a force of {} N at {} m/s, which supports the motion, and {} such rows in all",
                 self.force[row],
                 self.velocity[row],
                 turned.len()
             );
             let expected =
                 "velocity and force both positive as the damper gets longer (rebound), both negative in compression";
-            let remedy = "turn one of the columns, such as by `force = { source = \"force\", unit = \"N\", sign = -1 }` in the run";
+            let remedy = "reverse the sign of one of the columns, for example `force = { source = \"force\", unit = \"N\", sign = -1 }` in the run";
             problems.push(Problem::new(&self.file, place(row, "force"), found, expected, remedy));
         }
         problems

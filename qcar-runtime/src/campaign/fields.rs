@@ -19,7 +19,7 @@ pub(super) struct Document {
     problems: RefCell<Vec<Problem>>,
 }
 
-/// A table of the document, read by its getters; [`Section::finish`] then refuses what nobody has asked for.
+/// A table of the document, read by its getters; [`Section::finish`] then refuses keys that were not read.
 pub(super) struct Section<'a> {
     document: &'a Document,
     /// `run[2].`, to be put before a key; empty at the top.

@@ -1,4 +1,4 @@
-//! Something that is odd about measured samples, as it is told.
+//! A flaw of measured samples, as it is reported.
 
 use std::fmt;
 

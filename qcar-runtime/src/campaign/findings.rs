@@ -1,4 +1,4 @@
-//! What measured samples show to be wrong with themselves, before anything is fitted to them.
+//! Flaws of measured samples, found before anything is fitted to them.
 
 use qcar_signals::resample::Grid;
 
@@ -80,7 +80,7 @@ impl Campaign {
         plain.next().is_none() && !self.recorded.iter().any(|recorded| recorded.has(name))
     }
 
-    /// Whether some file was looked into for a sensor in vain.
+    /// Whether a sensor was missing in some file.
     pub(super) fn is_missed(&self, name: &str) -> bool {
         self.missing(name).next().is_some()
     }
@@ -90,13 +90,7 @@ impl Campaign {
         let place = Place::Channel(name.clone(), None);
         let remedy =
             format!("leave it out of the run with `without = [\"{name}\"]`, or repair the sensor and measure again");
-        Problem::new(
-            self.folder.join(run),
-            place,
-            &finding.what,
-            "a signal that a fit can use",
-            remedy,
-        )
+        Problem::new(self.folder.join(run), place, &finding.what, "a usable signal", remedy)
     }
 
     /// Sentences on channels that some run lacks and another of its kind has, or that no run has.

@@ -108,7 +108,7 @@ impl Campaign {
 }
 
 fn no_history(file: &Path) -> InputError {
-    let remedy = "ask for its curve, or correct the `kind` of the run";
+    let remedy = "correct the `kind` of the run";
     Problem::new(file, Place::File, "a curve", "a time history", remedy).into()
 }
 
@@ -133,7 +133,7 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
             row + 1,
             found,
             "time that increases".into(),
-            "sort the record, or remove what is recorded twice",
+            "sort the record, or remove duplicate samples",
         );
     }
     let typical = steps::median(&intervals);
@@ -151,7 +151,7 @@ fn check_time(table: &Table, time: &[f64], sample_rate: f64) -> Result<(), Input
     }
     if let Some(row) = intervals.iter().position(|&step| !steps::is_one(step, sample_rate)) {
         let found = format!("a step of {} s", intervals[row]);
-        let remedy = "a gap cannot be guessed: export the record again, or cut it before the gap";
+        let remedy = "a gap cannot be filled: export the record again, or cut it before the gap";
         return at(row + 1, found, format!("a step of {dt} s"), remedy);
     }
     let measured = last as f64 / (time[last] - time[0]);

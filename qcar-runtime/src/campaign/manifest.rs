@@ -302,7 +302,7 @@ fn notices(campaign: &Campaign, recorded: &[String]) -> Vec<String> {
     let say = |channel: &Channel| {
         let (file, name) = (campaign.manifest(), &channel.name);
         format!(
-            "{}: the channel `{name}` is recorded in no run; remove it, or check the column names",
+            "{}: no run records the channel `{name}`; remove it, or check the column names",
             file.display()
         )
     };

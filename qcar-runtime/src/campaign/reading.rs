@@ -1,4 +1,4 @@
-//! What was read of a run whose file is no plain table.
+//! The data of a run whose file is not a plain table.
 
 use super::finding::Finding;
 use crate::error::Problem;

@@ -1,4 +1,4 @@
-//! What samples of a channel show to be wrong with themselves.
+//! Flaws of the samples of a channel.
 
 use qcar_signals::health::{Flaw, FlawKind, flaws};
 use qcar_signals::resample::Grid;

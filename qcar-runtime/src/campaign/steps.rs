@@ -1,4 +1,4 @@
-//! How evenly times must come to be samples of one rate.
+//! How even times must be to be samples of one rate.
 
 /// Largest relative difference between the declared sample rate and that of the whole record. Below it, the phase error
 /// of a transmissibility is nil, since all channels share the clock, and frequencies are that exact.
@@ -13,7 +13,7 @@ pub(super) fn is_one(step: f64, rate: f64) -> bool {
     (0.5..=1.5).contains(&(step * rate))
 }
 
-/// Whether all steps between times are one sample long whichever of them is taken for that: none is a tenth longer or shorter than
+/// Whether all steps between times are one sample long, whichever of them is the reference: none is a tenth longer or shorter than
 /// their mean.
 pub(super) fn all_alike(times: &[f64]) -> bool {
     let ends = times.first().zip(times.last());

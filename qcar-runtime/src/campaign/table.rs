@@ -153,7 +153,7 @@ pub(super) fn check_names(file: &Path, names: &[String], required: &[&str], allo
         } else if !required.contains(&name.as_str()) && !allowed.contains(&name.as_str()) {
             let known: Vec<_> = required.iter().chain(allowed).collect();
             let remedy =
-                "rename or remove the column, or declare it as a [[channel]] if it is a sensor of a time history";
+                "rename or remove the column; if it is a sensor of a time history, declare it as a [[channel]]";
             problems.push(Problem::new(
                 file,
                 place(),
@@ -195,16 +195,16 @@ fn is_blank(record: &ByteRecord) -> bool {
 }
 
 fn missing(file: &Path, found: &str) -> InputError {
-    let remedy = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+    let remedy = "correct the path (relative to the folder of campaign.toml), or put the file there";
     Problem::new(file, Place::File, found, "a readable file", remedy).into()
 }
 
 fn unreadable(file: &Path, last_line: Option<&u64>, error: &csv::Error) -> InputError {
     let place = last_line.map_or(Place::File, |line| Place::Line(line + 1));
-    let expected = "UTF-8 comma-separated numbers (gzip-compressed where the name ends in .gz)";
+    let expected = "UTF-8 comma-separated numbers (gzip-compressed if the name ends in .gz)";
     let too_large = matches!(error.kind(), csv::ErrorKind::Io(error) if error.kind() == ErrorKind::FileTooLarge);
     let remedy = match too_large {
-        true => "if the file is what it should be, raise the limit",
+        true => "if the file is the right one, raise the limit",
         false => "the file is damaged or incomplete; copy or export it again",
     };
     Problem::new(file, place, error.to_string(), expected, remedy).into()
@@ -271,8 +271,7 @@ fn number(file: &Path, place: impl Fn() -> Place, bytes: &[u8]) -> Result<f64, I
             } else {
                 format!("\"{text}\"")
             };
-            let remedy =
-                "a sample that was lost cannot be guessed: repair the record, or leave out the column or the run";
+            let remedy = "a missing sample cannot be filled in: repair the record, or leave out the column or the run";
             Err(Problem::new(file, place(), found, "a finite number", remedy).into())
         }
     }

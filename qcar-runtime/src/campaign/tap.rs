@@ -1,4 +1,4 @@
-//! Which channel of a measured file a sensor is, and what makes SI of its values.
+//! Which channel of a measured file a sensor is, and how its values become SI.
 
 use super::contents::{Quantity, Tap, Trigger, Window};
 use super::fields::Section;
@@ -42,7 +42,7 @@ pub(super) fn tap(section: &Section<'_>, name: &str, si: Option<&'static str>) -
 
 fn check_unit(section: &Section<'_>, name: &str, unit: &str, si: &'static str, mapped: bool) {
     if mapped && !of_quantity(in_si(unit), si) {
-        let remedy = "write the unit that the values have after `scale` and `offset`";
+        let remedy = "give the unit of the values after `scale` and `offset`";
         section.wrong("unit", format!("\"{unit}\""), examples(si), remedy);
     }
     if !mapped && unit::dimension(unit) != unit::dimension(si) {
@@ -65,7 +65,7 @@ fn sign(section: &Section<'_>) -> Option<f64> {
                 "sign",
                 format!("{other}"),
                 "1 or -1",
-                "for another factor write `scale`",
+                "for any other factor use `scale`",
             );
             None
         }

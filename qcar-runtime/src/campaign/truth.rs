@@ -1,4 +1,4 @@
-//! `truth.toml`: the answer that some campaigns are published with. Nothing but a test may look at it.
+//! `truth.toml`: the answer that some campaigns are published with. Only tests may read it.
 
 use std::path::Path;
 

@@ -138,7 +138,7 @@ fn coherent(of: Dimension) -> String {
     )
 }
 
-/// What units of the kind of a coherent one look like, to be expected in errors.
+/// Examples of units of the same kind as a coherent one, for messages.
 pub fn examples(si: &str) -> String {
     let such: &[&str] = match dimension(si) {
         Some([0, 1, 0]) => &["mm", "in"],

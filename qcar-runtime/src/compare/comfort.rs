@@ -1,4 +1,4 @@
-//! What a driver feels: the frequency weightings of ISO 2631-1, the weighted root mean square and the vibration dose.
+//! Vibration comfort: the frequency weightings of ISO 2631-1, the weighted root mean square and the vibration dose.
 
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 

@@ -5,7 +5,7 @@ use crate::mean::mean_square;
 /// Which parts of a run are compared, in s after its onset.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Windows {
-    /// The impact lasts from the onset for so long (section 2.1: 100 ms); the peaks are looked for here.
+    /// Duration of the impact from the onset (section 2.1: 100 ms), in which peaks are searched.
     pub impact: f64,
     /// The after-shake follows the impact for so long, or to the end of the shorter record.
     pub after_shake: f64,
@@ -42,9 +42,7 @@ pub struct Errors {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum CompareError {
-    #[error(
-        "the wheel's vertical acceleration never rises above zero in the {record}; expected a run over an obstacle"
-    )]
+    #[error("the wheel's vertical acceleration never exceeds zero in the {record}; expected a run over an obstacle")]
     NoPeak { record: &'static str },
     #[error("the after-shake of the {record} starts at sample {start}, but it has only {samples}; record for longer")]
     TooShort {

@@ -1,4 +1,4 @@
-//! What else could be measured: levels with a sensor, a run, more drive or a wider band added.
+//! Candidate measurements: levels with a sensor, a run, a higher level or a wider band added.
 
 use super::observation::Level;
 use super::record::Record;

@@ -1,4 +1,4 @@
-//! The standard errors that a fit to some levels is expected to have, and how much these say of the parameters.
+//! The standard errors to expect from a fit to some levels, and their information about the parameters.
 
 use super::observation::Level;
 use super::plan::Plan;

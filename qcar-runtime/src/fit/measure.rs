@@ -1,4 +1,4 @@
-//! From the runs of a campaign to what is fitted.
+//! From the runs of a campaign to the observations of a fit.
 
 use super::channels::{Channels, across_links, is_excitation};
 use super::observation::{Difference, Level, Observation, Pair};
@@ -95,7 +95,7 @@ fn level(
 const MOVES: f64 = 0.01;
 
 /// # Errors
-/// Several roads that move in one run: a response is related to one of them, and would be taken for its alone.
+/// Several roads that move in one run: a response is related to one of them only, as if the others were at rest.
 fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     let roads = about.excitations.iter().filter(|excitation| excitation.road);
     let recorded = roads.filter_map(|road| {
@@ -113,9 +113,9 @@ fn one_road_moves(history: &History, about: &About) -> Result<(), InputError> {
     if moving.len() < 2 {
         return Ok(());
     }
-    let found = format!("roads that move at once: {}", moving.join(", "));
+    let found = format!("several moving roads: {}", moving.join(", "));
     let expected = format!("one moving road of model `{}` in a run", about.name);
-    let remedy = "drive one at a time, or take a model with one tyre";
+    let remedy = "move one at a time, or use a model with one tyre";
     Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }
 
@@ -304,7 +304,7 @@ fn sides_agree(
         let sensors = history.signals.iter().filter(|(sensor, _)| has(sensor));
         let names: Vec<String> = sensors.map(|(sensor, _)| format!("`{}`", sensor.name)).collect();
         let wrong = || {
-            let found = "sensors of two sides that differ by more than a factor of two or by 40 degrees";
+            let found = "sensors of two sides that differ by more than a factor of two or 40 degrees";
             let remedy = format!(
                 "correct unit, sign or calibration among {}, or leave one out",
                 names.join(", ")
@@ -313,7 +313,7 @@ fn sides_agree(
                 &history.file,
                 Place::Name(format!("{} to {}", from.location, to.location)),
                 found,
-                "sides of an axle that move alike",
+                "similar motion on both sides of an axle",
                 remedy,
             )
         };

@@ -1,4 +1,4 @@
-//! What is fitted to: measured ratios over frequency, run by run.
+//! Observations of a fit: measured ratios over frequency, run by run.
 
 use crate::campaign::Role;
 use crate::model::Channel;

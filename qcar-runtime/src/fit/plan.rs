@@ -1,4 +1,4 @@
-//! What the engineer decides: starts, bounds, weights.
+//! Choices of the engineer: starts, bounds, weights.
 
 use crate::campaign::{Campaign, Parameter};
 use std::collections::BTreeMap;

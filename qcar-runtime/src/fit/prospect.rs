@@ -1,4 +1,4 @@
-//! What further measurements would say of the parameters of a fit: a D-optimal choice among sensors, runs and levels.
+//! What further measurements would tell about the parameters of a fit: a D-optimal choice among sensors, runs and levels.
 //!
 //! The criterion is the rise of the log determinant of the information about some parameters, all others being estimated, too
 //! (Atkinson, Donev & Tobias, "Optimum Experimental Designs, with SAS", 2007, chapters 10 and 11); what the ranges say is part of

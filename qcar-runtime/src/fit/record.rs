@@ -1,4 +1,4 @@
-//! What a run says of a place, or would say, and ratios of two of them.
+//! What a run tells, or would tell, about a place, and ratios of two places.
 
 use super::observation::{Difference, Observation, Pair};
 use crate::model::{Channel, Signal};

@@ -119,10 +119,10 @@ impl NoError {
         match self {
             Self::Known => "known, not fitted".to_owned(),
             Self::Tied => "takes the value of another parameter".to_owned(),
-            Self::NotSeen => "no fitted channel depends on it: left at its start value".to_owned(),
-            Self::Undetermined => "the runs say nothing of it within its range".to_owned(),
+            Self::NotSeen => "no fitted channel depends on it: keeps its start value".to_owned(),
+            Self::Undetermined => "the runs do not determine it within its range".to_owned(),
             Self::AtBound => "at its bound".to_owned(),
-            Self::OnlyTogether { with } => format!("seen only in combination with {}", with.join(", ")),
+            Self::OnlyTogether { with } => format!("determined only in combination with {}", with.join(", ")),
             Self::NotConverged => "the search did not end at a minimum".to_owned(),
         }
     }

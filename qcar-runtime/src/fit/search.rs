@@ -1,4 +1,4 @@
-//! Several starts over the bounds, since the cost has more minima than one.
+//! Several starts within the bounds, because the cost has several local minima.
 //!
 //! The starts after the first are points of the additive low-discrepancy sequence of Roberts, "The unreasonable
 //! effectiveness of quasirandom sequences" (2018): `frac(s + j α^k)`, with 1/α the root of `x^(n+1) = x + 1`. They

@@ -1,4 +1,4 @@
-//! From the Jacobian at the optimum to honest error bars.
+//! Standard errors from the Jacobian at the optimum.
 //!
 //! The covariance is the sum of three parts, all propagated through the Jacobian at the optimum:
 //!
@@ -100,7 +100,7 @@ impl Uncertainty {
 }
 
 /// Lines as independent clusters; correlation of neighbours makes a variance larger where it is found, and never
-/// smaller: at the optimum the scores sum to zero, which looks like negative correlation.
+/// smaller: at the optimum the scores sum to zero, which resembles negative correlation.
 fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
     let count = information.seen().len();
     let (mut independent, mut correlated) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));

@@ -22,7 +22,7 @@ pub enum Slope {
 
 /// rad/s: so slow that masses weigh nothing (a wheel some 1e-6 of its spring), and that dampers still show.
 const SLOW: f64 = 0.06;
-/// How far from its value a parameter without bounds is looked for, as a factor.
+/// Range of the search for a parameter without bounds, as a factor of its value.
 const REACH: f64 = 100.0;
 const HALVINGS: usize = 60;
 

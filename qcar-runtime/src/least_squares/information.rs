@@ -1,4 +1,4 @@
-//! What the Jacobian at the optimum says about the parameters: covariance, correlation, and what it cannot see.
+//! What the Jacobian at the optimum tells about the parameters: covariance, correlation, and undetermined directions.
 
 use nalgebra::{DMatrix, DVector};
 

@@ -27,7 +27,7 @@ pub struct Profile {
     pub ends: [Option<f64>; 2],
 }
 
-/// Steps to either side, and looks at an end.
+/// Steps to either side, and evaluations at an end.
 const STEPS: usize = 40;
 const LOOKS: usize = 20;
 /// An end is known to this part of its distance from the minimum.

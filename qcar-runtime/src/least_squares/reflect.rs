@@ -1,4 +1,4 @@
-//! What bounds do to a step: the scaling of Coleman & Li, and reflection.
+//! The effect of bounds on a step: the scaling of Coleman & Li, and reflection.
 
 use super::Bounds;
 use super::normal::NormalEquations;

@@ -1,4 +1,4 @@
-//! What is driven over.
+//! Roads and obstacles.
 
 use crate::road::{Class, Random, Road, RoadError};
 use crate::simulate::{Cleat, Drive, Standard};
@@ -20,12 +20,12 @@ pub struct Course {
     pub obstacle: bool,
 }
 
-/// Of the random road, s, where nobody says how long: enough for ten periods of a body on its springs.
+/// Default duration of a random road, s: enough for ten periods of a body on its springs.
 const DURATION: f64 = 8.0;
 const SAMPLE_RATE: f64 = 1000.0;
 /// Of the random road, m: it is level until the tyre is on it.
 const SPACING: f64 = 0.03;
-/// The seed of a random road of which nobody gives one.
+/// The default seed of a random road.
 pub const SEED: u64 = 1;
 
 impl Course {

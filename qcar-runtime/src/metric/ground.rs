@@ -70,12 +70,12 @@ pub enum MetricError {
     #[error("run `{course}`: {reason}")]
     Ride { course: String, reason: SimulateError },
     #[error(
-        "run `{course}`: the wheel is not thrown up, or the record ends within 0.1 s of it; drive over an obstacle for longer"
+        "run `{course}`: the wheel has no upward peak, or the record ends within 0.1 s of it; drive over an obstacle for longer"
     )]
     NoImpact { course: String },
-    #[error("`{metric}`: the model has {found} vibrations with these parameters")]
+    #[error("`{metric}`: the model has {found} modes with these parameters")]
     NoVibration { metric: String, found: usize },
-    #[error("`{metric}`: nothing drives this channel")]
+    #[error("`{metric}`: no input drives this channel")]
     NotDriven { metric: String },
 }
 

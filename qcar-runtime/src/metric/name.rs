@@ -68,7 +68,7 @@ pub fn metrics(about: &About, vibrations: usize) -> Vec<Metric> {
         all.push(Metric {
             name: "tyre.dynamic_load".into(),
             unit: "N",
-            doc: "root mean square of the vertical tyre force less its static value, from the onset on".into(),
+            doc: "RMS of the vertical tyre force minus its static value, from the onset on".into(),
             what: What::Ride(force, Measure::Variation),
         });
         if let Some(travel) = about
@@ -110,13 +110,13 @@ fn of_accelerations(about: &About) -> impl Iterator<Item = Metric> {
             metric(
                 "peak",
                 "m/s^2",
-                "largest magnitude within the impact".into(),
+                "largest magnitude during the impact".into(),
                 Measure::Peak,
             ),
             metric(
                 "after_shake",
                 "m/s^2",
-                "root mean square after the impact".into(),
+                "RMS after the impact".into(),
                 Measure::AfterShake,
             ),
             metric(
@@ -161,13 +161,13 @@ fn of_vibration(place: usize) -> [Metric; 2] {
         Metric {
             name: format!("mode.{number}.frequency"),
             unit: "Hz",
-            doc: format!("natural frequency of vibration {number}, lowest first"),
+            doc: format!("natural frequency of mode {number}, counted from the lowest"),
             what: What::Frequency(place),
         },
         Metric {
             name: format!("mode.{number}.damping"),
             unit: "1",
-            doc: format!("damping ratio of vibration {number}"),
+            doc: format!("damping ratio of mode {number}"),
             what: What::Damping(place),
         },
     ]

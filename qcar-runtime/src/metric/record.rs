@@ -1,4 +1,4 @@
-//! What a measure says of a record, and how that changes with the record.
+//! The value of a metric for a record, and its derivative by the record.
 
 use super::name::Measure;
 use crate::compare::Windows;
@@ -44,7 +44,7 @@ impl Impact {
     }
 }
 
-/// A record as a measure looks at it: filtered, and cut.
+/// A record as a metric uses it: filtered, and cut.
 pub(super) struct Seen {
     measure: Measure,
     samples: Vec<f64>,
@@ -90,7 +90,7 @@ impl Seen {
     }
 }
 
-/// What a measure looks at is linear in the record, so its derivative is what it sees of the record's.
+/// What a metric uses is linear in the record, so its derivative uses the derivative of the record in the same way.
 fn seen(measure: Measure, record: &[f64], rate: f64, impact: &Impact) -> Vec<f64> {
     match measure {
         Measure::Peak => record[impact.onset..impact.end].to_vec(),

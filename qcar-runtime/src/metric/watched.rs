@@ -1,4 +1,4 @@
-//! A model that tells of the travel of its suspension beside its own outputs.
+//! A model with its suspension travel as a further output.
 
 use std::borrow::Cow;
 

@@ -24,7 +24,7 @@ struct Box {
 
 /// Segments or boxes in the next larger box, as a power of two.
 const SHIFT: usize = 2;
-/// What is nearer to the circle than this share of its radius squared is looked at piece by piece.
+/// Road nearer to the circle than this share of its radius squared is evaluated piece by piece.
 const MARGIN: f64 = 1e-12;
 
 impl Bounds {

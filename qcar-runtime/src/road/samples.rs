@@ -82,7 +82,7 @@ fn with_steps(points: &[[f64; 2]], slope: &[f64]) -> Result<Vec<[f64; 2]>, RoadE
     Ok(out)
 }
 
-/// The most points that are taken for corners, and how uneven their distances are then at least.
+/// The largest number of points that count as corners, and the least unevenness of their distances.
 const MOST_CORNERS: usize = 50;
 const UNEVEN: f64 = 1.5;
 

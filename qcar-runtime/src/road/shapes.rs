@@ -40,7 +40,7 @@ pub enum Shape {
 
 /// How far a chord may stay from the curve that it stands for, m.
 const SAGITTA: f64 = 1e-7;
-/// Flat road described behind the obstacle, m.
+/// Flat road described after the obstacle, m.
 const RUN_OUT: f64 = 10.0;
 
 impl Shape {

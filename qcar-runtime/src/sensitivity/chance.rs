@@ -1,4 +1,4 @@
-//! Parameters as they may turn out: drawn from what is not known of them.
+//! Random parameters, drawn from their uncertainty.
 
 use crate::ensemble::Posterior;
 use crate::random::SplitMix;

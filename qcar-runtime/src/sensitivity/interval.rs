@@ -1,4 +1,4 @@
-//! How sure a metric is, from how sure the parameters are: first-order propagation of their covariance.
+//! Uncertainty of a metric: first-order propagation of the covariance of the parameters.
 //!
 //! All of it is relative to the parameters' own values, so that it holds wherever a design puts them.
 

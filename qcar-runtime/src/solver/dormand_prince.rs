@@ -176,7 +176,7 @@ impl DormandPrince {
         true
     }
 
-    /// Where the next step should end at the latest, so that no bend is inside it but for one right at its beginning.
+    /// Where the next step should end at the latest, so that no kink is inside it, except one right at its beginning.
     fn bend<S: System>(&self, system: &S, t: f64) -> f64 {
         let from = t + BEHIND * self.control.step;
         system.next_bend(t, &self.x, &self.k[0][..self.x.len()], from)
@@ -381,7 +381,7 @@ fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
 /// Several events may happen at one time, but so many in a row are one that comes back.
 const MOST_AT_ONCE: usize = 4;
 
-/// A bend that is nearer than this part of a step counts as behind: bends are foreseen no better.
+/// A kink that is nearer than this share of a step counts as passed: kinks cannot be predicted better.
 const BEHIND: f64 = 0.05;
 
 /// Modes of up to so much a step are damped, with a margin to where they are not, 5.7.

@@ -84,7 +84,7 @@ impl<'a> Step<'a> {
     /// True where [`Step::rates_at`] is as good between the ends of the step as at its ends.
     ///
     /// That asks for a step shorter than the tolerance would have it, as it is where something else limits its length:
-    /// the interpolant is of lower order than the method, and tells nothing of a bend inside the step. A bend makes the
+    /// the interpolant is of lower order than the method, and does not show a kink inside the step. A kink makes the
     /// tolerance shorten the step, and the same error in a shorter step is one of a signal that is further off.
     pub fn has_rates(&self) -> bool {
         self.error < SMOOTH

@@ -1,4 +1,4 @@
-//! What lies around a box: designs in the plane of two knobs, good and bad.
+//! The surroundings of a box: designs in the plane of two knobs, good and bad.
 
 use rayon::prelude::*;
 

@@ -8,7 +8,7 @@ use super::task::{Sense, TOLERANCE, Task};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
-/// How long the front is looked for.
+/// The effort of the search for the front.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Designs in a generation, even.

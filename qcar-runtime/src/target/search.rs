@@ -30,7 +30,7 @@ pub struct Found {
     pub effort: [usize; 2],
 }
 
-/// Designs that are looked at before the searches begin, and how many searches there are.
+/// Designs that are evaluated before the searches begin, and the number of searches.
 const LOOKS: usize = 120;
 const STARTS: usize = 3;
 const ITERATIONS: usize = 25;
@@ -45,7 +45,7 @@ const MARGIN: f64 = 1e-4;
 /// What a knob costs at least, for a step to be unique.
 const LEAST_COST: f64 = 1e-4;
 
-/// Searches; `told` hears of its rounds. None where no design that was looked at, nor today's, has results.
+/// Searches, and reports its rounds to `told`. `None` if neither an evaluated design nor today's has results.
 pub fn search(task: &Task<'_>, seed: u64, told: Told<'_>) -> Option<Found> {
     let starts = starts(task, seed);
     told(0, 2);
@@ -237,7 +237,7 @@ fn solve(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], radius: f64, free:
     quadratic.solve()
 }
 
-/// The merit after a step, if all were as linear as it looks.
+/// The merit after a step, if everything were linear.
 fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -> f64 {
     let places: Vec<f64> = state.places.iter().zip(step).map(|(place, d)| place + d).collect();
     let after = state.excess.iter().zip(slopes).map(|(excess, slopes)| {

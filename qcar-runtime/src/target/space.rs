@@ -14,7 +14,7 @@ use super::task::{Task, is_met};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
-/// What is asked of a box, and how long it is looked for.
+/// The requirements on a box, and the effort of the search for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Of a good design, for those that are spread evenly over the box.

@@ -1,4 +1,4 @@
-//! What is wanted of results, and what may move for it.
+//! Limits of results, and the knobs that may change to meet them.
 
 /// Results of designs; a design has a value for each knob.
 pub trait Designs: Sync {

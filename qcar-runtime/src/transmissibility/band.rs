@@ -1,4 +1,4 @@
-//! At which frequencies a run can be asked, and whether it can answer.
+//! Frequencies at which a response can be estimated from a run.
 
 use std::f64::consts::TAU;
 
@@ -195,7 +195,7 @@ fn long_enough(history: &History, frequencies: &[f64], estimator: &Estimator) ->
     Ok(())
 }
 
-/// A record that ends too soon looks like one without power at `frequency`; so this is asked before any spectrum.
+/// A record that ends too soon resembles one without power at `frequency`, so this is checked before any spectrum.
 fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputError> {
     let recorded = history.len() as f64 / history.sample_rate;
     if recorded >= seconds {
@@ -205,6 +205,6 @@ fn lasts(history: &History, seconds: f64, frequency: f64) -> Result<(), InputErr
         format!("a record of {recorded:.1} s, which is too short"),
         format!("at least {seconds:.1} s for {frequency} Hz"),
     );
-    let remedy = "export the whole record, record longer, or ask from a higher frequency";
+    let remedy = "export the whole record, record longer, or start at a higher frequency";
     Err(Problem::new(&history.file, Place::File, found, expected, remedy).into())
 }

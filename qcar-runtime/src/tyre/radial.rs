@@ -54,7 +54,7 @@ struct Radii {
 }
 
 impl Radii {
-    /// Looks at the ground from below the centre forward, then from there backward: near ground hides what is behind.
+    /// Scans the ground from below the centre forward, then from there backward: near ground hides ground farther away.
     fn look(&mut self, road: &Road, circle: &Circle) {
         let Some((first, last)) = candidates(road, circle) else {
             return;

@@ -17,7 +17,7 @@ pub struct Sweep {
     pub moment: [f64; 2],
 }
 
-/// The parts of a contact's rim ahead of the turning point and behind it: one grows, the other shrinks.
+/// The parts of a contact's rim before and after the turning point: one grows, the other shrinks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sweeps {
     radius: f64,

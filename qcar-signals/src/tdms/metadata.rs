@@ -45,7 +45,7 @@ pub(super) struct Scaler {
     pub(super) byte: u32,
 }
 
-/// What is told of an object beside its data.
+/// The description of an object, without its data.
 #[derive(Clone, Debug)]
 pub(super) enum Property {
     Number(f64),
@@ -76,7 +76,7 @@ impl Properties {
     }
 }
 
-/// How often the bytes of a row may be taken for values.
+/// How often the bytes of a row may be used as values.
 const MOST_USES: u64 = 16;
 
 impl Index {

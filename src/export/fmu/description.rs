@@ -93,7 +93,7 @@ fn quantity(own: &Variable, variables: &Variables, first: usize) -> Vec<(&'stati
 fn depending(name: &str, key: &str, unknown: usize, first: usize, dependencies: &[Vec<usize>]) -> Vec<String> {
     let line = |(place, on): (usize, &Vec<usize>)| {
         let on: Vec<String> = on.iter().map(|reference| (reference + first).to_string()).collect();
-        // An empty list says that there is no dependency, and a missing one that nobody knows.
+        // An empty list states that there is no dependency; without a list it is unknown.
         format!(
             "<{name} {key}=\"{}\" dependencies=\"{}\"/>",
             unknown + place + first,

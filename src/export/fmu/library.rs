@@ -1,4 +1,4 @@
-//! The library of a unit for the machine on which it is packed, by the C compiler that is found there.
+//! The library of an FMU for this machine, compiled by the C compiler that is found.
 
 use std::env::consts::{ARCH, OS};
 use std::path::Path;

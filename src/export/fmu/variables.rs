@@ -1,4 +1,4 @@
-//! The variables of a unit: parameters, inputs, states, their derivatives, outputs, kinks and time, in the order of the
+//! The variables of an FMU: parameters, inputs, states, their derivatives, outputs, kinks and time, in the order of the
 //! value references.
 
 use std::collections::HashSet;
@@ -20,7 +20,7 @@ pub enum Role {
     /// Of the state of this place.
     Derivative(usize),
     Output,
-    /// A value whose sign says on which side of its bend a law is.
+    /// A value whose sign tells on which side of its kink a law is.
     Kink,
     Time,
 }
@@ -143,7 +143,7 @@ fn inputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
 fn meaning(about: &About, kind: InputKind) -> String {
     let excitation = |place: u16| &about.excitations[usize::from(place)];
     match kind {
-        InputKind::Gravity => "Acceleration of gravity; 0 since states count from rest under gravity".into(),
+        InputKind::Gravity => "Acceleration of gravity; 0 because states are relative to rest under gravity".into(),
         InputKind::Force(place) => format!("Force {}", excitation(place).name),
         InputKind::Motion(place, quantity) => {
             let (name, road) = (&excitation(place).name, excitation(place).road);
@@ -201,7 +201,7 @@ fn kink(number: usize) -> Variable {
     Variable {
         name: format!("kink_{number}"),
         role: Role::Kink,
-        description: "Changes its sign where a law bends or jumps".into(),
+        description: "Changes its sign at a kink or jump of a law".into(),
         unit: ("1".into(), Unit::ONE),
         start: None,
     }

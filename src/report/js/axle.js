@@ -18,7 +18,7 @@ function axles(data) {
       'p',
       {},
       after
-        ? ['The extended model; ', key('after', 'what is new'), ' stands out. Values are those found with it.']
+        ? ['The extended model; ', key('after', 'what is new'), ' is highlighted. Values are those found with it.']
         : 'The model with its fitted values.',
     ),
     h('div', { class: 'drawings' }, drawings),

@@ -10,7 +10,7 @@ function discovery(data) {
     h(
       'p',
       {},
-      'The residual is the root mean square of measured less modelled, in standard deviations of its uncertainty: noise, and errors that calibrated sensors may have. 1 is noise. It is taken after the parameters have made up for as much of it as they can. The baseline model is that of the campaign, the extended model has what was found too.',
+      'The residual is the RMS difference between measurement and model, in standard deviations of its uncertainty (noise and calibration errors of the sensors). Noise alone gives 1. The residual is what remains after the parameters are fitted. The baseline model is that of the campaign; the extended model includes the effects found.',
     ),
     h('div', { class: 'columns two' }, residualTable(discover), leftTable(discover)),
     candidateTable(discover),
@@ -55,7 +55,7 @@ function leftTable({ left, effects }) {
     ...(effects.length ? [number(own.after_percent, 2)] : []),
   ]);
   return table(
-    'Left of each sensor, percent of its signal',
+    'Residual of each sensor in percent of its signal',
     [['sensor', 'text'], ['in', 'text'], ...bothModels(effects)],
     rows,
   );
@@ -70,7 +70,7 @@ function candidateTable({ candidates, probability }) {
       ['form', 'text'],
       ['probability', 'number'],
       ['explained share', 'number'],
-      ['rise of the log evidence', 'number'],
+      ['gain in log evidence', 'number'],
     ],
     candidates.map((own) => [
       `${words(own.effect)} at ${words(own.at)}`,
@@ -136,7 +136,7 @@ function kappaPart(all) {
     h(
       'p',
       {},
-      'For each link, mass and sensor, the dynamic stiffness κ that would have to be added there to explain all channels at once. The explained share is that of the squared residual which any effect at this place could explain; beside it what a linear one could, which has the same κ at all levels.',
+      'For each link, mass and sensor: the dynamic stiffness κ that would have to be added there to explain all channels at once. The first share is the part of the mean square residual that any effect at this place could explain; the second is the part that a linear effect, with the same κ at all levels, could explain.',
     ),
     table(
       'Places',

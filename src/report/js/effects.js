@@ -8,7 +8,7 @@ function effectPart(effect, effects) {
     h(
       'p',
       {},
-      `It explains ${percent(effect.evidence.gap_closed, 3)} of what the baseline model leaves beyond noise on the runs that judge it.`,
+      `It explains ${percent(effect.evidence.gap_closed, 3)} of the residual of the baseline model above noise, on the judging runs.`,
     ),
     h('div', { class: 'columns two' }, strengthTable('What it is', effect), rivalTable(effect.rivals)),
   );
@@ -20,7 +20,7 @@ function strengthTable(title, { parameters, stderr, units }) {
     return [
       name,
       error === null ? quantity(value, unit) : measured(value, error, unit),
-      error === null ? 'not seen by these data' : percent(error / Math.abs(value)),
+      error === null ? 'not determined by these data' : percent(error / Math.abs(value)),
     ];
   });
   return table(
@@ -37,7 +37,7 @@ function strengthTable(title, { parameters, stderr, units }) {
 function rivalTable(rivals) {
   if (!rivals.length) return null;
   return table(
-    'Rivals, by how probable they are beside it',
+    'Rivals and their probability relative to the answer',
     [
       ['effect', 'text sentence'],
       ['probability', 'text sentence'],
@@ -46,7 +46,7 @@ function rivalTable(rivals) {
     rivals.map((rival) => [
       `${words(rival.effect)} at ${words(rival.at)}`,
       odds(rival.behind),
-      rival.early ? 'before its fit had settled' : 'fitted to the end',
+      rival.early ? 'before its fit had converged' : 'fit converged',
     ]),
   );
 }
@@ -61,7 +61,7 @@ function learnedPart({ laws, explained, gap }) {
     h(
       'p',
       {},
-      `Without a cause, but with ${percent(explained, 3)} of the excess explained: the residual goes from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
+      `This law has no physical cause, but explains ${percent(explained, 3)} of the residual above noise: the residual falls from ${number(judged.before)} to ${number(judged.after)} standard deviations with`,
     ),
     laws.map((law) => [
       h('h4', {}, placed(law)),
@@ -77,9 +77,9 @@ function visiblePart(visible) {
   const sizes = ({ usual }) => Object.entries(usual).map(([name, value]) => `${name} ${number(value)}`);
   return details(
     'How clearly an effect of usual size would have been seen',
-    h('p', {}, 'The size over the least that would be certain, in SI units: below 1 it may be there, unseen.'),
+    h('p', {}, 'The usual size of each effect divided by the smallest size that would certainly be found. Below 1 an effect may be present without being seen. SI units.'),
     table(
-      'Usual size over the least that would be certain',
+      'Usual size over the smallest certain size',
       [
         ['effect', 'text'],
         ['usual size', 'text sentence'],

@@ -106,7 +106,7 @@ function byRow(a, b) {
   );
 }
 
-// How a run of this kind is told from others: by its level, over a cleat by its speed too, a record by its name.
+// What identifies a run of this kind: its level, over a cleat also its speed, for a record its name.
 function runText({ kind, level, speed, run }) {
   if (kind === 'time') return runName(run);
   const driven = given(level, kind === 'harmonic' ? 'm/s' : 'm', 3);

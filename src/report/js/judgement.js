@@ -39,7 +39,7 @@ function lead({ summary, discover }) {
   const alike = rivalsAlike(discover).map((rival) => `${words(rival.effect)} at ${words(rival.at)}`);
   const doubt = alike.length ? `, not distinguishable from ${alike.join(' or ')}` : '';
   return muchLeft(discover).length
-    ? `Partly explained by ${names}${doubt}. Much is left.`
+    ? `Partly explained by ${names}${doubt}. Large residuals remain.`
     : `Missing: ${names}${doubt}.`;
 }
 
@@ -53,34 +53,41 @@ function consequence(discover, { verdict: kind }, likely) {
     discover.gap.held_out.before !== null ? ['held-out', discover.gap.held_out] : ['fitted', discover.gap.fit];
   const [which, gap] = judged;
   const before = `On ${which} runs the residual of the baseline model is ${number(gap.before)} standard deviations`;
-  const after = `that of the extended model ${number(gap.after)}; 1 is noise`;
+  const after = `that of the extended model ${number(gap.after)}; noise alone gives 1`;
   const [best, ...alike] = discover.effects.filter((effect) => effect.one_of);
   const chosen = best || discover.effects[0];
   const place = likely
-    ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of what it leaves of the sweeps.`
+    ? ` Something at ${words(likely.place)} could explain up to ${percent(likely.ceiling)} of the residuals of the sweeps.`
     : '';
   switch (kind) {
     case 'none':
-      return `${before}; 1 is noise. No effect of the catalogue is called for. ${mostLeft(discover)}`;
+      return `${before}; noise alone gives 1. ${unneeded(gap)} ${mostLeft(discover)}`;
     case 'found':
       return `${before}, ${after}.${likelihood(discover)}${nextBest(chosen)} ${mostLeft(discover)}`;
     case 'class':
-      return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}, and 1 is noise. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained as well, so that no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
+      return `${before}; with ${added(discover.effects)} it is ${number(gap.after)}; noise alone gives 1. With ${alike.map(placed).join(' or ')} instead the fitted runs are explained equally well, so no model file is written.${nextBest(chosen)} ${mostLeft(discover)}`;
     default:
-      return `${before}, where 1 is noise, and nothing in the catalogue closes it. The map below shows where it is.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
+      return `${before}; noise alone gives 1. No effect of the catalogue explains it. The map below shows where it occurs.${place}${learnedLaw(discover)} ${mostLeft(discover)}`;
   }
+}
+
+// The fitted runs may call for no effect while others are predicted badly.
+function unneeded(gap) {
+  return gap.before > MUCH.deviations
+    ? 'The fitted runs show no effect of the catalogue, but the model does not predict these runs.'
+    : 'No effect of the catalogue is needed.';
 }
 
 function learnedLaw({ learned }) {
   if (!learned) return '';
   const laws = learned.laws.map(placed).join(' and ');
-  return ` Learned from the data, without a cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
+  return ` Learned from the data, without a physical cause: ${laws}, which would explain ${percent(learned.explained, 3)} of it.`;
 }
 
 function likelihood({ probability }) {
   return probability === null
     ? ''
-    : ` The answer has a probability of ${chance(probability)} among all that was tried.`;
+    : ` The probability of the answer among all sets that were tried is ${chance(probability)}.`;
 }
 
 function chance(probability) {
@@ -90,7 +97,7 @@ function chance(probability) {
 function nextBest(chosen) {
   const rival = chosen && chosen.rivals[0];
   if (!rival) return '';
-  const settled = rival.early ? ', judged before its fit had settled' : '';
+  const settled = rival.early ? ', compared before its fit had converged' : '';
   return ` The next best explanation, ${words(rival.effect)} at ${words(rival.at)}, is ${odds(rival.behind)}${settled}.`;
 }
 
@@ -107,7 +114,7 @@ function mostLeft(discover) {
   const [most] = leftOver(discover);
   if (!most) return '';
   const noise = most.deviations === null ? '' : `, ${number(most.deviations)} standard deviations`;
-  return `Most is left of ${most.text}: ${number(most.percent, 2)} % of the signal${noise}.`;
+  return `Largest residual: ${most.text}, ${number(most.percent, 2)} % of the signal${noise}.`;
 }
 
 // The fit of the rig runs may fall while the model gets better.
@@ -121,7 +128,7 @@ function fallingFit({ rig: ratios }) {
       .map(([part, before, after]) => `${part} from ${number(before)} to ${number(after)} % (${roleName(role)} runs)`);
   });
   if (!parts.length) return null;
-  return `The fit percentage falls: ${parts.join(', ')}. The baseline model was fitted to these ratios alone. The extended model is fitted to all runs, cleat and K&C runs too, each by its own uncertainty, so it may meet the sweeps less closely and the whole better.`;
+  return `The fit percentage falls: ${parts.join(', ')}. The baseline model was fitted to these ratios alone. The extended model is fitted to all runs, including cleat and K&C runs, each with its own uncertainty. It may therefore fit the sweeps less closely and all runs together better.`;
 }
 
 // `a, b and c`

@@ -9,13 +9,13 @@ function modes({ modes: { before, after }, axles }) {
     h(
       'p',
       {},
-      'Undamped natural frequency, damping ratio, and the motion of each mass over that of the largest: bars to the right move with it, bars to the left against it. A pale bar moves out of phase.',
+      'Undamped natural frequency, damping ratio, and the motion of each mass over that of the largest: bars to the right are in phase with it, bars to the left in antiphase; pale bars are in between.',
     ),
     [axles.before, axles.after].some((axle) => axle && !axle.linear)
       ? h(
           'p',
           { class: 'caution' },
-          'Of a nonlinear model these are small motions about rest, where dry friction sticks and acts as a spring: in larger motions frequencies and damping are others.',
+          'For a nonlinear model these are small motions about rest, where dry friction sticks and acts as a spring. Larger motions have other frequencies and damping ratios.',
         )
       : null,
     h(

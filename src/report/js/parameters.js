@@ -27,7 +27,7 @@ function parameters({ fit, refitted, correlations: pairs }) {
       ? h(
           'p',
           { class: 'caution' },
-          'While an effect is missing, the fitted values bend to make up for it. The last column holds those of the extended model, fitted to all runs that may be fitted.',
+          'As long as an effect is missing, the fitted values are biased by it. The last column has those of the extended model, fitted to all runs with the role fit.',
         )
       : null,
     table(
@@ -60,9 +60,9 @@ function remark({ at_bound: bound, tied_to: tied, why_no_stderr: why, relative_s
 const WHY = {
   known: () => 'known, not fitted',
   tied: () => 'takes the value of another',
-  not_seen: () => 'not seen by any fitted channel',
+  not_seen: () => 'no fitted channel depends on it',
   at_bound: () => 'at its bound',
-  only_together: (why) => `seen only together with ${why.with.join(', ')}`,
+  only_together: (why) => `determined only together with ${why.with.join(', ')}`,
   not_converged: () => 'the search did not end at a minimum',
 };
 
@@ -89,9 +89,9 @@ function rangeBar({ range, value, start, fitted, unit }, after) {
 }
 
 function correlations(pairs) {
-  if (!pairs.length) return h('p', {}, 'No two estimates correlate by more than 0.9.');
+  if (!pairs.length) return h('p', {}, 'No two estimates have a correlation above 0.9.');
   return table(
-    'Estimates that correlate by more than 0.9',
+    'Estimates with a correlation above 0.9',
     [
       ['parameters', 'text'],
       ['correlation', 'number'],

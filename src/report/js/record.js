@@ -49,7 +49,7 @@ function record({ record: own, fit, campaign, discover }) {
     h(
       'p',
       {},
-      `Fit of ${fit.model}: ${own.settings.starts} starts, ${fit.evaluations} evaluations; sensors may be off in gain by ${percent(own.settings.gain_error)} (one standard deviation). Study of ${campaign} by qcar ${own.version} in ${number(own.seconds, 2)} s, of which discovery took ${number(discover.seconds, 2)} s.`,
+      `Fit of ${fit.model}: ${own.settings.starts} starts, ${fit.evaluations} evaluations; sensor gains have a standard deviation of ${percent(own.settings.gain_error)}. Study of ${campaign} by qcar ${own.version} in ${number(own.seconds, 2)} s, of which discovery took ${number(discover.seconds, 2)} s.`,
     ),
   );
   return { element };

@@ -25,7 +25,7 @@ function records({ records: all }) {
       ' and replayed by the ',
       key('before', 'baseline model'),
       extended ? [' and the ', key('after', 'extended model')] : null,
-      ', with the parameters that discovery fits to all runs. NRMS is the root mean square of what is left over that of the signal without its mean.',
+      ', with the parameters that discovery fits to all runs. NRMS is the RMS residual divided by the RMS of the signal without its mean.',
       zoomHint(),
     ),
     shown.control,

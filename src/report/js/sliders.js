@@ -10,7 +10,7 @@ const WIDE = 20;
 function noSliders() {
   if (view.printing) return { element: null };
   const words =
-    'There are no sliders here: this model is not linear, so that its response depends on how hard it is driven and takes a simulation. ' +
+    'There are no sliders here: this model is nonlinear, so its response depends on the excitation level and needs a simulation. ' +
     'qcar simulate with --set NAME=VALUE tries other values.';
   return { element: h('p', {}, words) };
 }

@@ -30,8 +30,8 @@ function track({ track: own, simulate }) {
       ' and simulated: ',
       key('before', 'baseline model'),
       ', with the parameters of the rig fit',
-      changed ? [', and ', key('after', 'extended model'), ', with the parameters that were found with it'] : null,
-      '. Records are aligned at the peak of the wheel; time counts from where the wheel feels the cleat.',
+      changed ? [', and ', key('after', 'extended model'), ', with the parameters found with it'] : null,
+      '. Records are aligned at the peak of the wheel; time starts when the wheel reaches the cleat.',
     ),
     startCaution(own.at_start, changed),
     traces.control,
@@ -68,7 +68,7 @@ function errorsPart(simulate, histograms) {
     h(
       'p',
       {},
-      'Relative error of the largest acceleration within the first 100 ms, and of the root mean square after it; positive where the simulation is larger. Counted in bins of 5 %.',
+      'Relative errors of the largest acceleration within the first 100 ms, and of the RMS acceleration after that; positive if the simulation is larger. Bins of 5 %.',
     ),
     h(
       'div',
@@ -87,8 +87,8 @@ function startCaution(names, changed) {
   return h(
     'p',
     { class: 'caution' },
-    `No rig run or K&C curve determines ${own}: in the baseline model ${plural ? 'they have their start values' : 'it has its start value'}, and a part of the error may be due to that.`,
-    changed ? ' The extended model is fitted to the cleat runs too.' : null,
+    `No rig run or K&C curve determines ${own}: in the baseline model ${plural ? 'they have their start values' : 'it has its start value'}, which may cause part of the error.`,
+    changed ? ' The extended model is also fitted to the cleat runs.' : null,
   );
 }
 

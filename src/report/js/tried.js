@@ -13,7 +13,7 @@ function tried({ fit, refitted, rig: ratios }) {
       `The linear response of the ${refitted.length ? 'extended' : 'baseline'} model, computed in this page: `,
       key('tried', 'with your values'),
       ', with the ',
-      key('found', 'values that were found'),
+      key('found', 'values found'),
       ', and as ',
       key('measured', 'measured'),
       ` in ${runName(run)}.`,

@@ -77,7 +77,7 @@ function leftAnswer({ left, effects }) {
   const most = [...left].sort((a, b) => b.before_percent - a.before_percent).slice(0, 2);
   const size = (value) => `${number(value, 2)} %`;
   return answer(
-    'Left of the signal, worst sensors',
+    'Residual of the worst sensors, % of signal',
     most.map((own) =>
       step(
         `${words(own.channel)}, ${LEFT_IN[own.kind]}`,

@@ -1,4 +1,4 @@
-//! What the runs of a campaign are, and what their samples show to be wrong.
+//! The runs of a campaign, and the flaws of their samples.
 
 use std::path::Path;
 

@@ -79,7 +79,11 @@ fn odd_values(side: &Side) -> Vec<String> {
 fn start_values(side: &Side) -> Option<String> {
     let campaign = &side.measured.as_ref()?.campaign;
     let names = guessed(campaign, &side.model, &side.values);
-    let sentence = format!("{}: no rig run sees {}: start values.", side.name, names.join(", "));
+    let sentence = format!(
+        "{}: no rig run determines {}, which have start values.",
+        side.name,
+        names.join(", ")
+    );
     (!names.is_empty()).then_some(sentence)
 }
 
@@ -99,12 +103,12 @@ fn all_ratios(
         _ => Vec::new(),
     };
     if both.is_some() && found.is_empty() {
-        notices.push("The campaigns have no rig run of one level in common: models alone are compared.".into());
+        notices.push("The campaigns have no rig run with the same level: only the models are compared.".into());
     }
     let modelled = || ratios::modelled(sides, &arguments.frequencies.values());
     let ratios = if found.is_empty() { modelled() } else { found };
     if ratios.is_empty() {
-        notices.push("The models have no channel in common: no transmissibility is compared.".into());
+        notices.push("The models have no common channel, so no transmissibility is compared.".into());
     }
     let at_rest = ratios.iter().all(|ratio| ratio.run.is_none());
     let nonlinear = sides.iter().find(|side| !side.model.about().linear);
@@ -112,10 +116,10 @@ fn all_ratios(
         let name = &side.model.about().name;
         match at_rest {
             true => format!(
-                "{name} is nonlinear: its modes and transmissibilities are those of small motions about rest. Name a \
-                 campaign with --campaign to see it at the levels of its runs."
+                "{name} is nonlinear: its modes and transmissibilities are for small motions about rest. Name a \
+                 campaign with --campaign to compare at the levels of its runs."
             ),
-            false => format!("{name} is nonlinear: its modes are those of small motions about rest."),
+            false => format!("{name} is nonlinear: its modes are for small motions about rest."),
         }
     }));
     Ok(ratios)
@@ -124,7 +128,7 @@ fn all_ratios(
 /// Facts that a rolling tyre needs.
 const TYRE: [&str; 3] = ["r_tire", "static_tire_def", "static_tire_load"];
 
-/// The wheel of a side as its own campaign says it, or the one that both are looked at with.
+/// The wheel of a side as its own campaign states it, or the common one of both.
 fn roles(side: &Side, beside: Option<&Campaign>) -> Result<Roles, RoleError> {
     let own = side.measured.as_ref().map(|measured| &measured.campaign);
     let named = own.or(beside).map(|campaign| campaign.roles.clone());
@@ -147,7 +151,7 @@ fn all_passages(
     let lacks = |side: &Side| TYRE.into_iter().find(|fact| !side.vehicle.facts.contains_key(*fact));
     if let Some(fact) = sides.iter().find_map(lacks) {
         notices.push(format!(
-            "Nothing says `{fact}`, so no cleat run is compared: name a campaign with --campaign, or add {} to [vehicle] \
+            "`{fact}` is unknown, so no cleat run is compared: name a campaign with --campaign, or add {} to [vehicle] \
              of the parameter file.",
             TYRE.join(", ")
         ));
@@ -157,10 +161,10 @@ fn all_passages(
     if let Some([a, b]) = both {
         let passages = passages::of_campaigns(sides, &roles, [&a.campaign, &b.campaign])?;
         if !passages.is_empty() {
-            return Ok(("runs that both campaigns drove", passages));
+            return Ok(("runs of both campaigns", passages));
         }
         notices.push(
-            "The campaigns have no cleat run of one speed and height in common: the standard runs are driven.".into(),
+            "The campaigns have no cleat run with the same speed and height: the standard runs are simulated.".into(),
         );
     }
     if let Some(campaign) = beside.filter(|campaign| is_cleat(campaign)) {

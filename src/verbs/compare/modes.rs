@@ -1,4 +1,4 @@
-//! Natural vibrations of both sides, each beside the one of the other side that it is most like.
+//! Modes of both sides, paired by similarity of shape.
 
 use qcar_runtime::modes;
 use serde::Serialize;

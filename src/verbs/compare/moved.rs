@@ -1,4 +1,4 @@
-//! The parameters of both sides, and how far each has moved.
+//! The parameters of both sides, and their differences.
 
 use serde::Serialize;
 

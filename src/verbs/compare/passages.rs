@@ -153,13 +153,11 @@ fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
 }
 
 fn refused(run: &Run, error: &str) -> InputError {
-    let remedy = "correct the run, the vehicle or the parameters";
-    Problem::new(
+    Problem::refused(
         run.name(),
         Place::File,
+        "this run cannot be simulated for both sides",
         error,
-        "a run that both sides can be driven over",
-        remedy,
     )
     .into()
 }

@@ -1,4 +1,4 @@
-//! Records of one passage held against each other from where the wheel feels the cleat: the peaks and after-shakes of
+//! Records of one passage compared from the moment at which the wheel reaches the cleat: the peaks and after-shakes of
 //! thesis section 3.6.2, and traces.
 
 use std::collections::BTreeMap;

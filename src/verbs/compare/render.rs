@@ -19,7 +19,7 @@ pub(super) fn text(of: &Comparison, result: &Result, folder: Option<&Path>) -> S
         true => format!("model {}", a.model),
         false => format!("models {} and {}", a.model, b.model),
     };
-    let mut out = format!("{} (A) beside {} (B), {models}\n", a.name, b.name);
+    let mut out = format!("{} (A) and {} (B), {models}\n", a.name, b.name);
     let sections = [
         parameters(&of.parameters),
         modes(&of.modes),

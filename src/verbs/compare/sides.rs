@@ -1,4 +1,4 @@
-//! A and B as what is compared in the end: each a model with values, and what was measured of it.
+//! A and B as sides of a comparison: each a model with values, and its measurements.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -121,14 +121,14 @@ fn model_of_sets(beside: &[Beside; 2], arguments: &Arguments) -> Result<String, 
         [Some(a), Some(b)] if a == b && catalogue::is_shipped(a) => return Ok(a.into()),
         [Some(a), Some(b)] if a != b => {
             let found = format!("fits of `{a}` and of `{b}`");
-            let remedy = "name the model that both are for with --model, or compare the models";
+            let remedy = "give the model of both with --model, or compare the models";
             return Err(flag("A and B", found, "parameters of one model", remedy).into());
         }
         _ => {}
     }
     let Some(folder) = &arguments.campaign else {
         let remedy = "add --model NAME, or --campaign DIR to take its model";
-        return Err(flag("--model", "no model", "the model that the parameters are for", remedy).into());
+        return Err(flag("--model", "no model", "the model of the parameters", remedy).into());
     };
     catalogue::named_by(&Campaign::open(folder)?, None)
 }
@@ -169,7 +169,7 @@ fn refuse_what_a_fit_decides(arguments: &Arguments) -> Result<(), Failure> {
     Err(flag(
         name,
         "two campaigns",
-        "campaigns alone: each has its own runs and is fitted to them",
+        "campaigns without it: each is fitted to its own runs",
         &remedy,
     )
     .into())

@@ -1,4 +1,4 @@
-//! What is compared: two parameter sets, two models or two campaigns, told by what A and B are.
+//! The kind of a comparison: two parameter sets, two models or two campaigns.
 
 use std::path::{Path, PathBuf};
 
@@ -81,9 +81,9 @@ fn one(name: &str, text: &str) -> Result<One, Failure> {
     match path.extension().and_then(|extension| extension.to_str()) {
         Some("axle") => Ok(One::Model(text.into())),
         Some("toml" | "json") => Ok(One::Parameters(path.into())),
-        _ if path.exists() => wrong(format!("`{text}`"), "give it the ending of what it is"),
+        _ if path.exists() => wrong(format!("`{text}`"), "give the file the ending of its kind"),
         _ => wrong(
-            format!("`{text}`, which is no file"),
+            format!("`{text}`, which does not exist"),
             "correct the path or the name; `qcar show` lists the models",
         ),
     }

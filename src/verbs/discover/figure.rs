@@ -1,4 +1,4 @@
-//! The gap over frequency before and after, a panel for each sensor.
+//! The residual over frequency before and after, a panel for each sensor.
 
 use qcar_runtime::discover::posterior::Gap;
 use qcar_runtime::transmissibility::Point;
@@ -11,7 +11,7 @@ pub(super) fn gap(title: String, [before, after]: [&Gap; 2]) -> Figure {
     sensors.dedup();
     let panel = |sensor: &Point| Panel {
         title: sensor.place(),
-        vertical: "gap over uncertainty, dB".into(),
+        vertical: "residual in sd, dB".into(),
         curves: vec![
             curve("before", Style::Before, before, sensor),
             curve("after", Style::After, after, sensor),

@@ -1,4 +1,4 @@
-//! A finding in words: what it closes, its parameters, and what else it might be.
+//! A finding in words: the share that it explains, its parameters, and its rivals.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -32,7 +32,7 @@ pub(super) fn described(finding: &Finding, of: &BTreeMap<String, String>) -> Str
         .as_deref()
         .map_or_else(String::new, |form| format!(" ({})", form.replace('_', " ")));
     let mut out = format!(
-        "{} at {}{form} closes {share:.1} % of the gap\n{}",
+        "{} at {}{form} explains {share:.1} % of the residual\n{}",
         finding.effect,
         finding.at,
         table(finding, of)

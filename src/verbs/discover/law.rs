@@ -1,4 +1,4 @@
-//! The law that was learned where no effect of the catalogue explains the gap: as an effect file, as a model, and in words.
+//! The law that was learned if no effect of the catalogue explains the residuals: as an effect file, as a model, and in words.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -26,7 +26,7 @@ pub(crate) struct Law {
     pub words: String,
     /// Units of its parameters.
     pub units: BTreeMap<String, String>,
-    /// The name of its effect file, which tells one law at two places apart, and the text with the values that were found.
+    /// The name of its effect file, which tells one law at two places apart, and the text with the values found.
     name: String,
     text: String,
     /// Where that was written.
@@ -44,7 +44,7 @@ fn errors(of: &Finding) -> Errors {
 /// Puts the laws into the model of the bench; `None` where one does not apply there.
 pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<LearnedModel> {
     let why = format!(
-        "Evidence: no effect of the catalogue explains the gap; this law closes {:.0} % of it.",
+        "Evidence: no effect of the catalogue explains the residuals; this law explains {:.0} % of it.",
         100.0 * learned.explained
     );
     let mut laws = Vec::new();
@@ -109,7 +109,7 @@ fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f
     format!("{}; no memory", sentences.collect::<Vec<_>>().join("; "))
 }
 
-/// A coefficient is told of from this share of their sum on.
+/// A coefficient is mentioned if it has at least this share of their sum.
 const WORTH_TELLING: f64 = 0.1;
 
 fn shares(parameters: &[NewParameter]) -> String {
@@ -127,10 +127,10 @@ fn shares(parameters: &[NewParameter]) -> String {
 
 /// Both directions are called alike where they differ by less than this part of the largest change.
 const ALIKE: f64 = 0.1;
-/// A point is told of where its standard error is less than this, in parts of what the curve is at rest.
+/// A point is mentioned if its standard error is below this share of the curve's value at rest.
 const DETERMINED: f64 = 0.5;
 
-/// `over the speed it goes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions alike`
+/// `over the speed it changes from 1 at rest to 0.62 at 0.2, 0.41 at 0.5 m/s in both directions`
 fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let named = |name: &str| parameters.iter().find(|own| own.effect_name == name);
     let scale = curve.scale.as_deref().and_then(named);
@@ -173,7 +173,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
             .all(|(a, b)| (a.1 - b.1).abs() < ALIKE * largest);
     let sides = match (compression.is_empty(), rebound.is_empty()) {
         (true, true) => return format!("over the {over} it is not determined"),
-        (false, false) if is_even => told(&rebound, "in both directions alike"),
+        (false, false) if is_even => told(&rebound, "in both directions"),
         (false, false) => format!(
             "{} and {}",
             told(&compression, "in compression"),
@@ -183,7 +183,7 @@ fn of_curve(curve: &Curve, parameters: &[NewParameter], errors: &Errors, longest
         (true, _) => told(&rebound, "in rebound; compression is not determined"),
     };
     match rest {
-        Some(rest) => format!("over the {over} it goes from {} at rest to {sides}", number(rest, 3)),
+        Some(rest) => format!("over the {over} it changes from {} at rest to {sides}", number(rest, 3)),
         None => format!("over the {over} it is {sides}; at rest it is not determined"),
     }
 }
@@ -193,7 +193,7 @@ fn is_clock(name: &str, parameters: &[NewParameter]) -> bool {
     own.is_some_and(|own| own.role == ParameterRole::Clock)
 }
 
-/// `it goes from 1 when a run begins to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run (s).
+/// `it changes from 1 at the start of a run to 0.9 after 10, 0.7 after 30 s`, and no further than the `longest` run (s).
 fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
     let end = if unit == "s" { longest } else { 1.0 };
     let later = side(points, 1.0).into_iter().filter(|(time, _)| *time <= end);
@@ -204,7 +204,7 @@ fn of_time(points: &[(f64, f64)], unit: String, longest: f64) -> String {
         return "how it changes with time is not determined".into();
     }
     let unit = if unit == "1" { "of the run".into() } else { unit };
-    format!("it goes from 1 when a run begins to {} {unit}", told.join(", "))
+    format!("it changes from 1 at the start of a run to {} {unit}", told.join(", "))
 }
 
 /// The points to one side of rest, from there on, without those that only repeat the last.
@@ -273,7 +273,7 @@ mod tests {
     fn a_curve_is_told_by_its_points() {
         assert_eq!(
             said([0.5, 0.5, 0.5, 0.5], [0.01; 4]),
-            "over the speed it goes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions alike"
+            "over the speed it changes from 1 at rest to 0.5 at 0.2, 0.25 at 0.4 1 in both directions"
         );
         assert!(
             said([0.5, 0.5, 2.0, 1.5], [0.01; 4])
@@ -287,9 +287,9 @@ mod tests {
         let told = |longest: f64| of_time(&points, "s".into(), longest);
         assert_eq!(
             told(120.0),
-            "it goes from 1 when a run begins to 0.9 after 10, 0.75 after 30 s"
+            "it changes from 1 at the start of a run to 0.9 after 10, 0.75 after 30 s"
         );
-        assert_eq!(told(20.0), "it goes from 1 when a run begins to 0.9 after 10 s");
+        assert_eq!(told(20.0), "it changes from 1 at the start of a run to 0.9 after 10 s");
         assert_eq!(
             of_time(&points[..1], "1".into(), 20.0),
             "how it changes with time is not determined"
@@ -306,13 +306,13 @@ mod tests {
         );
     }
 
-    /// A point that no run has reached stands where its neighbour does, which nobody has measured.
+    /// A point that no run has reached has the value of its neighbour, which was not measured.
     #[test]
     fn what_is_not_determined_is_not_told() {
         let said = said([0.5, 0.5, 2.0, 1.5], [0.01, f64::NAN, f64::INFINITY, 0.01]);
         assert_eq!(
             said,
-            "over the speed it goes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
+            "over the speed it changes from 1 at rest to 0.5 at 0.2 1 in compression; rebound is not determined"
         );
     }
 }

@@ -72,7 +72,7 @@ pub(super) fn text(of: &Answer) -> String {
     };
     let places: Vec<String> = own.laws.iter().map(|law| format!("at {}", law.at)).collect();
     let mut out = format!(
-        "\nlearned from the data, without a cause: {} closes {:.1} % of the gap\n",
+        "\nlearned from the data, without a physical cause: {} explains {:.1} % of the residual\n",
         if places.len() == 1 {
             format!("a law {}", places[0])
         } else {
@@ -84,11 +84,11 @@ pub(super) fn text(of: &Answer) -> String {
         let _ = writeln!(out, "\n{} at {}: {}", finding.effect, finding.at, law.words);
         out += &described(finding, &law.units);
         if let Some(file) = &law.file {
-            let _ = writeln!(out, "as an effect: {}", file.display());
+            let _ = writeln!(out, "effect file: {}", file.display());
         }
     }
     if let Some(file) = &model.model.file {
-        let _ = writeln!(out, "the model with it: {}", file.display());
+        let _ = writeln!(out, "model file: {}", file.display());
     }
     out
 }

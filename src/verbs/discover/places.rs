@@ -1,4 +1,4 @@
-//! The places of a model at which something would explain the gap of the sweeps, and what it would have to be.
+//! The places of a model at which a change would explain the residuals of the sweeps, and the kind of change.
 
 use qcar_dsl::expr::{Expr, Symbol};
 use qcar_dsl::model::{CoordinateKind, Link, Model, Term};
@@ -30,7 +30,7 @@ pub(crate) struct Missing {
     pub explains: f64,
     /// The dynamic stiffness that would have to be added, run by run.
     kappa: Vec<Stiffness>,
-    /// The coarse law behind it.
+    /// The coarse law of it.
     pub shape: Shape,
 }
 

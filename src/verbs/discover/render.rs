@@ -1,4 +1,4 @@
-//! What was discovered, as text for people and as JSON for programs.
+//! The answer of a search, as text for people and as JSON for programs.
 
 use std::cmp::Ordering;
 use std::collections::BTreeMap;
@@ -302,7 +302,7 @@ fn offsets_table(of: &Explanation) -> String {
 pub(super) fn text(of: &Answer) -> String {
     let (before, after) = (&of.discovery.before.gap, &of.discovery.after.gap);
     let mut out = format!("{}: {}\n{}\n", of.campaign, sentence(of), noted(&of.evidence.notices));
-    let mut gaps = Table::new(["gap_over_uncertainty", "before", "after"]);
+    let mut gaps = Table::new(["residual_in_sd", "before", "after"]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),
@@ -320,27 +320,27 @@ pub(super) fn text(of: &Answer) -> String {
     }
     out += &nuisances::text(of);
     for (name, end) in at_bound(&of.discovery.after) {
-        let _ = writeln!(out, "\n{name} stands at the {end} end of its range");
+        let _ = writeln!(out, "\n{name} is at the {end} end of its range");
     }
     if !of.discovery.after.refit.offsets().is_empty() {
         out += &format!(
-            "\nwhat the sensors of records read at zero\n{}",
+            "\nzero offsets of the sensors of records\n{}",
             offsets_table(&of.discovery.after)
         );
     }
     if of.discovery.verdict != Verdict::None {
-        out += &format!("\nwhere the model of the campaign is wrong\n{}", tiles(of));
+        out += &format!("\nlargest residuals of the campaign's model\n{}", tiles(of));
         out += &missing(of).first().map_or_else(String::new, acts);
     }
     out += &learned::text(of);
     if !of.discovery.visible.is_empty() {
         out += &format!(
-            "\nwhat would have been seen: its trace over the least that earns a name\n{}",
+            "\neffects that would have been found: their size relative to the smallest that is certain\n{}",
             visible(of)
         );
     }
     if let Some(file) = of.model.as_ref().and_then(|model| model.file.as_ref()) {
-        let _ = writeln!(out, "\nthe model with it: {}", file.display());
+        let _ = writeln!(out, "\nmodel file: {}", file.display());
     }
     out
 }
@@ -365,7 +365,7 @@ fn candidates(all: &[Probable]) -> String {
 
 /// What is left of each sensor.
 fn remaining(of: &Answer) -> String {
-    let mut table = Table::new(["left_in_%_of_signal", "run", "before", "after"]);
+    let mut table = Table::new(["residual_in_%_of_signal", "run", "before", "after"]);
     for own in left(&of.evidence, [&of.discovery.before, &of.discovery.after]) {
         let (before, after) = (number(own.before_percent, 3), number(own.after_percent, 3));
         table.row(vec![own.channel, own.kind.into(), before, after]);
@@ -377,16 +377,36 @@ fn remaining(of: &Answer) -> String {
 pub(crate) fn sentence(of: &Answer) -> String {
     let (found, class) = of.discovery.told_apart();
     match of.discovery.verdict {
-        Verdict::None if is_doubtful(of) => "no effect is certain: what is left is small, but more than noise".into(),
-        Verdict::None => "nothing is missing, what is left is noise".into(),
+        Verdict::None => nothing_found(of),
         Verdict::Found => format!("found {}", listed(found)),
-        Verdict::Class if found.is_empty() => format!("these data cannot tell apart {}", listed(class)),
+        Verdict::Class if found.is_empty() => format!("these data cannot distinguish {}", listed(class)),
         Verdict::Class => format!(
-            "found {}, and beside it these data cannot tell apart {}",
+            "found {}, and in addition these data cannot distinguish {}",
             listed(found),
             listed(class)
         ),
-        Verdict::Unknown => "something is missing, and no effect of the catalogue explains it".into(),
+        Verdict::Unknown => "something is missing that no effect of the catalogue explains".into(),
+    }
+}
+
+/// RMS residual in standard deviations above which noise does not explain it. Errors of sensors that are worse than their data
+/// sheets say leave less. `MUCH` in the report's `judgement.js` is the same limit.
+const MUCH: f64 = 2.0;
+
+/// Why there is no effect: the fitted runs show none, which does not mean that the model predicts all others.
+fn nothing_found(of: &Answer) -> String {
+    let gap = &of.discovery.before.gap;
+    let (runs, left) = match gap.held_out.is_finite() {
+        true => ("held-out", gap.held_out),
+        false => ("fitted", gap.fit),
+    };
+    if left > MUCH {
+        let left = number(left, 3);
+        format!("no effect found, but the {runs} runs have residuals of {left} standard deviations")
+    } else if is_doubtful(of) {
+        "no effect is certain: small residuals above noise remain".into()
+    } else {
+        "no effect found: noise explains the residuals".into()
     }
 }
 
@@ -414,7 +434,7 @@ fn listed(findings: &[Finding]) -> String {
 fn acts(best: &Missing) -> String {
     let share = 100.0 * best.explains;
     let (at, like) = (best.site.name(), best.shape.name());
-    format!("something at {at} could explain {share:.1} % of what it leaves of the sweeps; it would be {like}\n")
+    format!("something at {at} could explain {share:.1} % of the residuals of the sweeps; it would act like {like}\n")
 }
 
 /// How clearly each effect would have been seen.

@@ -1,4 +1,4 @@
-//! What a search leaves that is stopped: the model that it has come to, its parameters and its gap. Nothing of it has been
+//! Results of an interrupted search: its current model, its parameters and residuals. Nothing of it has been
 //! judged, and each file says so.
 
 use std::fs;
@@ -10,7 +10,7 @@ use qcar_runtime::discover::posterior::Explanation;
 use super::{figure, patched, render};
 use crate::workshop::Bench;
 
-const WORD: &str = "unfinished, the search was stopped before its verdict";
+const WORD: &str = "unfinished: the search was stopped before its verdict";
 const PARAMETERS: &str = "parameters.toml";
 const GAP: &str = "gap.svg";
 const MODEL: &str = "axle";

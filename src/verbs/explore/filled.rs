@@ -49,11 +49,11 @@ pub(super) fn fill<M: Model + ?Sized>(
         path.display()
     );
     if ledger.stand_beside(path)? == Standing::Done {
-        return Ok(said + "note: they were there already\n");
+        return Ok(said + "note: the file was already complete\n");
     }
-    let resumed = "what is done stays in";
+    let resumed = "finished rows are in";
     interruption::note(&format!(
-        "{resumed} {}; the same command goes on from there",
+        "{resumed} {}; the same command resumes there",
         unfinished(path).display()
     ));
     let (mut sink, kept) = Sink::open(path, &headings, &ledger.text(), |row| (sets.start + row / each) as f64)?;
@@ -125,13 +125,13 @@ fn check_last(kept: &Kept, known: &[f64], width: usize, path: &Path) -> Result<(
     let same = |(a, b): (&f64, &f64)| a == b || (a.is_nan() && b.is_nan());
     match last.iter().zip(&known[start..]).all(same) {
         true => Ok(()),
-        false => Err(not_ours(path, "rows that this program would not have written")),
+        false => Err(not_ours(path, "rows that this program would not write")),
     }
 }
 
 fn not_ours(path: &Path, found: &str) -> InputError {
     let remedy = "remove it and its .design.json, or choose another file";
-    let expected = "rows that this command has begun, on a machine of this kind";
+    let expected = "rows of this command, from a machine of this kind";
     Problem::new(unfinished(path), Place::File, found, expected, remedy).into()
 }
 
@@ -150,12 +150,12 @@ impl Failed {
 fn notes(failed: &Failed, kept: &Kept) -> String {
     let begun = match kept.rows {
         0 => String::new(),
-        rows => format!("note: {rows} of them were there already\n"),
+        rows => format!("note: {rows} of them existed already\n"),
     };
     match &failed.first {
         None => begun,
         Some((set, reason)) => format!(
-            "{begun}note: {} rows that were computed now have no metrics; the first is of set {set}: {}\n",
+            "{begun}note: {} of the rows computed now have no metrics; the first is set {set}: {}\n",
             failed.rows,
             reason.trim_end()
         ),

@@ -1,4 +1,4 @@
-//! What an earlier run has left.
+//! Rows of an earlier run.
 
 /// Rows that are there already.
 #[derive(Default)]

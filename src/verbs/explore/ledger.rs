@@ -1,4 +1,4 @@
-//! What a file of results is of, written beside it: who repeats the command goes on, and who asks for something else is told.
+//! A description of a file of results, written beside it: the same command resumes, and any other one is refused.
 
 use std::path::{Path, PathBuf};
 
@@ -93,7 +93,7 @@ impl Ledger {
         }
     }
 
-    /// Looks at what stands at a path, and writes this beside it where there is something to be done.
+    /// Checks the file at a path, and writes this beside it if there is something to do.
     ///
     /// # Errors
     /// Results of something else, and a place that cannot be written to.
@@ -152,8 +152,8 @@ fn refuse_others(file: &Path, own: &Value, there: Option<&Value>) -> Result<(), 
             format!("a new file, or results whose `{key}` is {own}"),
         ),
         None => (
-            "a file of which nothing tells what it is".into(),
-            "a new file, or one that this command has begun".into(),
+            "a file without its .design.json".into(),
+            "a new file, or one that this command has started".into(),
         ),
     };
     let remedy = "choose another file, or remove it";

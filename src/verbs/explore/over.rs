@@ -1,4 +1,4 @@
-//! `--rides`: over which cleats, how fast.
+//! `--rides`: cleats and speeds.
 
 use std::str::FromStr;
 

@@ -1,4 +1,4 @@
-//! Where rows go: a file that has another name until it is whole, and that is continued where a run was stopped.
+//! The destination of rows: a file with a temporary name until it is complete, which an interrupted run resumes.
 
 use std::fs::{File, OpenOptions};
 use std::io;
@@ -112,13 +112,14 @@ fn growing(path: &Path) -> Result<File, InputError> {
         Ok(()) => Ok(file),
         Err(error) => {
             let remedy = "wait for the other qcar, or choose another file";
-            let expected = "a file that nobody else is writing";
+            let expected = "a file that no other process is writing";
             Err(Problem::new(part, Place::File, error.to_string(), expected, remedy).into())
         }
     }
 }
 
 fn of_file(path: &Path, error: &io::Error) -> InputError {
-    let remedy = "choose another place, or make room there; the same command goes on from what is written";
-    Problem::new(path, Place::File, error.to_string(), "a place to write to", remedy).into()
+    let remedy =
+        "choose another place, or free some space there; the same command resumes from the rows that are written";
+    Problem::new(path, Place::File, error.to_string(), "a writable place", remedy).into()
 }

@@ -101,8 +101,8 @@ pub(super) fn refuse_facts(wanted: &[Vary]) -> Result<(), InputError> {
         None => Ok(()),
         Some(own) => {
             let remedy = "vary it without --rides, or explore once for each of its values";
-            let expected = "a parameter that the rolling tyre does not stand on";
-            Err(wrong(own, "a fact of the vehicle with --rides", expected, remedy).into())
+            let expected = "a parameter of the model that is not vehicle data";
+            Err(wrong(own, "vehicle data with --rides", expected, remedy).into())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What the rig leaves open and K&C curves say: a parameter that no channel sees takes the value that its curve gives.
+//! Parameters that no channel of the rig determines, but a K&C curve does: they take the value from the curve.
 
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::report::{NoError, ParameterFit};
@@ -51,11 +51,11 @@ fn adopt(fitted: &mut Fitted, gradient: &Gradient) -> Result<(), String> {
     let with = partners(fitted, gradient, value);
     let parameters = &mut fitted.fit.parameters;
     let own = parameters.iter_mut().find(|own| own.name == name);
-    let own = own.expect("the fit has left it open");
+    let own = own.expect("the fit has not determined it");
     if let Some((low, high)) = own.range.filter(|(low, high)| !(*low..=*high).contains(&value)) {
         let (test, value) = (gradient.test, number(value, 4));
         return Err(kept(&format!(
-            "the K&C {test} curve gives {value}, out of its range {low} to {high}"
+            "the K&C {test} curve gives {value}, outside its range {low} to {high}"
         )));
     }
     let error = with.is_empty().then_some(gradient.uncertainty);

@@ -1,4 +1,4 @@
-//! The fit of a nonlinear model: to all that a campaign holds, each level as it was driven.
+//! The fit of a nonlinear model: to all runs of a campaign, each level as it was driven.
 //!
 //! The residuals are those of discovery, over their uncertainty, and so are the errors of sensors that go with them.
 
@@ -66,8 +66,8 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 /// # Errors
 /// Channels, which the cost of a linear fit is made of.
 fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
-    let expected = "a linear model, whose cost is made of channels";
-    let remedy = "leave it out: a nonlinear model is fitted to what every sensor shows";
+    let expected = "a linear model, whose cost consists of channels";
+    let remedy = "leave it out: a nonlinear model is fitted to all sensors";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
     InputError::unless_empty(channels.into_iter().collect(), Some(()))

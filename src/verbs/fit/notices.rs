@@ -1,4 +1,4 @@
-//! What is odd about a fit, but no error.
+//! Oddities of a fit that are no errors.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::fit::{Fit, Level};
@@ -10,7 +10,7 @@ pub(super) fn all_at_bounds(fit: &Fit) -> Option<String> {
     let names: Vec<&str> = fitted.iter().map(|own| own.name.as_str()).collect();
     at_bounds.then(|| {
         format!(
-            "every fitted parameter ends at a bound of its range ({}): the values mean nothing; check the sensors' units and \
+            "every fitted parameter ends at a bound of its range ({}), so the values are meaningless; check the sensors' units and \
              places, the model, and the ranges",
             names.join(", ")
         )
@@ -23,7 +23,7 @@ pub(super) fn silent_runs(campaign: &Campaign, levels: &[Level]) -> Vec<String> 
     let say = |level: &Level| {
         let file = campaign.folder.join(&level.name);
         let file = file.display();
-        format!("{file}: records nothing that the model moves, so no channel is taken from it; check its column names")
+        format!("{file}: records no motion of the model, so no channel comes from it; check its column names")
     };
     silent.map(say).collect()
 }
@@ -33,9 +33,7 @@ pub(super) fn unused_tables(campaign: &Campaign) -> Vec<String> {
     let is_unused = |run: &&Run| run.role == Role::Fit && matches!(run.test, Test::Dynamometer(_));
     let say = |run: &Run| {
         let name = &run.name;
-        format!(
-            "{name}: the table of a dynamometer has no part in a fit to transmissibilities; --all-runs fits to it too"
-        )
+        format!("{name}: a fit to transmissibilities does not use the table of a dynamometer; --all-runs does")
     };
     campaign.runs.iter().filter(is_unused).map(say).collect()
 }

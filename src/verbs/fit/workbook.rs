@@ -1,4 +1,4 @@
-//! A fit as a workbook: parameters, how well channels are met, and measured and modelled transmissibilities with a chart of each.
+//! A fit as a workbook: parameters, fit percentages, and measured and modelled transmissibilities with a chart of each.
 
 use std::ops::RangeInclusive;
 use std::path::Path;

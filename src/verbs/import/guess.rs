@@ -98,14 +98,14 @@ impl Guess {
         let words = words(&signal.full_name());
         let stated = quantity_of(&signal.unit);
         if stated.is_none() && !matches!(signal.unit.as_str(), "" | "-" | "1" | "V" | "mV") {
-            return Err("its unit is none of an acceleration, velocity, displacement or force");
+            return Err("its unit is not that of an acceleration, velocity, displacement or force");
         }
         // Most sensors of a rig are accelerometers.
         let quantity = stated
             .or_else(|| meaning(&words, QUANTITIES))
             .unwrap_or(Quantity::Acceleration);
-        let (location, drives) = location(&words, about).ok_or("no word of its name is a part of the model")?;
-        let axis = meaning(&words, AXES).ok_or("its name says no axis, x or z")?;
+        let (location, drives) = location(&words, about).ok_or("no word in its name is a part of the model")?;
+        let axis = meaning(&words, AXES).ok_or("its name has no axis, x or z")?;
         Ok(Guess {
             location,
             drives,

@@ -67,7 +67,7 @@ impl Proposed {
                 number(own.end, DIGITS),
                 number(own.peak_velocity, DIGITS),
             ),
-            Kind::Other => format!("no run{when}: the pad moves and does not sweep"),
+            Kind::Other => format!("no run{when}: the pad moves but does not sweep"),
             Kind::Cleat => "a run over a cleat: no pad, and one impact".into(),
             Kind::Curve(displacement, force) => format!("a K&C curve, `{force}` over `{displacement}`"),
             Kind::TimeHistory => "a time history".into(),
@@ -187,7 +187,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
     for (at, run) in runs.iter().enumerate() {
         if let (Kind::Other, Some(part)) = (&run.kind, &run.part) {
             text += &format!(
-                "\n# {:?} {}: the pad moves and does not sweep.\n",
+                "\n# {:?} {}: the pad moves but does not sweep.\n",
                 run.file,
                 part.said()
             );
@@ -195,7 +195,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
         }
         let judges = matches!(run.kind, Kind::Cleat) || (sweeps > 1 && last == Some(at));
         let role = match judges {
-            true => "\"held_out\" # it judges the fit",
+            true => "\"held_out\" # the fit is checked with it",
             false => "\"fit\" # parameters are fitted to it",
         };
         text += &format!("\n[[run]]\nfile = {:?}\nrole = {role}\n{}", run.file, keys(&run.kind));
@@ -208,7 +208,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
         text += &match run.rate {
             _ if matches!(run.kind, Kind::Curve(..)) => String::new(),
             Some(rate) => format!("sample_rate = {rate:?} # Hz, to which all channels are brought\n"),
-            None => "# sample_rate = # Hz; the file says none, give yours\n".into(),
+            None => "# sample_rate = # Hz; not stated in the file, give yours\n".into(),
         };
     }
     if runs.iter().any(|run| matches!(run.kind, Kind::Cleat)) {

@@ -48,7 +48,7 @@ impl Sensors {
         match self.known.iter().find(|known| known.guess.name() == guess.name()) {
             Some(known) if known.source == source => {}
             Some(known) => {
-                let why = format!("`{}` is taken for `{}` already", known.source, guess.name());
+                let why = format!("`{}` is already taken to be `{}`", known.source, guess.name());
                 self.pass(source, why);
             }
             None => self.known.push(Sensor {
@@ -68,10 +68,10 @@ impl Sensors {
 
 /// The `[[channel]]` sections.
 pub(super) fn sections(sensors: &Sensors) -> String {
-    let mut text = "\n# The sensors, as the names and units of the channels say. Check each, above all its sign: z is up, x forward.\n".to_string();
+    let mut text = "\n# The sensors, as guessed from names and units of the channels. Check each, above all its sign: z is up, x forward.\n".to_string();
     text.extend(sensors.known.iter().map(section));
     if !sensors.others.is_empty() {
-        text += "\n# Channels that are taken for no sensor; give a [[channel]] to those that are one.\n";
+        text += "\n# Channels that were not recognised as sensors; add a [[channel]] for those that are.\n";
     }
     let others = sensors.others.iter();
     text.extend(others.map(|(name, why)| format!("# {name:?}: {why}\n")));
@@ -90,7 +90,7 @@ fn section(sensor: &Sensor) -> String {
     let unit = match (has_unit, sensor.unit.as_str()) {
         (true, unit) => format!("# in {unit}, as the file says\n"),
         (false, "") => format!(
-            "# unit = # such as \"{}\"; the file says none, give yours\n",
+            "# unit = # such as \"{}\"; not stated in the file, give yours\n",
             quantity.unit()
         ),
         (false, unit) => format!(
@@ -108,7 +108,7 @@ fn section(sensor: &Sensor) -> String {
     )
 }
 
-/// What is taken for what.
+/// Which channel is taken to be which sensor.
 pub(super) fn table(sensors: &Sensors) -> String {
     let mut table = Table::new(["channel", "is", "unit"]);
     for sensor in &sensors.known {

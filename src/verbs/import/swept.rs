@@ -39,7 +39,7 @@ struct Half {
     velocity: f64,
 }
 
-/// What of a record is looked at together for whether the pad rests, s.
+/// Length of record that decides together whether the pad rests, s.
 const BLOCK: f64 = 0.5;
 /// A pad rests where its velocity swings by less than this share of its largest swing. Where it stands says nothing: an integrated
 /// acceleration takes seconds to return to zero.

@@ -1,4 +1,4 @@
-//! A channel's name taken apart: `FL_Body_Acc_Z`, `bodyAccZ_left` and `Beschl. Aufbau VL z` have the same parts in their languages.
+//! The parts of a channel's name: `FL_Body_Acc_Z`, `bodyAccZ_left` and `Beschl. Aufbau VL z` have the same parts in their languages.
 
 /// The words of a name in lower case: separated by anything but letters and digits, and where a small letter or a digit is followed
 /// by a capital one.

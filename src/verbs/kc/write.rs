@@ -1,4 +1,4 @@
-//! New start values in `campaign.toml`; every other byte of it stays.
+//! New start values in `campaign.toml`; no other byte of it changes.
 
 use std::ops::Range;
 

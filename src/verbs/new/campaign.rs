@@ -1,4 +1,4 @@
-//! `qcar new campaign`: a folder with a campaign.toml for a model, and folders for what is still to be measured.
+//! `qcar new campaign`: a folder with a campaign.toml for a model, and folders for the measurements.
 
 use std::fmt::Write;
 use std::fs;
@@ -19,13 +19,13 @@ use crate::table::number;
 /// Where the measured files go.
 const PARTS: [&str; 4] = ["rig", "kc", "cleat", "road"];
 
-/// Write a folder with a campaign.toml for a model, which says where each measured file goes
+/// Write a folder with a campaign.toml for a model, which says where to put each measured file
 #[derive(Args)]
 #[command(after_help = "Example:\n  qcar new campaign city_car_rig --model quarter_car")]
 pub(super) struct Arguments {
     #[command(flatten)]
     named: Named,
-    /// The model that is to be fitted: name of a shipped one, or path of a model file
+    /// The model to fit: name of a shipped model, or path of a model file
     #[arg(long, default_value = "quarter_car", add = ArgValueCompleter::new(completion::models))]
     model: String,
 }
@@ -61,7 +61,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<String, Failure> {
 fn make(folder: &Path) -> Result<(), InputError> {
     fs::create_dir_all(folder).map_err(|error| {
         let remedy = "choose another folder with --dir";
-        Problem::new(folder, Place::File, error.to_string(), "a place to write to", remedy).into()
+        Problem::new(folder, Place::File, error.to_string(), "a writable place", remedy).into()
     })
 }
 
@@ -89,7 +89,7 @@ fn manifest(name: &str, model: &str, about: &About) -> String {
     let mut out = make_head(name, model, about);
     let _ = writeln!(
         out,
-        "\n# The sensors: each is a column of the time histories. Remove those that you have not."
+        "\n# The sensors: each is a column of the time histories. Remove those that you do not have."
     );
     out.extend(sensors(about).iter().map(Sensor::section));
     let _ = write!(
@@ -109,13 +109,13 @@ pub(in crate::verbs) fn make_head(name: &str, model: &str, about: &About) -> Str
     let mut out = format!(
         "# A campaign of measurements; docs/campaign-format.md describes it. A number without a unit is SI; paths are relative to this \
          folder.\nformat = 1\nname = \"{name}\"\ndescription = \"\"\nmodel = \"{model}\"\n\n\
-         # What is known before any fit.\n[vehicle]\n"
+         # Values known before any fit.\n[vehicle]\n"
     );
     for parameter in known {
         let _ = writeln!(out, "{}", of_vehicle(parameter));
     }
     out += ROLLING;
-    out += "\n# Start values and ranges. With fit = false a value stays as it is.\n";
+    out += "\n# Start values and ranges. With fit = false a value is kept.\n";
     out.extend(estimated.into_iter().map(of_fit));
     out
 }
@@ -138,7 +138,7 @@ sample_rate = 1000.0 # Hz
 [[run]]
 kind = \"sweep\"
 file = \"rig/sweep_100.csv\"
-role = \"held_out\" # it judges the fit
+role = \"held_out\" # the fit is checked with it
 peak_velocity = 0.1
 start_frequency = 0.5
 end_frequency = 30.0
@@ -181,7 +181,7 @@ fn line(key: &str, value: Option<f64>) -> String {
     value.map_or(format!("# {key} ="), |value| format!("{key} = {}", number(value, 3)))
 }
 
-/// What is known has no value to begin with but the model's own: a guess would be taken for known.
+/// A known parameter gets only the model's own value, because a guess would count as known.
 fn of_vehicle(of: &Parameter) -> String {
     let value = match of.default {
         Default::Value(value) => Some(value),

@@ -33,10 +33,10 @@ mod tables;
 pub(super) struct Arguments {
     /// The file to write, which ends in .xlsx
     file: PathBuf,
-    /// Parameters of this model alone, by name or path, in place of those of every shipped model of a car's corner
+    /// Parameters of this model only, by name or path, instead of those of all shipped corner models
     #[arg(long, add = ArgValueCompleter::new(completion::models))]
     model: Option<String>,
-    /// Values to begin with, for the front axle: a TOML file with [parameters], or a campaign folder
+    /// Initial values for the front axle: a TOML file with [parameters], or a campaign folder
     #[arg(long, value_name = "FILE")]
     params: Option<PathBuf>,
 }

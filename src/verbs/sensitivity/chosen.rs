@@ -72,14 +72,10 @@ pub(crate) fn metrics(ground: &Ground<'_>, names: &[String]) -> Result<Vec<usize
 fn unread(ground: &Ground<'_>, metric: usize) -> Option<Problem> {
     let found = format!("`{}`, on runs without an obstacle", ground.metrics()[metric].name);
     let remedy = "choose such a run with --runs, or leave the metric out";
-    ground.readings_of(metric).is_empty().then(|| {
-        flag(
-            "--metrics",
-            found,
-            "a run over an obstacle, which throws the wheel up",
-            remedy,
-        )
-    })
+    ground
+        .readings_of(metric)
+        .is_empty()
+        .then(|| flag("--metrics", found, "a run over an obstacle", remedy))
 }
 
 fn places<'a>(metrics: &'a [Metric], pattern: &'a str) -> impl Iterator<Item = usize> + 'a {
@@ -115,7 +111,7 @@ pub(crate) fn unknown(ground: &Ground<'_>, name: &str, problem: impl Fn(&str, &s
     problem(&format!("`{name}`"), &expected, &remedy)
 }
 
-/// What is looked at where nobody chooses: what wheel and body feel, the tyre's load, the travel, and the vibrations.
+/// The metrics without a choice: those of wheel and body, the tyre's load, the travel, and the modes.
 pub(crate) fn usual(ground: &Ground<'_>, names: &RoleNames) -> Vec<usize> {
     let roles = Roles::of(ground.about(), names).ok();
     let body = roles.as_ref().and_then(|roles| Some(roles.on_rig().ok()?.body));

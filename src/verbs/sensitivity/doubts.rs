@@ -1,4 +1,4 @@
-//! What is not known of a subject's parameters: the errors of its fit, tolerances of its parts, and the temperature.
+//! Uncertainty of a subject's parameters: the errors of its fit, tolerances of its parts, and the temperature.
 
 use std::collections::BTreeMap;
 use std::str::FromStr;
@@ -34,8 +34,9 @@ impl FromStr for Temperatures {
         let ends = text.split_once("..");
         let ends = ends.and_then(|(low, high)| Some([low.trim().parse().ok()?, high.trim().parse().ok()?]));
         let ends = ends.filter(|[low, high]: &[f64; 2]| low < high && low.is_finite() && high.is_finite());
-        ends.map(Temperatures)
-            .ok_or_else(|| format!("expected two numbers of kelvin, the lower first, such as -30..50, found `{text}`"))
+        ends.map(Temperatures).ok_or_else(|| {
+            format!("expected two temperatures in kelvin, the lower first, such as -30..50, found `{text}`")
+        })
     }
 }
 

@@ -24,7 +24,7 @@ pub(super) fn svg(of: &Sensitivity) -> String {
     let heat = HEAD + CELL[1] * order.len() as f64;
     let width = (PANEL[0] * COLUMNS as f64).max(LABELS + 20.0 + CELL[0] * of.metrics.len() as f64);
     let height = 40.0 + rows * PANEL[1] + heat + 20.0;
-    let title = format!("{}: percent of a metric for one percent of a parameter", of.subject);
+    let title = format!("{}: percent of a metric per percent of a parameter", of.subject);
     let mut out = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width} {height}\" width=\"{width}\" height=\"{height}\" \
          role=\"img\">\n<title>{}</title>\n<style>{CSS}.up{{fill:#0068b5}}.down{{fill:#c77700}}</style>\n",

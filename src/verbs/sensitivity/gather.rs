@@ -91,7 +91,7 @@ pub(crate) struct Global {
     pub failed: usize,
 }
 
-/// What is looked at, and how.
+/// What to analyse, and how.
 pub(crate) struct Asked<'a> {
     pub metrics: &'a [usize],
     /// Places of parameters.

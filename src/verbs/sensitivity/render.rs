@@ -15,10 +15,10 @@ pub(super) fn text(of: &Sensitivity) -> String {
     }
     if of.parameters.is_empty() {
         return out
-            + "No parameter is open: all are known or zero; name some with --parameters.\n\n"
+            + "No parameter can vary: all are known or zero; name some with --parameters.\n\n"
             + &values(of).text();
     }
-    out += "Percent of a metric for one percent of a parameter, the most important first.\n\n";
+    out += "Elasticities: percent of a metric per percent of a parameter, the largest first.\n\n";
     out += &tables(of, |metric, k| number(metric.elasticities.0[k].1, 2));
     out += "\n";
     out += &values(of).text();
@@ -42,7 +42,7 @@ pub(super) fn text(of: &Sensitivity) -> String {
 fn failed(count: usize) -> String {
     match count {
         0 => String::new(),
-        count => format!(", {count} of the base designs could not be ridden and are left out"),
+        count => format!(", {count} of the base designs could not be simulated and are left out"),
     }
 }
 
@@ -50,7 +50,7 @@ fn runs(of: &Sensitivity) -> String {
     match of.runs.len() {
         0 => format!("{}, without rides", of.model),
         1 => format!("{} over 1 run", of.model),
-        count => format!("{}, ridden metrics are means over {count} runs", of.model),
+        count => format!("{}, metrics of rides are means over {count} runs", of.model),
     }
 }
 

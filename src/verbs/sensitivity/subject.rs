@@ -1,4 +1,4 @@
-//! The axle whose metrics are asked for: a model with values, what it rolls on, and how sure its values are.
+//! The axle whose metrics are computed: a model with values, its tyre and roads, and the uncertainty of its values.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -99,7 +99,7 @@ fn not_simulated(about: &About, cleat: &Cleat) -> Vec<String> {
     let say = |(sensor, _): &(Channel, Vec<f64>)| {
         let (mass, axis) = (&sensor.location, sensor.axis.name());
         format!(
-            "`{mass}` along {axis} is measured and not compared: its acceleration is no output of model `{}`; add \
+            "`{mass}` along {axis} is measured but not compared, because its acceleration is not an output of model `{}`; add \
              `output {mass}.acceleration;` to its direction {axis}",
             about.name
         )

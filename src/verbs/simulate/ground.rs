@@ -1,4 +1,4 @@
-//! Rides over roads without a measured run: what they do to the masses and to the tyre.
+//! Rides over roads without a measured run: vibration of the masses and load of the tyre.
 
 use std::path::Path;
 
@@ -132,14 +132,7 @@ pub(super) fn roll(
 
 fn no_ride(campaign: &Campaign, course: &Course, error: &str) -> Problem {
     let place = Place::Name(format!("road {}", course.name));
-    let remedy = "correct the vehicle or the parameters, or choose another road or speed";
-    Problem::new(
-        campaign.manifest(),
-        place,
-        error,
-        "a ride that can be simulated",
-        remedy,
-    )
+    Problem::refused(campaign.manifest(), place, "this road cannot be simulated", error)
 }
 
 impl Rolled {

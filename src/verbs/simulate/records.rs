@@ -1,4 +1,4 @@
-//! Sweeps and time histories, replayed through the model and held against what was recorded.
+//! Sweeps and time histories, replayed through the model and compared with what was recorded.
 
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::discover::Evidence;
@@ -95,7 +95,7 @@ fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<
         .collect()
 }
 
-/// A run, of which the band and the samples are held against each other that a search would compare.
+/// A run, compared over the same band and samples as in a search.
 fn record(
     campaign: &Campaign,
     (run, stimulus): (&Run, &Stimulus),

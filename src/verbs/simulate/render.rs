@@ -1,4 +1,4 @@
-//! What was simulated as text, JSON and CSV.
+//! The results of a simulation as text, JSON and CSV.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -193,8 +193,8 @@ fn guess(at_start: &[String]) -> String {
     match at_start {
         [] => String::new(),
         names => format!(
-            "\nnote: at the campaign's start values: {}; what depends on them is as good as these. `qcar discover --out` \
-             finds those that runs with the role fit determine\n",
+            "\nnote: {} still have the start values of the campaign; the simulation is only as good as these. `qcar discover --out` \
+             estimates those that the runs with the role fit determine\n",
             names.join(", ")
         ),
     }

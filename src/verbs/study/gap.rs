@@ -1,4 +1,4 @@
-//! What is left between model and measurement: where it is, which place explains it, and what changed in the model.
+//! The residuals of a model: where they are, which place explains them, and what changed in the model.
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;
@@ -95,7 +95,7 @@ pub struct Refitted {
     stderr: Option<f64>,
 }
 
-/// The parameters of the model with what it lacked; none where nothing was found.
+/// The parameters of the extended model; none if no effect was found.
 pub fn refitted(of: &Study) -> Vec<Refitted> {
     let Some(after) = &of.after else { return Vec::new() };
     let explanation = &of.answer.discovery.after;

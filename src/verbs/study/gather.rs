@@ -1,4 +1,4 @@
-//! All verbs on one campaign, each leaving its files as soon as it is done.
+//! All verbs on one campaign; each writes its files as soon as it is done.
 
 use std::path::Path;
 use std::time::Instant;
@@ -39,7 +39,7 @@ pub struct Study {
     pub seconds: f64,
 }
 
-/// The model with what it lacked.
+/// The extended model.
 pub struct After {
     /// As it runs.
     pub model: Loaded,
@@ -57,7 +57,7 @@ pub struct Track {
     pub before: Driven,
     /// Its parameters that the fit has left at their start values.
     pub at_start: Vec<String>,
-    /// The model with what it lacked.
+    /// The extended model.
     pub after: Option<Driven>,
     /// The better of both without its longitudinal motion.
     pub locked: Driven,

@@ -6,7 +6,7 @@ use super::gather::Study;
 use crate::export::Subject;
 use crate::export::javascript::{Ratio, responses};
 
-/// The model with what it lacked, else the fitted one, as an expression of JavaScript; `None` where it is not linear, whose
+/// The extended model, or else the fitted one, as an expression of JavaScript; `None` where it is not linear, whose
 /// responses depend on how hard it is driven.
 pub fn program(of: &Study) -> Option<String> {
     let fitted = of.fitted.values();

@@ -1,4 +1,4 @@
-//! Records over time: what was measured, what the models of the search leave of it, and what travel drove a force.
+//! Records over time: measurement, residuals of the models of the search, and the travel of a force.
 
 use qcar_runtime::campaign::{Quantity, Role};
 use qcar_runtime::discover::Evidence;

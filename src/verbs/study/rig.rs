@@ -1,4 +1,4 @@
-//! Measured ratios over frequency beside the model's: at its start values, fitted, and with what it lacked.
+//! Ratios over frequency, measured and of the model: at its start values, fitted, and extended.
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::Role;
@@ -32,7 +32,7 @@ pub struct Ratio {
     after: Option<Polar>,
     /// Of the fitted model.
     pub quality_before: Quality,
-    /// Of the model with what it lacked.
+    /// Of the extended model.
     pub quality_after: Option<Quality>,
 }
 

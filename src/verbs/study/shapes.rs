@@ -1,4 +1,4 @@
-//! Natural vibrations of the fitted model, and of the model with what it lacked.
+//! Modes of the fitted model and of the extended model.
 
 use qcar_runtime::modes::{Mode, Part, modes};
 use serde::Serialize;

@@ -26,7 +26,7 @@ pub struct Summary {
     pub rig_fit: BTreeMap<&'static str, Percent>,
 }
 
-/// Of the fitted model, and of the model with what it lacked.
+/// Of the fitted model, and of the extended model.
 #[derive(Serialize)]
 pub struct Percent {
     magnitude: BeforeAfter,
@@ -136,7 +136,7 @@ fn at_start(names: &[String]) -> String {
     };
     match names {
         [] => String::new(),
-        names => format!("before: no rig run sees {}, which {has}\n", names.join(", ")),
+        names => format!("before: no rig run determines {}, which {has}\n", names.join(", ")),
     }
 }
 
@@ -147,7 +147,7 @@ fn median(of: Option<qcar_runtime::compare::Summary>) -> String {
 fn gaps(of: &Study) -> String {
     let (before, after) = (&of.answer.discovery.before.gap, &of.answer.discovery.after.gap);
     let changed = !of.answer.discovery.findings.is_empty();
-    let mut table = Table::new(["gap_over_noise", "before", "after"]);
+    let mut table = Table::new(["residual_in_sd", "before", "after"]);
     for (name, before, after) in [
         ("fit", before.fit, after.fit),
         ("held_out", before.held_out, after.held_out),

@@ -1,4 +1,4 @@
-//! What a model shows in the sweeps of a campaign: the ratios of its signals over frequency.
+//! The prediction of a model for the sweeps of a campaign: the ratios of its signals over frequency.
 
 use std::collections::BTreeMap;
 

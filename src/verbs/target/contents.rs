@@ -1,4 +1,4 @@
-//! What the page gets: the answer, and the rides of today's axle and of the design.
+//! The data of the page: the answer, and the rides of today's axle and of the design.
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;

@@ -1,4 +1,4 @@
-//! `targets.toml`: what is wanted of an axle, and what may move.
+//! `targets.toml`: targets of an axle, and the parameters that may change.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -176,7 +176,7 @@ impl Read {
     /// Reads it.
     ///
     /// # Errors
-    /// A file that cannot be read, is not TOML, or has keys that nobody knows.
+    /// A file that cannot be read, is not TOML, or has unknown keys.
     pub fn of(path: &Path) -> Result<Self, InputError> {
         let text = read_text(path)?;
         match toml::from_str(&text) {

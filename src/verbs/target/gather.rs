@@ -1,4 +1,4 @@
-//! What a task gives: a design, a front and a box.
+//! The results of a task: a design, a front and a box.
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::response::parameters::Values;
@@ -138,7 +138,7 @@ pub(super) struct CutAnswer {
 /// Designs that are drawn in a plane.
 const DOTS: usize = 250;
 
-/// Looks for a design and, where asked, for a front and a box. None where no design can be driven.
+/// Searches for a design and, if requested, a front and a box. `None` if no design can be simulated.
 pub(super) fn gather(
     (subject, ground): (&Subject, &Ground<'_>),
     plan: &Plan,

@@ -195,7 +195,7 @@ impl<'a> Planner<'a, '_> {
         }
     }
 
-    /// The knob of a parameter that may move.
+    /// The knob of a parameter that may change.
     fn parameter_knob(&mut self, name: &Spanned<String>, key: &str, knobs: &[Knob]) -> Option<usize> {
         let found = knobs.iter().position(|knob| knob.name == *name.get_ref());
         if found.is_none() {
@@ -204,7 +204,7 @@ impl<'a> Planner<'a, '_> {
                 name,
                 key,
                 &words,
-                "a parameter that may move",
+                "a parameter that may change",
                 "give it a table [[parameter]] with its range",
             );
         }

@@ -27,7 +27,7 @@ pub(super) fn text(of: &Answer) -> String {
     if let Some(space) = &of.space {
         out += &space_words(space);
     } else if !of.met {
-        out += "\nNo solution space: no design is good.\n";
+        out += "\nNo solution space: no design meets the targets.\n";
     }
     if let Some(front) = &of.front {
         out += &front_words(of, front);
@@ -57,13 +57,13 @@ fn verdict(of: &Answer) -> String {
         .filter_map(|own| Some(format!("{} ({})", own.name, own.at_bound?)));
     let bounds: Vec<String> = bounds.collect();
     let mut out = format!(
-        "No design was found that meets all targets; the best misses {} of {}. In the way: {}.\n",
+        "No design was found that meets all targets; the best misses {} of {}. In conflict: {}.\n",
         missed.len(),
         of.targets.len(),
         words.collect::<Vec<_>>().join("; ")
     );
     if !bounds.is_empty() {
-        let _ = writeln!(out, "At the end of their range: {}.", bounds.join(", "));
+        let _ = writeln!(out, "At an end of their range: {}.", bounds.join(", "));
     }
     out
 }
@@ -75,10 +75,10 @@ fn sureness(of: &Sureness) -> String {
         .map(|(source, names)| format!("{source} ({})", names.join(", ")))
         .collect();
     let wanted = of.wanted.map_or(String::new(), |wanted| {
-        format!(" Each was to hold with {} %.", number(100.0 * wanted, 3))
+        format!(" Each shall hold with {} %.", number(100.0 * wanted, 3))
     });
     format!(
-        "With what is not known of parameters, the design meets all that must hold in {} % of {} draws.{wanted} In doubt by {}.\n",
+        "With uncertain parameters, the design meets all targets that must hold in {} % of {} draws.{wanted} Sources of uncertainty: {}.\n",
         number(100.0 * of.all, 3),
         of.draws,
         words.join(", ")
@@ -154,15 +154,15 @@ fn parameters(of: &Answer) -> Table {
 fn space_words(of: &SpaceAnswer) -> String {
     let percent = |part: f64| number(100.0 * part, 3);
     let judged = format!(
-        "\nIn the solution space {} % of the designs meet all targets, with 95 % confidence at least {} %; {} % were wanted. It \
-         has {} % of all designs in range ({} evaluated).\n",
+        "\nIn the solution space {} % of the designs meet all targets (at least {} % with 95 % confidence; wanted: {} %). It \
+         contains {} % of all designs in range ({} evaluated).\n",
         percent(of.probability),
         percent(of.at_least),
         percent(of.wanted),
         percent(of.volume),
         counted(of.evaluated, "design")
     );
-    let short = "It falls short of what was wanted: loosen targets or narrow ranges.\n";
+    let short = "This is less than wanted: loosen targets or narrow ranges.\n";
     judged + if of.at_least < of.wanted { short } else { "" }
 }
 
@@ -171,7 +171,7 @@ const ROWS: usize = 12;
 
 fn front_words(of: &Answer, front: &FrontAnswer) -> String {
     if front.points.is_empty() {
-        return "\nNo front: no design that meets all targets was found.\n".into();
+        return "\nNo front: no design is found that meets all targets.\n".into();
     }
     let headings = front
         .metrics
@@ -203,7 +203,7 @@ fn front_words(of: &Answer, front: &FrontAnswer) -> String {
 
 /// A parameter file as `--params` takes it, with facts of the vehicle beside the values.
 pub(super) fn parameter_file(about: &About, design: &Values, vehicle: &BTreeMap<String, f64>) -> String {
-    let mut out = format!("# {} as its targets want it\n\n[parameters]\n", about.name);
+    let mut out = format!("# {}: the design that meets its targets\n\n[parameters]\n", about.name);
     for (place, (own, value)) in about.parameters.iter().zip(design.as_slice()).enumerate() {
         if design.leader(place) == place {
             let _ = writeln!(out, "{} = {value:?} # {}", own.name, own.unit);

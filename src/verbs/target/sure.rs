@@ -1,4 +1,4 @@
-//! How sure the results of a design are, and how often it meets its targets when all turns out as it may.
+//! Uncertainty of the results of a design, and the share of draws in which it meets its targets.
 
 use qcar_runtime::metric::Ground;
 use qcar_runtime::sensitivity::{Interval, Source, direction};
@@ -50,8 +50,11 @@ pub(super) fn intervals(
 /// The design of least cost whose targets each hold with a probability: the margins of limits are those that draws about the last design
 /// need, and so on (after Du and Chen, J. Mech. Des. 126, 2004, who find them to first order).
 pub(super) fn design(task: &mut Task<'_>, axle: &Axle<'_>, seed: u64, probability: Option<f64>) -> Option<Found> {
-    let searched =
-        |task: &Task<'_>| while_counting("the design of least cost: step".into(), |told| search(task, seed, told));
+    let searched = |task: &Task<'_>| {
+        while_counting("searching the design of lowest cost: step".into(), |told| {
+            search(task, seed, told)
+        })
+    };
     let mut found = searched(task)?;
     let Some(probability) = probability else {
         return Some(found);

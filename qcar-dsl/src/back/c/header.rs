@@ -1,4 +1,4 @@
-//! The header: sizes, places of the vectors, and what can be called.
+//! The header: sizes, positions in the vectors, and the functions.
 
 use qcar_model::{About, Parameter};
 

@@ -1,4 +1,4 @@
-//! What the functions of a model stand on beside `math.h`; a source has those that it uses.
+//! Helper functions of a model in addition to `math.h`; a source contains those that it uses.
 
 use crate::expr::Function;
 use crate::program::{Op, Program};

@@ -1,4 +1,4 @@
-//! A straight-line program as statements of MATLAB, and what they stand on.
+//! A straight-line program as statements of MATLAB, and their helper functions.
 
 use crate::back::straight::{Language, Leaf, Locals, Pieces, Written};
 use crate::program::{Op, Program, Value};

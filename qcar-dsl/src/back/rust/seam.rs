@@ -1,4 +1,4 @@
-//! `impl Model`: the generated functions behind the runtime's trait.
+//! `impl Model`: the generated functions as the runtime's trait.
 
 use qcar_model::About;
 

@@ -1,6 +1,6 @@
-//! Where the laws of a program bend or jump: at a sign of |a|, of `sign(a)`, of min, of max, and of the test of a choice.
+//! Kinks and jumps of the laws of a program: at a sign of |a|, of `sign(a)`, of min, of max, and of the test of a choice.
 //!
-//! A curve through points bends in its curvature alone, which no integrator has to be told.
+//! A curve through points has kinks in its curvature only, which an integrator need not know.
 
 use std::collections::BTreeSet;
 
@@ -43,7 +43,7 @@ mod tests {
     use super::*;
     use crate::expr::Symbol;
 
-    /// |a| where a = k x, min(a, x), a choice by x, and tanh(x), which bends nowhere.
+    /// |a| where a = k x, min(a, x), a choice by x, and tanh(x), which has no kink.
     #[test]
     fn a_kink_is_where_a_law_bends() {
         let [k, x, a, size, least, chosen, smooth] = [0, 1, 2, 3, 4, 5, 6].map(Value);

@@ -1,4 +1,4 @@
-//! What shows of laws whose parameters need not change a slope.
+//! Identifiability of laws whose parameters need not change a slope.
 
 use std::collections::BTreeSet;
 

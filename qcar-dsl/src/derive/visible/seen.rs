@@ -1,4 +1,4 @@
-//! What can be seen of a model, and how it changes with parameters.
+//! The observable quantities of a model, and their derivatives by the parameters.
 
 use num_complex::Complex64;
 

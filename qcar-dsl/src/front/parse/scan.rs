@@ -1,4 +1,4 @@
-//! A first look at the text, before the Rust lexer sees it: that lexer refuses a whole file at one place for a foreign
+//! A first scan of the text, before the Rust lexer: that lexer refuses a whole file at one place for a foreign
 //! character or bracket, so these get diagnostics of their own.
 
 use crate::diagnostic::{Code, Diagnostic, reading};

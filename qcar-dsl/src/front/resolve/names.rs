@@ -73,7 +73,7 @@ pub struct Names {
     pub off: BTreeMap<String, String>,
     /// Parameters, derived quantities and elements that something uses.
     pub used: BTreeSet<String>,
-    /// Names that nothing has, with where they were looked for: the first use is reported, since one declaration is
+    /// Undeclared names, with the place where they were expected: the first use is reported, since one declaration is
     /// missing or misspelt, and not each that would use it.
     pub unknown: BTreeSet<(String, String)>,
 }
@@ -296,7 +296,7 @@ impl Resolver<'_> {
             Some((_, thing)) => mistakes::wrong_kind(span, &text, thing.kind(), expected, example),
             None => match self.names.off.get(&last) {
                 Some(options) => mistakes::switched_off(span, &last, options),
-                // A factor of a stretch is told as a value that the model lacks.
+                // An unknown factor of a stretch is reported as a value that the model lacks.
                 None if self.names.unknown.contains(&(String::new(), last.clone())) => return Reported,
                 None if !self.names.unknown.insert((home.to_string(), last)) => return Reported,
                 None => self.unknown(name, direction),

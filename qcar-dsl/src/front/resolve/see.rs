@@ -1,4 +1,4 @@
-//! What is to be seen: outputs and channels.
+//! Outputs and channels.
 
 use super::declare::declared;
 use super::law::force_unit;

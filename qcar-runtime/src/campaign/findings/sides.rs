@@ -1,4 +1,4 @@
-//! Sensors that are wired or mounted wrongly, as the other side of the car shows: in a sweep both sides do nearly the same.
+//! Sensors that are wired or mounted wrongly, found by comparison with the other side of the car: in a sweep both sides move nearly alike.
 
 use super::super::contents::{Channel, Run, Side};
 use super::super::finding::Finding;
@@ -76,7 +76,7 @@ fn are_swapped(a: &Pair, b: &Pair) -> bool {
 fn swapped_with(a: &Pair, b: &Pair) -> String {
     let names = [a, b].map(|pair| (&pair.left.0.name, &pair.right.0.name));
     format!(
-        "resembles `{}` more than `{}`, and `{}` the other way round: two sensors of one side look swapped",
+        "resembles `{}` more than `{}`, and `{}` the other way round: two sensors of one side seem to be swapped",
         names[1].1, names[0].1, names[1].0
     )
 }

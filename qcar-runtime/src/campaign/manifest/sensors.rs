@@ -49,7 +49,7 @@ fn mapping(file: &Path, top: &Section<'_>) -> Option<Vec<Sensor>> {
                 .problems
                 .first()
                 .map_or(String::new(), |problem| problem.found.clone());
-            let remedy = "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+            let remedy = "correct the path (relative to the folder of campaign.toml), or put the file there";
             let found = format!("{}: {found}", file.display());
             top.wrong(
                 "mapping",

@@ -1,4 +1,4 @@
-//! The workbook that a campaign points at. What the campaign states itself goes before what the workbook states.
+//! The workbook that a campaign refers to. Values of the campaign take precedence over those of the workbook.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ pub(super) fn named(folder: &Path, top: &Section<'_>, files: &Files) -> Option<W
             top.wrong(
                 "axle",
                 "no `workbook`",
-                "`workbook = \"vehicle.xlsx\"` beside it",
+                "`workbook = \"vehicle.xlsx\"` as well",
                 "add it, or remove `axle`",
             );
         }

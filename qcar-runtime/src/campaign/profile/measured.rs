@@ -42,12 +42,12 @@ impl RoadSamples {
         let (x, z) = (metres(file, distances)?, metres(file, heights)?);
         if x.len() != z.len() {
             let found = format!("{} heights over {} distances", z.len(), x.len());
-            let remedy = "choose a channel that was sampled with the distances";
+            let remedy = "choose a channel with the same samples as the distances";
             return Err(Problem::new(file, of(heights), found, "one height for each distance", remedy).into());
         }
         if let Some(at) = x.windows(2).position(|pair| pair[1] <= pair[0]) {
             let found = format!("{} m after {} m at sample {}", x[at + 1], x[at], at + 2);
-            let remedy = "sort the samples, and remove those at which the vehicle stood";
+            let remedy = "sort the samples, and remove those at standstill";
             return Err(Problem::new(file, of(distances), found, "distances that increase", remedy).into());
         }
         let stated = match is_default(recording, heights) {
@@ -141,7 +141,7 @@ fn slopes(file: &Path, recording: &Recording, distances: usize) -> Result<Option
         "" | "1" | "m/m" => 1.0,
         "%" => PER_CENT,
         unit => {
-            let remedy = "state the slope as a ratio, or rename the channel if it is no slope of the road";
+            let remedy = "give the slope as a ratio, or rename the channel if it is not the slope of the road";
             return refuse(format!("the unit `{unit}`"), "1, m/m or %", remedy);
         }
     };
@@ -195,7 +195,7 @@ fn heights<'a>(
                 "choose one: `{}` after a `#` on the command line, or `source` in a campaign",
                 first.full_name()
             );
-            Err(Problem::new(file, Place::File, found, "the one that the tyre rolls over", remedy).into())
+            Err(Problem::new(file, Place::File, found, "exactly one, on which the tyre rolls", remedy).into())
         }
     }
 }

@@ -1,4 +1,4 @@
-//! What a tap makes of a channel.
+//! A channel as its tap reads it.
 
 use std::borrow::Cow;
 use std::ops::Range;
@@ -46,7 +46,7 @@ impl<'a> Channel<'a> {
         let known = clock(&signal.time, declared);
         let rated = known.and_then(|base| Some((even::rate(&base, signal.samples.len(), declared)?, base)));
         let Some((rate, base)) = rated else {
-            let (expected, remedy) = ("when the samples were taken", "state the `sample_rate` of the run");
+            let (expected, remedy) = ("the times of the samples", "state the `sample_rate` of the run");
             let place = Place::Channel(signal.full_name(), None);
             return Err(Problem::new(file, place, "no times", expected, remedy).into());
         };
@@ -84,7 +84,7 @@ impl<'a> Channel<'a> {
             .collect()
     }
 
-    /// Its samples in the window, with what a filter to `rate` looks at beside it.
+    /// Its samples in the window, with those around it that a filter to `rate` needs.
     pub fn even(&self, file: &Path, rate: f64, span: Span) -> Result<Even, InputError> {
         let margin = (reach(self.rate, rate) * self.rate).ceil() + 1.0;
         let margin = margin.min(self.samples.len() as f64) as usize;
@@ -99,18 +99,8 @@ impl<'a> Channel<'a> {
         if scaled.all(f64::is_finite) {
             return Ok(even);
         }
-        let (expected, remedy) = (
-            "values that a number can hold",
-            "correct the `scale` or `unit` of the channel",
-        );
-        Err(Problem::new(
-            file,
-            self.place(),
-            "values without bounds once they are scaled",
-            expected,
-            remedy,
-        )
-        .into())
+        let (expected, remedy) = ("finite values", "correct the `scale` or `unit` of the channel");
+        Err(Problem::new(file, self.place(), "infinite values after scaling", expected, remedy).into())
     }
 
     /// To be named in errors.

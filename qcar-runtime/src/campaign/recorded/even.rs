@@ -1,4 +1,4 @@
-//! Samples that come evenly and are all there.
+//! Even samples without gaps.
 
 use std::ops::Range;
 
@@ -16,7 +16,7 @@ const SLACK: f64 = 1e-3;
 
 /// A part of a channel without any gap.
 pub(super) struct Even {
-    /// The samples that lie in the window, and beside it those that the filter may look at.
+    /// The samples in the window, and those around it that the filter may need.
     pub samples: Range<usize>,
     /// Their instants.
     pub grid: Grid,
@@ -171,7 +171,7 @@ fn inside(
     Err(Broken {
         at: None,
         found: format!("a window from {first_time} to {last_time} s"),
-        expected: format!("a part of the recording, which goes from {start} to {end} s"),
+        expected: format!("a window within the recording, from {start} to {end} s"),
         remedy: "correct `from`, `to` or the trigger of the run",
     })
 }
@@ -199,7 +199,7 @@ fn at_break(samples: &Samples, base: &TimeBase, at: usize, rate: f64) -> Broken 
         at: Some(time(base, at)),
         found,
         expected,
-        remedy: "what was lost cannot be guessed: choose `from` and `to` beside it, leave the channel out with `without`, or \
+        remedy: "a missing sample cannot be filled in: choose `from` and `to` outside of it, leave the channel out with `without`, or \
                  export the record again",
     }
 }

@@ -102,7 +102,7 @@ fn samples(recording: &Recording) -> usize {
 
 /// What to do about a file of a campaign that is not there.
 pub(in crate::campaign) const BESIDE_MANIFEST: &str =
-    "correct the path (it is relative to the folder of campaign.toml) or put the file there";
+    "correct the path (relative to the folder of campaign.toml), or put the file there";
 
 /// The recording in a file; `wrong_path` is what to do where it is not there.
 ///

@@ -66,7 +66,7 @@ impl<'a> Together<'a> {
                 channel: channel.tap.name.clone(),
                 span: (grid.start, grid.end()),
                 what: format!(
-                    "samples come unevenly, {:.3} to {:.3} ms apart: between them values are interpolated linearly",
+                    "samples are uneven, {:.3} to {:.3} ms apart, so values are interpolated linearly",
                     1e3 * least,
                     1e3 * most
                 ),

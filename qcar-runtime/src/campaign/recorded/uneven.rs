@@ -1,4 +1,4 @@
-//! Samples that come unevenly, as messages of a bus do, resampled by linear interpolation.
+//! Uneven samples, such as messages of a bus, resampled by linear interpolation.
 
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::TimeBase;

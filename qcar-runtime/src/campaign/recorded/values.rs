@@ -58,8 +58,8 @@ impl Scaling {
         if count == signal.samples.len() || valid.is_empty() {
             let found = format!("{} values in the first {span} s", valid.len());
             let (expected, remedy) = (
-                "a recording that goes on longer than its zero",
-                "shorten `zero_span`, or leave `zero` out",
+                "a recording longer than `zero_span`",
+                "reduce `zero_span`, or remove `zero`",
             );
             let place = Place::Channel(signal.name.clone(), None);
             return Err(Problem::new(file, place, found, expected, remedy).into());
@@ -82,7 +82,7 @@ fn unit(file: &Path, signal: &Signal, tap: &Tap) -> Result<Si, InputError> {
             unit => format!("values in \"{unit}\""),
         };
         let remedy = format!(
-            "declare the `unit` of the channel `{}` in campaign.toml, with a `scale` where the file holds something else",
+            "declare the `unit` of the channel `{}` in campaign.toml, and a `scale` if the file has another quantity",
             tap.name
         );
         return stated.map_or_else(|| refuse(found, examples(tap.si), remedy), Ok);

@@ -62,7 +62,7 @@ fn moment(file: &Path, recording: &Recording, trigger: &Trigger, declared: Optio
             None => "no times".into(),
         };
         let (expected, remedy) = (
-            "a moment that triggers the run",
+            "a sample that triggers the run",
             "correct `trigger` of the run, or give `from` and `to`",
         );
         let place = Place::Channel(signal.full_name(), None);

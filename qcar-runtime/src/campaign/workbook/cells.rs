@@ -37,7 +37,7 @@ impl<'a> Cells<'a> {
                 let cell = self.cell("axle").filter(|_| wanted.is_none());
                 let found = other.map_or("no axle".into(), |other| format!("the axle `{other}`"));
                 let remedy =
-                    "write one of them into the cell that is called `axle`; `qcar new template` makes such a workbook";
+                    "write one of them into the cell named `axle`; `qcar new template` creates such a workbook";
                 let expected = AXLES.join(" or ");
                 Err(Problem::new(self.file, cell.map_or(Place::File, place), found, expected, remedy).into())
             }
@@ -161,7 +161,7 @@ impl<'a> Cells<'a> {
                     place(cell),
                     found,
                     expected,
-                    "correct the bound or the value, which are in one unit",
+                    "correct the bound or the value; both have the same unit",
                 );
                 return None;
             }
@@ -176,7 +176,10 @@ impl<'a> Cells<'a> {
             Value::Number(number) => number.to_string(),
             Value::Text(text) => format!("the text `{text}`"),
             Value::Empty => "an empty cell".into(),
-            Value::Formula(formula) => format!("the formula `={formula}` of `{}`, which was never computed", cell.name),
+            Value::Formula(formula) => format!(
+                "the formula `={formula}` of `{}`, which has no stored result",
+                cell.name
+            ),
         };
         let expected = kind.map_or("a number".into(), |kind| match cell.unit.as_str() {
             "" => format!("a number, with {}", examples(kind)),
@@ -201,12 +204,7 @@ impl<'a> Cells<'a> {
                 text => format!("the unit \"{text}\""),
             };
             let expected = examples(kind.unwrap_or("a parameter"));
-            self.wrong(
-                place,
-                found,
-                expected,
-                "write the unit in which the values of this row are",
-            );
+            self.wrong(place, found, expected, "give the unit of the values in this row");
         }
         declared
     }

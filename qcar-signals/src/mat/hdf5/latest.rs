@@ -65,7 +65,7 @@ impl Walk<'_> {
         Ok(variables.into_iter().map(variable).collect())
     }
 
-    /// Whether so many bytes may be read; then they are taken for read.
+    /// Whether that many bytes may still be read; if so, they count as read.
     fn may_take(&self, bytes: Option<u64>) -> bool {
         let left = bytes.and_then(|bytes| self.left.get().checked_sub(bytes.max(OBJECT)));
         self.left.set(left.unwrap_or(self.left.get()));

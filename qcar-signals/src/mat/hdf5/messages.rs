@@ -9,7 +9,7 @@ use super::too_new;
 /// Bytes before the data of a message.
 const HEAD: u64 = 8;
 
-/// What is told of an object.
+/// The description of an object.
 #[derive(Default)]
 pub(super) struct Header<'a> {
     /// Tree and heap of a group.

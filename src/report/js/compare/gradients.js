@@ -6,7 +6,7 @@ function gradients({ kc }) {
   const element = section(
     'kc',
     'Kinematics and compliance',
-    h('p', {}, 'Gradients of the curves, each with one standard deviation. The last column is the difference over that of both.'),
+    h('p', {}, 'Gradients of the curves, each with one standard deviation. The last column is the difference divided by the combined standard deviation.'),
     table(
       'Gradients',
       [

@@ -15,9 +15,9 @@ function moves({ parameters: all }) {
       {},
       'Of ',
       bothKeys(),
-      ', what moved most comes first, what only one of them has comes last.',
+      ', the largest change first; parameters that only one side has come last.',
       known
-        ? ' The last column is the difference over the combined standard error of both fits: beyond 2 it is hardly chance.'
+        ? ' The last column is the difference divided by the combined standard error of both fits: above 2 it is hardly due to chance.'
         : null,
     ),
     differing.length ? moveTable('What differs', differing, known, most) : null,

@@ -39,7 +39,7 @@ function passages({ cleat, traces }) {
         [', and ', key('measured', 'what was measured')],
         [', and what was measured of ', key('measured-a', 'A'), ' and ', key('measured-b', 'B')],
       ][count],
-      '. Time counts from where the wheel feels the cleat. The peak is the largest acceleration within the first 100 ms, the after-shake the root mean square of the second after it.',
+      '. Time starts when the wheel reaches the cleat. The peak is the largest acceleration within the first 100 ms, the after-shake the RMS acceleration in the second after that.',
     ),
     shown.control,
     shown.place,

@@ -23,8 +23,8 @@ function sides(data) {
       'p',
       {},
       differ
-        ? ['What only one of the models has, or has otherwise, stands out in the colour of ', bothKeys(), '.']
-        : `Both sides are of the model ${a.model}: ${lowered(a.doc)}. The drawing holds the values of B.`,
+        ? ['Differences between the models are highlighted in the colour of ', bothKeys(), '.']
+        : `Both sides are of the model ${a.model}: ${lowered(a.doc)}. The drawing shows the values of B.`,
     ),
     differ ? [h('h3', {}, `A, ${a.model}`), h('div', { class: 'drawings of-a' }, first)] : null,
     differ ? h('h3', {}, `B, ${b.model}`) : null,

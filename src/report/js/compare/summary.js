@@ -22,7 +22,7 @@ function movedSentence({ parameters: all, changes }) {
   const parts = Object.values(changes).reduce((sum, own) => sum + own.length, 0);
   const first = moved.length
     ? `${moved.length} of ${all.length} parameters ${moved.length === 1 ? 'differs' : 'differ'}`
-    : 'No parameter has another value';
+    : 'No parameter differs';
   const second = lonely.length
     ? `, ${lonely.length} ${lonely.length === 1 ? 'belongs' : 'belong'} to one of the models alone`
     : '';

@@ -19,7 +19,7 @@ function vibrations({ modes: pairs }) {
       {},
       'Undamped natural frequency, damping ratio and shape of ',
       bothKeys(),
-      '. Bars to the right move with the mass that moves most, bars to the left against it; a pale bar moves out of phase. Vibrations stand side by side where their shapes are alike.',
+      '. Bars to the right are in phase with the mass that moves most, bars to the left in antiphase; pale bars are in between. Modes of similar shape are paired.',
     ),
     figure(
       'modes',

@@ -28,7 +28,7 @@ function cuts(data) {
     section(
       'cuts',
       'Cuts through the solution space',
-      h('p', {}, 'Each dot is a design, good if filled; its other parameters lie anywhere in their intervals. The box is the solution space.'),
+      h('p', {}, 'Each dot is a design, good if filled; its other parameters are anywhere in their intervals. The box is the solution space.'),
       h('div', { class: 'columns two' }, figures),
     ),
   );

@@ -27,7 +27,7 @@ function front(data) {
       'Front',
       h('p', {}, `Of ${own.evaluated} designs these ${own.points.length} meet all targets and none is better in every metric; values are means over the runs. Rings are `, key('before', 'today'), ' and ', key('after', 'the design of least cost'), '.'),
       h('div', { class: 'columns two' }, figures),
-      details('The designs behind the points', table('Designs of the front', columns, rows)),
+      details('Designs of the points', table('Designs of the front', columns, rows)),
     ),
   );
 }

@@ -22,7 +22,7 @@ function intervals(data) {
   ]);
   const { space } = data;
   const words = space
-    ? `Anywhere in the solution space ${percent(space.probability, 3)} of the designs meet all targets; with 95 % confidence it is at least ${percent(space.at_least, 3)}, and ${percent(space.wanted, 3)} were wanted. Each team may choose within its interval, whatever the others choose.`
+    ? `Of the designs in the solution space ${percent(space.probability, 3)} meet all targets (at least ${percent(space.at_least, 3)} with 95 % confidence; wanted: ${percent(space.wanted, 3)}). Each team may choose freely within its interval.`
     : 'Each bar is the range of a parameter.';
   const trial = tried(data);
   const element = section(

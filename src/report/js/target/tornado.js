@@ -17,7 +17,7 @@ function tornado(data) {
     element: section(
       'sensitivity',
       'What moves them',
-      h('p', {}, 'Percent of a metric for one percent of a parameter at the design, mean over the runs.'),
+      h('p', {}, 'Elasticities at the design: percent of a metric per percent of a parameter, mean over the runs.'),
       h('div', { class: 'columns' }, data.sensitivity.map(one)),
     ),
   };

@@ -44,8 +44,8 @@ function wanted(data) {
       ' and ',
       key('after', 'the design'),
       data.met
-        ? '. A multiplier is what the cost would fall by if the limit were looser by its own size.'
-        : '. A multiplier is the share that a target has in what stands in the way.',
+        ? '. A multiplier is the rate at which the cost falls as the limit is loosened, per 100 % of the limit.'
+        : '. A multiplier is the share of a target in the conflict.',
     ),
     table('Targets', columns, data.targets.map(row)),
     data.uncertainty ? h('p', {}, doubts(data.uncertainty)) : null,
@@ -67,6 +67,6 @@ function doubts({ all, draws, wanted, parameters }) {
   const by = Object.entries(parameters)
     .filter(([, names]) => names.length)
     .map(([source, names]) => `${source} (${names.join(', ')})`);
-  const asked = wanted === null ? '' : ` Each target was to hold with ${percent(wanted, 3)}; beyond the limit counts the margin for that.`;
-  return `With what is not known of the parameters, the design meets all that must hold in ${percent(all, 3)} of ${draws} draws.${asked} In doubt by ${by.join(', ')}.`;
+  const asked = wanted === null ? '' : ` Each target shall hold with a probability of ${percent(wanted, 3)}; the excess over the limit includes the margin for that.`;
+  return `With uncertain parameters, the design meets all targets that must hold in ${percent(all, 3)} of ${draws} draws.${asked} Sources of uncertainty: ${by.join(', ')}.`;
 }

@@ -125,18 +125,18 @@ impl Nonlinear {
             "did not converge"
         };
         let mut out = format!(
-            "{} fitted to {}: {ended}, {}\nresidual over its uncertainty: {} of the fitted runs",
+            "{} fitted to {}: {ended}, {}\nRMS residual in standard deviations: {} of the fitted runs",
             self.model,
             self.campaign.name,
             refit.stop.sentence(),
             number(gap.fit, 3),
         );
         if gap.held_out.is_finite() {
-            out += &format!(", {} of those held out", number(gap.held_out, 3));
+            out += &format!(", {} of the held-out runs", number(gap.held_out, 3));
         }
         out += &format!("\n{} starts, {}\n", self.starts, self.other_minima());
         if gap.fit > MUCH {
-            out += "note: the residuals are far above their uncertainty, which the standard errors do not account for: the model \
+            out += "note: the residuals are far above noise, which the standard errors do not account for: the model \
                     lacks something (`qcar discover` looks for it)\n";
         }
         out += &noted(&self.campaign.notices);
@@ -157,11 +157,11 @@ impl Nonlinear {
 
     fn other_minima(&self) -> String {
         match &self.found.others[..] {
-            [] => "which met no other minimum".into(),
+            [] => "which found no other minimum".into(),
             [next, others @ ..] => {
                 let odds = number(next.log_odds, 2);
                 format!(
-                    "which met {} other minima, against the next of which the log odds are {odds}",
+                    "which found {} other minima; the log odds against the next are {odds}",
                     1 + others.len()
                 )
             }

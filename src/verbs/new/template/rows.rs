@@ -5,9 +5,9 @@ use qcar_runtime::model::{About, Default, Parameter};
 
 /// What the facts are, in the order of [`FACTS`].
 const FACT_NAMES: [&str; 7] = [
-    "Static mass carried by the tyre; half of the vehicle's mass on this axle where it is empty",
-    "Mass of one side of the vehicle; half of the whole where it is empty",
-    "Unsprung mass of the same side's other axle; that of this workbook where it is empty",
+    "Static mass carried by the tyre; if empty, half of the vehicle's mass on this axle",
+    "Mass of one side of the vehicle; if empty, half of the whole",
+    "Unsprung mass of the same side's other axle; if empty, that of this workbook",
     "Unloaded radius of the tyre",
     "Static load of the tyre",
     "Deflection of the tyre under its static load",

@@ -70,10 +70,10 @@ impl Sheet<'_> {
     fn head(&mut self, model: Option<&str>) -> Result<(), XlsxError> {
         let formats = self.formats;
         self.sheet.write_string_with_format(0, 0, "Vehicle", &formats.title)?;
-        let hint = "Fill in the coloured cells. A unit may be changed, then its row is in it. What an axle does not have \
-                    stays empty. All masses are those of one corner.";
+        let hint = "Fill in the coloured cells. You may change a unit; its row is then in that unit. Leave empty what an axle \
+                    does not have. All masses are those of one corner.";
         self.sheet.write_string(1, 0, hint)?;
-        self.label(2, "Axle that is read without `axle` in a campaign", "axle")?;
+        self.label(2, "Axle that is read if a campaign does not state `axle`", "axle")?;
         self.word(2, 2, "axle", AXLES[0], &AXLES)?;
         self.label(3, "Mass of the whole vehicle", "vehicle.mass")?;
         self.measured(3, 2, "vehicle.mass", "kg", None)?;
@@ -213,5 +213,5 @@ fn validation(low: f64, high: f64, unit: &str) -> Result<DataValidation, XlsxErr
         .allow_decimal_number(DataValidationRule::Between(low, high))
         .set_error_style(DataValidationErrorStyle::Warning)
         .set_error_title("Not plausible")?
-        .set_error_message(format!("Plausible are numbers from {low} to {high} {unit}."))
+        .set_error_message(format!("Numbers from {low} to {high} {unit} are plausible."))
 }

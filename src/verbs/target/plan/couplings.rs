@@ -1,4 +1,4 @@
-//! What must hold between parameters.
+//! Couplings between parameters.
 
 use qcar_runtime::target::{Coupling, Knob, Move};
 use toml::Spanned;
@@ -25,13 +25,13 @@ impl Planner<'_, '_> {
                         continue;
                     };
                     if moves.iter().any(|own| own.parameter == place) {
-                        let found = "a parameter that moves already";
+                        let found = "a parameter that already follows or changes";
                         self.wrong(
                             parameter,
                             "coupling.parameter",
                             found,
-                            "one that follows nothing else",
-                            "remove one of both",
+                            "a parameter that follows no other",
+                            "remove one of them",
                         );
                         continue;
                     }

@@ -1,4 +1,4 @@
-//! What may move: parameters with their ranges, steps and costs.
+//! Parameters that may change, with their ranges, steps and costs.
 
 use qcar_runtime::target::{Knob, Move};
 use toml::Spanned;
@@ -37,11 +37,11 @@ impl Planner<'_, '_> {
             units.push(unit);
         }
         if self.read.file.parameters.is_empty() {
-            let remedy = "add a table [[parameter]] with name and range for each that may";
+            let remedy = "add a table [[parameter]] with name and range for each parameter that may change";
             self.wrong(
                 &self.read.file.subject,
                 "parameter",
-                "no parameter that may move",
+                "no parameter that may change",
                 "at least one",
                 remedy,
             );

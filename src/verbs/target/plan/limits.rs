@@ -1,4 +1,4 @@
-//! What must hold of metrics: targets with the readings that they are of, as limits.
+//! Targets as limits of readings of metrics.
 
 use qcar_runtime::metric::Reading;
 use qcar_runtime::target::{Limit, Sense};
@@ -141,7 +141,7 @@ impl<'a> Planner<'a, '_> {
                             key,
                             &found,
                             "targets that can hold together",
-                            "remove one of both, or make it a wish",
+                            "remove one of them, or make it a wish",
                         );
                         continue;
                     }

@@ -1,4 +1,4 @@
-//! What else is asked for: the front, and the solution space.
+//! Further questions: the front, and the solution space.
 
 use qcar_runtime::target::{Knob, Sense};
 use toml::Spanned;

@@ -1,4 +1,4 @@
-//! What is not known of the parameters, whatever design is chosen.
+//! Uncertainty of the parameters, for every design.
 
 use std::collections::BTreeMap;
 
@@ -63,8 +63,7 @@ impl Planner<'_, '_> {
                 let [low, high] = *at.get_ref();
                 if !(low < high && low.is_finite() && high.is_finite()) {
                     let found = format!("[{low}, {high}]");
-                    let expected =
-                        "two numbers of kelvin above the temperature for which the values hold, the lower first";
+                    let expected = "two temperatures in kelvin relative to that of the values, the lower first";
                     self.wrong(at, key, &found, expected, "correct them");
                 }
                 if own.per_kelvin.is_empty() {
@@ -73,7 +72,7 @@ impl Planner<'_, '_> {
                         at,
                         key,
                         "nothing that depends on it",
-                        "parameters with their change per kelvin",
+                        "`per_kelvin` for at least one parameter",
                         remedy,
                     );
                 }
@@ -81,7 +80,7 @@ impl Planner<'_, '_> {
             }
             None => {
                 if let Some(at) = own.per_kelvin.values().next() {
-                    let remedy = "add `temperature = [-30, 50]`, in kelvin above that for which the values hold";
+                    let remedy = "add `temperature = [-30, 50]`, in kelvin relative to that of the values";
                     self.wrong(
                         at,
                         "uncertainty.per_kelvin",
