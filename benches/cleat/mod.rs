@@ -55,11 +55,11 @@ pub fn parameters() -> Values {
     Values::resolve(AxleD.about(), &given, &Default::default()).expect("every parameter has a value")
 }
 
-/// It on its tyre.
-pub fn car(parameters: &Values) -> Car<'_, AxleD> {
+/// A model of it on its tyre.
+pub fn car<'a, M: Model + ?Sized>(model: &'a M, parameters: &'a Values) -> Car<'a, M> {
     let tyre = Tyre::new(RADIUS, STATIC_DEFLECTION, Geometry::Area, Rates::AtStaticDeflection).expect("a tyre");
     Car {
-        model: &AxleD,
+        model,
         parameters: parameters.as_slice(),
         tyre,
         load: LOAD,

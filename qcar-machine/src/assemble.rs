@@ -129,7 +129,15 @@ impl Assembler {
 
     /// One number from memory, four times.
     pub fn broadcast(&mut self, to: Register, from: Memory) {
-        self.vex(Width::Four, Prefix::P66, Map::M0F38, 0x19, to, None, Operand::Memory(from));
+        self.vex(
+            Width::Four,
+            Prefix::P66,
+            Map::M0F38,
+            0x19,
+            to,
+            None,
+            Operand::Memory(from),
+        );
     }
 
     /// `to = a ∘ b`
@@ -240,7 +248,16 @@ impl Assembler {
     }
 
     #[allow(clippy::too_many_arguments, reason = "these are the fields of the instruction")]
-    fn vex(&mut self, width: Width, prefix: Prefix, map: Map, opcode: u8, reg: Register, a: Option<Register>, b: Operand) {
+    fn vex(
+        &mut self,
+        width: Width,
+        prefix: Prefix,
+        map: Map,
+        opcode: u8,
+        reg: Register,
+        a: Option<Register>,
+        b: Operand,
+    ) {
         let (index, base) = high_bits(b);
         // The fields of registers are kept inverted.
         let inverted = !a.map_or(0, |a| a.0) & 15;

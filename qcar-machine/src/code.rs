@@ -5,9 +5,9 @@
 )]
 
 use memmap2::{Mmap, MmapMut};
+use qcar_dsl::derive::vectors::Vectors;
 use qcar_dsl::evaluate::given::{Given, Part};
 use qcar_dsl::program::Program;
-use qcar_dsl::derive::vectors::Vectors;
 use qcar_model::{LANES, Lanes};
 
 use crate::call::Call;
@@ -117,7 +117,12 @@ impl Code {
             .collect();
         let rows = into.iter_mut().flat_map(|part| part.chunks_exact_mut(points));
         let written: Vec<*mut f64> = rows.map(|row| row.as_mut_ptr()).collect();
-        assert!(written.len() >= self.results, "{} rows for {} results", written.len(), self.results);
+        assert!(
+            written.len() >= self.results,
+            "{} rows for {} results",
+            written.len(),
+            self.results
+        );
         let run = |from: usize, to: usize| {
             // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of `WIDTH` while
             // their first is below `to`, and each row has `points` of them, which is at least `to + WIDTH - 1`.
@@ -139,7 +144,11 @@ impl Code {
 
 #[track_caller]
 fn at_least<T>(entries: &[T], least: usize) -> &[T] {
-    assert!(entries.len() >= least, "{} entries where a model reads {least}", entries.len());
+    assert!(
+        entries.len() >= least,
+        "{} entries where a model reads {least}",
+        entries.len()
+    );
     entries
 }
 
@@ -152,5 +161,50 @@ unsafe extern "sysv64" fn compute<const N: usize>(call: &Call, rows: *const Wide
     let rows = unsafe { std::slice::from_raw_parts(rows, call.arguments()) };
     for (point, result) in result.iter_mut().enumerate().take(N) {
         *result = call.value(|argument| rows[argument][point]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use qcar_dsl::expr::Function;
+    use qcar_dsl::program::{Op, Value};
+
+    /// Else all would be left to the interpreter, which has the same bits.
+    #[test]
+    fn a_processor_with_avx_runs_machine_code_in_each_shape() {
+        let ops = vec![
+            Op::Prepared(1),
+            Op::Constant(2.0),
+            Op::Mul(Value(0), Value(1)),
+            Op::Call(Function::Sin, Value(2)),
+        ];
+        let outputs = vec![Value(2), Value(3)];
+        let program = Program {
+            ops,
+            outputs,
+            curves: Vec::new(),
+        };
+        let code = |shape| Code::new(&Vectors::default(), &program, shape);
+        let shapes = [Shape::Once, Shape::Sets, Shape::Points(&[Part::Constants])];
+        if !std::arch::is_x86_feature_detected!("avx") {
+            return assert!(shapes.into_iter().all(|shape| code(shape).is_none()));
+        }
+        let [once, sets, points] = shapes.map(|shape| code(shape).expect("the program has a translation"));
+        let constants = [7.0, 0.25, 0.5, 0.75, 1.0, 1.25];
+        let mut at = [0.0; 2];
+        once.run(&Given::default().with(Part::Constants, &constants), &mut at);
+        assert_eq!(at, [0.5, 0.5f64.sin()]);
+        let mut rows = [[0.0; LANES]; 2];
+        sets.sets(&[(Part::Constants, &[[7.0; LANES], [0.25; LANES]])], &mut rows);
+        assert_eq!(rows, [[0.5; LANES], [0.5f64.sin(); LANES]]);
+        let columns = [[0.0; 5], [0.25, 0.5, 0.75, 1.0, 1.25]];
+        let given = Given::default().with(Part::Constants, columns.as_flattened());
+        let (mut twice, mut sine) = ([0.0; 5], [0.0; 5]);
+        assert!(points.sweep(&given, 5, &mut [&mut twice, &mut sine]));
+        assert_eq!(
+            (twice, sine),
+            (columns[1].map(|x| 2.0 * x), columns[1].map(|x| (2.0 * x).sin()))
+        );
     }
 }

@@ -24,10 +24,9 @@ mod translate;
 // Instructions run.
 #[cfg(target_arch = "x86_64")]
 mod code;
-// There are none.
+// On other processors, where there are none.
 #[cfg(not(target_arch = "x86_64"))]
-#[path = "elsewhere.rs"]
-mod code;
+mod elsewhere;
 // A model by them.
 mod machine;
 

@@ -9,7 +9,10 @@ use qcar_dsl::program::{Program, Programs};
 use qcar_dsl::schedule::Compiled;
 use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
 
+#[cfg(target_arch = "x86_64")]
 use crate::code::Code;
+#[cfg(not(target_arch = "x86_64"))]
+use crate::elsewhere::Code;
 use crate::shape::Shape;
 
 /// A compiled model, its programs translated into machine code.
@@ -214,7 +217,10 @@ impl Model for Machine {
             .with(Part::Constants, constants)
             .with(Part::Frequency, omega);
         let lines = omega.len();
-        let known = self.responses.get(excitation).zip(self.programs.responses.get(excitation));
+        let known = self
+            .responses
+            .get(excitation)
+            .zip(self.programs.responses.get(excitation));
         let is_done = known.is_some_and(|([value, with_jacobian], programs)| match &mut into.jacobian {
             None => {
                 let code = self.code(&value.points, &programs.value, LINES);
@@ -245,7 +251,10 @@ impl Model for Machine {
         let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_derivative, &rolling.derivative)) else {
             return self.interpreter.rolling_derivative(constants, x, u, contact, dx);
         };
-        code.run(&prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)), dx);
+        code.run(
+            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
+            dx,
+        );
     }
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
@@ -253,7 +262,10 @@ impl Model for Machine {
         let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_outputs, &rolling.outputs)) else {
             return self.interpreter.rolling_outputs(constants, x, u, contact, y);
         };
-        code.run(&prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)), y);
+        code.run(
+            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
+            y,
+        );
     }
 
     fn alone(&self, link: usize) -> Option<&dyn Model> {

@@ -61,4 +61,3 @@ impl Reads {
         Leaf::Entry { part: place, entry }
     }
 }
-

@@ -104,7 +104,10 @@ impl<'a> Writer<'a> {
             let value = Value(place as u32);
             self.operation(value, op);
             self.store_results(value);
-            self.program.arguments(op).chain([value]).for_each(|done| self.values.release(done));
+            self.program
+                .arguments(op)
+                .chain([value])
+                .for_each(|done| self.values.release(done));
         }
         self.values.clear().for_each(drop);
         self.frame.repeat(&mut self.body, start);
@@ -148,7 +151,8 @@ impl<'a> Writer<'a> {
         let from = self.in_register(a);
         self.values.consume(a);
         let to = self.allocate(value);
-        self.body.arithmetic(Arithmetic::Sqrt, self.width(), to, from, Operand::Register(from));
+        self.body
+            .arithmetic(Arithmetic::Sqrt, self.width(), to, from, Operand::Register(from));
     }
 
     fn bits(&mut self, what: Bits, value: Value, a: Value, number: usize) {
@@ -164,7 +168,8 @@ impl<'a> Writer<'a> {
         let ([a, b], to) = self.apart(value, [a, b]);
         let width = self.width();
         self.body.arithmetic(what, width, to, b, Operand::Register(a));
-        self.body.compare(Comparison::Unordered, width, OWN, a, Operand::Register(a));
+        self.body
+            .compare(Comparison::Unordered, width, OWN, a, Operand::Register(a));
         self.body.blend(width, to, to, b, OWN);
     }
 
@@ -183,7 +188,8 @@ impl<'a> Writer<'a> {
     fn select(&mut self, value: Value, test: Value, a: Value, b: Value) {
         let test_register = self.in_register(test);
         let zero = self.own_number(ZERO);
-        self.body.compare(Comparison::Greater, self.width(), OWN, test_register, zero);
+        self.body
+            .compare(Comparison::Greater, self.width(), OWN, test_register, zero);
         self.values.consume(test);
         let ([a, b], to) = self.apart(value, [a, b]);
         self.body.blend(self.width(), to, b, a, OWN);
@@ -270,7 +276,8 @@ impl<'a> Writer<'a> {
     /// A value that is read once more stays in memory, and so does one that would drive out another.
     fn operand(&mut self, value: Value) -> Operand {
         let waits = self.values.register(value).is_none();
-        if waits && (self.values.is_last(value) || !self.values.has_room())
+        if waits
+            && (self.values.is_last(value) || !self.values.has_room())
             && let Some(place) = self.place(value)
         {
             return Operand::Memory(place);

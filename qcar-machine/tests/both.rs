@@ -57,16 +57,26 @@ impl Both {
         self.same(states, |model, to| model.derivative(constants, &x, &u, to));
         self.same(outputs, |model, to| model.outputs(constants, &x, &u, to));
         self.same(about.matrices.len(), |model, to| model.matrices(p, &x, &u, to));
-        self.same(about.sensitivities.len(), |model, to| model.sensitivities(p, &x, &u, to));
+        self.same(about.sensitivities.len(), |model, to| {
+            model.sensitivities(p, &x, &u, to)
+        });
         self.same(about.parameter_jacobian.len(), |model, to| {
             model.parameter_jacobian(p, &x, &u, to)
         });
         let n = at.numbers(3, 4);
         let (s, v) = (n[0], n[1]);
-        let contact = Contact { s, v, force: [n[2], n[3]] };
+        let contact = Contact {
+            s,
+            v,
+            force: [n[2], n[3]],
+        };
         self.same(1, |model, to| to[0] = model.contact_force(constants, &x, s, v));
-        self.same(states, |model, to| model.rolling_derivative(constants, &x, &u, &contact, to));
-        self.same(outputs, |model, to| model.rolling_outputs(constants, &x, &u, &contact, to));
+        self.same(states, |model, to| {
+            model.rolling_derivative(constants, &x, &u, &contact, to)
+        });
+        self.same(outputs, |model, to| {
+            model.rolling_outputs(constants, &x, &u, &contact, to)
+        });
     }
 
     fn compare_sets(&self, p: &[f64], at: &At) {
@@ -76,12 +86,19 @@ impl Both {
         };
         let rows = |of: &[f64]| -> Vec<Lanes> { of.iter().enumerate().map(spread).collect() };
         let p = rows(p);
-        let (x, u) = (&rows(&at.numbers(11, about.states.len())), &rows(&at.numbers(5, about.inputs.len())));
+        let (x, u) = (
+            &rows(&at.numbers(11, about.states.len())),
+            &rows(&at.numbers(5, about.inputs.len())),
+        );
         let constants = &self.same_rows(about.constants, |model, to| model.prepare_sets(&p, to));
-        self.same_rows(about.states.len(), |model, to| model.derivative_sets(constants, x, u, to));
+        self.same_rows(about.states.len(), |model, to| {
+            model.derivative_sets(constants, x, u, to)
+        });
         self.same_rows(about.outputs.len(), |model, to| model.outputs_sets(constants, x, u, to));
         self.same_rows(about.matrices.len(), |model, to| model.matrices_sets(&p, x, u, to));
-        self.same_rows(about.sensitivities.len(), |model, to| model.sensitivities_sets(&p, x, u, to));
+        self.same_rows(about.sensitivities.len(), |model, to| {
+            model.sensitivities_sets(&p, x, u, to)
+        });
     }
 
     fn compare_points(&self, p: &[f64], constants: &[f64], at: &At, count: usize) {
@@ -91,9 +108,15 @@ impl Both {
             &at.numbers(97, count * about.inputs.len())[..],
         );
         let points = &Points { count, x, u };
-        self.same(count * about.states.len(), |model, to| model.derivative_at(constants, points, to));
-        self.same(count * about.outputs.len(), |model, to| model.outputs_at(constants, points, to));
-        self.same(count * about.matrices.len(), |model, to| model.matrices_at(p, points, to));
+        self.same(count * about.states.len(), |model, to| {
+            model.derivative_at(constants, points, to)
+        });
+        self.same(count * about.outputs.len(), |model, to| {
+            model.outputs_at(constants, points, to)
+        });
+        self.same(count * about.matrices.len(), |model, to| {
+            model.matrices_at(p, points, to)
+        });
         self.same(count * about.parameter_jacobian.len(), |model, to| {
             model.parameter_jacobian_at(p, points, to)
         });

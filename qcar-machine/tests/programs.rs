@@ -88,7 +88,11 @@ fn judge(compiled: &Compiled, given: &[f64]) {
     let (x, u) = (&rest[..states * POINTS], &rest[states * POINTS..][..inputs * POINTS]);
     both.same(results, |model, to| model.derivative(constants, x, u, to));
     for count in [1, 4, POINTS] {
-        let points = &Points { count, x: &x[..states * count], u: &u[..inputs * count] };
+        let points = &Points {
+            count,
+            x: &x[..states * count],
+            u: &u[..inputs * count],
+        };
         both.same(results * count, |model, to| model.derivative_at(constants, points, to));
     }
     let row = |value: &f64| -> Lanes { std::array::from_fn(|set| if set < 3 { *value } else { value * set as f64 }) };
@@ -99,7 +103,16 @@ fn judge(compiled: &Compiled, given: &[f64]) {
 }
 
 fn given() -> impl Strategy<Value = Vec<f64>> {
-    let special = prop::sample::select(vec![0.0, -0.0, 1.0, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e-310, 1e300]);
+    let special = prop::sample::select(vec![
+        0.0,
+        -0.0,
+        1.0,
+        f64::INFINITY,
+        f64::NEG_INFINITY,
+        f64::NAN,
+        1e-310,
+        1e300,
+    ]);
     prop::collection::vec(prop_oneof![6 => -2.0..2.0f64, 1 => special], PREPARED + 12 * POINTS)
 }
 
@@ -148,13 +161,19 @@ fn waiting(symbols: &[Symbol], count: u32, called: bool) -> Program {
         ops.push(Op::Add(last, Value(first + 2 * place + 1)));
         last = Value(ops.len() as u32 - 1);
     }
-    Program { ops, outputs: vec![last], curves: Vec::new() }
+    Program {
+        ops,
+        outputs: vec![last],
+        curves: Vec::new(),
+    }
 }
 
 /// A page of the stack, several, and more than there may be.
 #[test]
 fn many_values_wait_on_the_stack() {
-    let given: Vec<f64> = (0..PREPARED + 12 * POINTS).map(|place| 1.0 + 1e-3 * place as f64).collect();
+    let given: Vec<f64> = (0..PREPARED + 12 * POINTS)
+        .map(|place| 1.0 + 1e-3 * place as f64)
+        .collect();
     for count in [10, 120, 1000, 7000, 20_000] {
         for called in [false, true] {
             judge(&with_derivative(|symbols| waiting(symbols, count, called)), &given);
@@ -168,7 +187,12 @@ fn slices_that_are_too_short_panic() {
     let compiled = compiled(Path::new("../models/axles/axle_d.axle"));
     let machine = Machine::new(&compiled);
     let about = machine.about();
-    let [constants, x, u, dx] = [about.constants, about.states.len(), about.inputs.len(), about.states.len()];
+    let [constants, x, u, dx] = [
+        about.constants,
+        about.states.len(),
+        about.inputs.len(),
+        about.states.len(),
+    ];
     let runs = |constants: usize, x: usize, u: usize, dx: usize| {
         let [constants, x, u, mut dx] = [constants, x, u, dx].map(|length| vec![1.0; length]);
         catch_unwind(AssertUnwindSafe(|| machine.derivative(&constants, &x, &u, &mut dx))).is_ok()
@@ -178,7 +202,10 @@ fn slices_that_are_too_short_panic() {
     assert!(!runs(constants, x, 0, dx) && !runs(constants, x, u, dx - 1));
     let sets = |x: usize, dx: usize| {
         let [constants, x, u, mut dx] = [constants, x, u, dx].map(|rows| vec![[1.0; LANES]; rows]);
-        catch_unwind(AssertUnwindSafe(|| machine.derivative_sets(&constants, &x, &u, &mut dx))).is_ok()
+        catch_unwind(AssertUnwindSafe(|| {
+            machine.derivative_sets(&constants, &x, &u, &mut dx)
+        }))
+        .is_ok()
     };
     assert!(sets(x, dx) && !sets(x - 1, dx) && !sets(x, dx - 1));
     let points = |x: usize, dx: usize| {

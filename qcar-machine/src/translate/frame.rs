@@ -156,7 +156,10 @@ impl Frame {
         let mut before = Assembler::default();
         if self.calls {
             PRESERVED.iter().for_each(|&own| before.push(own));
-            self.given.iter().zip(GIVEN).for_each(|(&to, from)| before.copy(to, from));
+            self.given
+                .iter()
+                .zip(GIVEN)
+                .for_each(|(&to, from)| before.copy(to, from));
         }
         if needs_stack {
             enter(&mut before, bytes);
