@@ -52,16 +52,47 @@ def matrices():
     return ca.Function("axle_matrices", [p], [values, slopes]), values.numel(), places
 
 
+def times(a, b):
+    return a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]
+
+
+def minus(a, b):
+    return a[0] - b[0], a[1] - b[1]
+
+
+def over(a, b):
+    size = b[0] ** 2 + b[1] ** 2
+    return (a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size
+
+
+def solved(matrix, right):
+    """By elimination; complex numbers are pairs, which CasADi has none of."""
+    count = len(right)
+    for n in range(count):
+        for row in range(n + 1, count):
+            factor = over(matrix[row][n], matrix[n][n])
+            matrix[row] = [minus(a, times(factor, b)) for a, b in zip(matrix[row], matrix[n])]
+            right[row] = minus(right[row], times(factor, right[n]))
+    x = [None] * count
+    for n in reversed(range(count)):
+        rest = right[n]
+        for column in range(n + 1, count):
+            rest = minus(rest, times(matrix[n][column], x[column]))
+        x[n] = over(rest, matrix[n][n])
+    return x
+
+
 def response():
     """Real and imaginary parts of the accelerations per metre of pad, and their Jacobian, at one circular frequency."""
     w = ca.SX.sym("w")
     z, v, u = ca.SX.sym("z", 5), ca.SX.sym("v", 5), ca.SX.sym("u", 4)
     y = accelerations(z, v, u)
-    stiffness, damping = -ca.jacobian(y, z), -ca.jacobian(y, v)
+    real = -ca.jacobian(y, z) - w**2 * ca.SX.eye(5)
+    imaginary = -w * ca.jacobian(y, v)
+    matrix = [[(real[i, j], imaginary[i, j]) for j in range(5)] for i in range(5)]
     pad, speed = ca.jacobian(y, u[0]), ca.jacobian(y, u[1])
-    real, imaginary = stiffness - w**2 * ca.SX.eye(5), w * damping
-    whole = ca.vertcat(ca.horzcat(real, -imaginary), ca.horzcat(imaginary, real))
-    moved = -(w**2) * ca.solve(whole, ca.vertcat(pad, w * speed))
+    x = solved(matrix, [(pad[i], w * speed[i]) for i in range(5)])
+    moved = -(w**2) * ca.vertcat(*[re for re, _ in x], *[im for _, im in x])
     return ca.Function("axle_response", [p, w], [ca.densify(moved), ca.densify(ca.jacobian(moved, p))])
 
 
