@@ -6,12 +6,12 @@ mod frame;
 use qcar_dsl::expr::Function;
 use qcar_dsl::program::{Op, Program, Value};
 
-use crate::assemble::{Arithmetic, Assembler, Bits, Comparison, Memory, Operand, Pointer, Register, Width};
+use crate::assemble::{Arithmetic, Assembler, Bits, Comparison, Operand, Pointer, Register, Width};
 use crate::call::Call;
 use crate::reads::{Leaf, Reads};
 use crate::shape::Shape;
 use crate::values::{OWN, Values};
-use frame::Frame;
+use frame::{Frame, Place};
 
 /// A number as wide as a register.
 pub type Wide = [f64; 4];
@@ -278,7 +278,7 @@ impl<'a> Writer<'a> {
         let waits = self.values.register(value).is_none();
         if waits
             && (self.values.is_last(value) || !self.values.has_room())
-            && let Some(place) = self.place(value)
+            && let Place::Whole(place) = self.place(value)
         {
             return Operand::Memory(place);
         }
@@ -288,34 +288,24 @@ impl<'a> Writer<'a> {
     fn load(&mut self, value: Value, to: Register) -> Register {
         let width = self.width();
         match self.place(value) {
-            Some(place) => self.body.load(width, to, place),
-            None => {
-                let entry = self.broadcast(value);
-                self.body.broadcast(to, entry);
-            }
+            Place::Whole(place) => self.body.load(width, to, place),
+            Place::Shared(place) => self.body.broadcast(to, place),
         }
         to
     }
 
-    /// Where a value stands in memory as an instruction can take it; `None` for a single number that four points share.
-    fn place(&mut self, value: Value) -> Option<Memory> {
+    /// Where a value that is in no register stands in memory.
+    fn place(&mut self, value: Value) -> Place {
         if let Some(slot) = self.values.slot(value) {
-            return Some(self.frame.slot(slot));
+            return Place::Whole(self.frame.slot(slot));
         }
         if let Some(number) = self.number[value.0 as usize] {
-            return Some(self.frame.number(number));
+            return Place::Whole(self.frame.number(number));
         }
-        match self.reads.of(value)? {
-            Leaf::Row(row) => Some(self.frame.row(&mut self.body, row)),
-            Leaf::Entry { part, entry } => self.frame.entry(part, entry),
-        }
-    }
-
-    /// Where the number stands that four points share.
-    fn broadcast(&self, value: Value) -> Memory {
         match self.reads.of(value) {
-            Some(Leaf::Entry { part, entry }) => self.frame.single(part, entry),
-            _ => self.frame.result(),
+            Some(Leaf::Row(row)) => Place::Whole(self.frame.row(&mut self.body, row)),
+            Some(Leaf::Entry { part, entry }) => self.frame.entry(part, entry),
+            None => unreachable!("{value:?} is no leaf, and was computed without being kept"),
         }
     }
 

@@ -44,6 +44,14 @@ const RESULTS: usize = 4;
 /// The last one of both.
 const NUMBERS: usize = 5;
 
+/// Where a value stands in memory.
+pub enum Place {
+    /// As many numbers as an instruction works on, so that it can take them from there.
+    Whole(Memory),
+    /// One number that four points share.
+    Shared(Memory),
+}
+
 /// How many parts a program can read by entry.
 pub fn parts(shape: Shape) -> usize {
     match shape {
@@ -81,18 +89,14 @@ impl Frame {
         }
     }
 
-    /// The entry of a part as an instruction can take it; `None` for a single number that four points share.
-    pub fn entry(&self, part: usize, entry: usize) -> Option<Memory> {
+    /// The entry of a part.
+    pub fn entry(&self, part: usize, entry: usize) -> Place {
+        let own = self.given[part];
         match self.shape {
-            Shape::Once => Some(self.single(part, entry)),
-            Shape::Sets => Some(at(self.given[part], LANES * NUMBER * entry)),
-            Shape::Points(_) => None,
+            Shape::Once => Place::Whole(at(own, NUMBER * entry)),
+            Shape::Sets => Place::Whole(at(own, LANES * NUMBER * entry)),
+            Shape::Points(_) => Place::Shared(at(own, NUMBER * entry)),
         }
-    }
-
-    /// The same entry alone.
-    pub fn single(&self, part: usize, entry: usize) -> Memory {
-        at(self.given[part], NUMBER * entry)
     }
 
     /// The points of a row that is read.
