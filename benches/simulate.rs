@@ -4,7 +4,6 @@ mod cleat;
 
 use cleat::{car, cleat, drive, parameters};
 use divan::Bencher;
-use models::axle_d::AxleD;
 use qcar_runtime::progress::UNTOLD;
 use qcar_runtime::simulate::{Settings, end_of_ride, ride, rides};
 
@@ -16,7 +15,7 @@ fn main() {
 #[divan::bench]
 fn cleat_run(bencher: Bencher<'_, '_>) {
     let (parameters, road) = (parameters(), cleat(0.03));
-    let (car, drive) = (car(&AxleD, &parameters), drive(&road, 30.0 / 3.6));
+    let (car, drive) = (car(&parameters), drive(&road, 30.0 / 3.6));
     bencher.bench_local(|| ride(&car, &drive, &Settings::default()).expect("it rides"));
 }
 
@@ -24,7 +23,7 @@ fn cleat_run(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn cleat_run_unrecorded(bencher: Bencher<'_, '_>) {
     let (parameters, road) = (parameters(), cleat(0.03));
-    let (car, drive) = (car(&AxleD, &parameters), drive(&road, 30.0 / 3.6));
+    let (car, drive) = (car(&parameters), drive(&road, 30.0 / 3.6));
     bencher.bench_local(|| end_of_ride(&car, &drive, &Settings::default()).expect("it rides"));
 }
 
@@ -32,7 +31,7 @@ fn cleat_run_unrecorded(bencher: Bencher<'_, '_>) {
 #[divan::bench]
 fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
     let (parameters, roads) = (parameters(), [0.01, 0.02, 0.03, 0.04].map(cleat));
-    let car = car(&AxleD, &parameters);
+    let car = car(&parameters);
     let drives: Vec<_> = [20.0, 30.0, 40.0]
         .into_iter()
         .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh / 3.6)))

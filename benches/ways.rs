@@ -11,14 +11,13 @@ use std::hint::black_box;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-use models::axle_d::AxleD;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
 use qcar_runtime::fit::Setup;
 use qcar_runtime::model::{Contact, LANES, Model, ResponseMut};
-use qcar_runtime::simulate::{Settings, end_of_ride, ride};
+use qcar_runtime::simulate::{Car, Settings, end_of_ride, ride};
 use subject::{MODEL, Sets, Subject};
 
 /// Of each task in each way.
@@ -46,9 +45,16 @@ fn main() {
     });
     row("fit of 12 parameters", 1, fits);
     let (machine, interpreted) = (Machine::new(&axle_d), Evaluator::new(&axle_d));
-    let ways: [&dyn Model; 3] = [&AxleD, &machine, &interpreted];
-    row("cleat run without a record", 1, ways.map(|model| ride_on(model, false)));
-    row("cleat run with its record", 1, ways.map(|model| ride_on(model, true)));
+    let parameters = cleat::parameters();
+    for (task, recorded) in [
+        ("cleat run without a record", false),
+        ("cleat run with its record", true),
+    ] {
+        let generated = ride_on(cleat::car(&parameters), recorded);
+        let [machine, interpreted] =
+            [&machine as &dyn Model, &interpreted].map(|model| ride_on(cleat::on_tyre(model, &parameters), recorded));
+        row(task, 1, [generated, machine, interpreted]);
+    }
 }
 
 fn compiled(file: &str) -> Compiled {
@@ -140,11 +146,10 @@ fn move_once(model: &dyn Model) -> Work<'_> {
     })
 }
 
-fn ride_on(model: &dyn Model, recorded: bool) -> Work<'_> {
+fn ride_on<'a, M: Model + ?Sized>(car: Car<'a, M>, recorded: bool) -> Work<'a> {
+    let road = cleat::cleat(0.03);
     Box::new(move || {
-        let (parameters, road) = (cleat::parameters(), cleat::cleat(0.03));
-        let (car, drive) = (cleat::car(model, &parameters), cleat::drive(&road, 30.0 / 3.6));
-        let settings = Settings::default();
+        let (drive, settings) = (cleat::drive(&road, 30.0 / 3.6), Settings::default());
         if recorded {
             drop(black_box(ride(&car, &drive, &settings).expect("it rides")));
         } else {

@@ -55,8 +55,13 @@ pub fn parameters() -> Values {
     Values::resolve(AxleD.about(), &given, &Default::default()).expect("every parameter has a value")
 }
 
-/// A model of it on its tyre.
-pub fn car<'a, M: Model + ?Sized>(model: &'a M, parameters: &'a Values) -> Car<'a, M> {
+/// It on its tyre.
+pub fn car(parameters: &Values) -> Car<'_, AxleD> {
+    on_tyre(&AxleD, parameters)
+}
+
+/// The same by another program of its model.
+pub fn on_tyre<'a, M: Model + ?Sized>(model: &'a M, parameters: &'a Values) -> Car<'a, M> {
     let tyre = Tyre::new(RADIUS, STATIC_DEFLECTION, Geometry::Area, Rates::AtStaticDeflection).expect("a tyre");
     Car {
         model,
