@@ -10,25 +10,25 @@ mod subject;
 use gungraun::{library_benchmark, library_benchmark_group};
 use std::hint::black_box;
 use std::process::{Command, Stdio};
-use subject::{Sets, Subject};
+use subject::{MODEL, Sets, Subject};
 
 #[library_benchmark]
-#[bench::axle_d(Subject::new())]
-fn matrices_and_jacobians(mut subject: Subject) -> Subject {
+#[bench::axle_d(Subject::new(MODEL))]
+fn matrices_and_jacobians(mut subject: Subject<'static>) -> Subject<'static> {
     black_box(&mut subject).linearise();
     subject
 }
 
 #[library_benchmark]
-#[bench::axle_d(Sets::new())]
-fn matrices_and_jacobians_of_eight_sets(mut sets: Sets) -> Sets {
+#[bench::axle_d(Sets::new(MODEL))]
+fn matrices_and_jacobians_of_eight_sets(mut sets: Sets<'static>) -> Sets<'static> {
     black_box(&mut sets).linearise();
     sets
 }
 
 #[library_benchmark]
-#[bench::axle_d(Subject::new())]
-fn response_and_jacobian(mut subject: Subject) -> Subject {
+#[bench::axle_d(Subject::new(MODEL))]
+fn response_and_jacobian(mut subject: Subject<'static>) -> Subject<'static> {
     black_box(&mut subject).respond();
     subject
 }

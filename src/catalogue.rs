@@ -9,10 +9,10 @@ use qcar_dsl::check::{Member, check_members};
 use qcar_dsl::compile::compile_wanted;
 use qcar_dsl::diagnostic::Report;
 use qcar_dsl::disk::{Files, compile_file_wanted};
-use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::response::Wanted;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::source::Source;
+use qcar_machine::Machine;
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::Model;
@@ -29,10 +29,10 @@ pub struct Loaded {
     unseen: Vec<Unseen>,
 }
 
-/// Compiled into qcar, or interpreted.
+/// Compiled into qcar, or while it runs.
 enum Program {
     Shipped(&'static dyn Model),
-    File(Box<Evaluator>),
+    File(Box<Machine>),
 }
 
 impl Loaded {
@@ -45,7 +45,7 @@ impl Loaded {
     }
 
     fn file(compiled: &Compiled) -> Self {
-        Loaded::new(compiled, Program::File(Box::new(Evaluator::new(compiled))))
+        Loaded::new(compiled, Program::File(Box::new(Machine::new(compiled))))
     }
 
     /// Checks what the masses are at the values `p` of all parameters.

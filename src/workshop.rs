@@ -6,8 +6,8 @@ use std::sync::Arc;
 use qcar_dsl::check::Checked;
 use qcar_dsl::compile::{derive, derive_alone};
 use qcar_dsl::difference::moves_alike;
-use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::patch::{NewParameter, Patch, Patched, Signal};
+use qcar_machine::Machine;
 use qcar_runtime::campaign::{Axis, Campaign, Parameter, Test};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, Workshop};
@@ -38,7 +38,7 @@ pub fn given(parameters: &[Parameter], campaign: &Campaign) -> Setting {
 #[derive(Clone)]
 pub struct Bench {
     model: Checked,
-    running: Arc<Evaluator>,
+    running: Arc<Machine>,
     catalogue: Arc<Catalogue>,
     values: Arc<BTreeMap<String, f64>>,
     /// Axes and names of the links that a campaign has measured alone.
@@ -211,8 +211,8 @@ impl Workshop for Bench {
 }
 
 /// A model that runs, and so do its links that are measured alone.
-fn run(model: &Checked, alone: &[(String, String)]) -> Evaluator {
-    let whole = Evaluator::new(&derive(model.clone()));
+fn run(model: &Checked, alone: &[(String, String)]) -> Machine {
+    let whole = Machine::new(&derive(model.clone()));
     let derived = |(axis, link): &(String, String)| derive_alone(model, axis, link);
     let alone = alone.iter().filter_map(|own| Some((own, derived(own)?)));
     alone.fold(whole, |whole, ((axis, link), alone)| {

@@ -57,9 +57,14 @@ pub fn parameters() -> Values {
 
 /// It on its tyre.
 pub fn car(parameters: &Values) -> Car<'_, AxleD> {
+    on_tyre(&AxleD, parameters)
+}
+
+/// The same by another program of its model.
+pub fn on_tyre<'a, M: Model + ?Sized>(model: &'a M, parameters: &'a Values) -> Car<'a, M> {
     let tyre = Tyre::new(RADIUS, STATIC_DEFLECTION, Geometry::Area, Rates::AtStaticDeflection).expect("a tyre");
     Car {
-        model: &AxleD,
+        model,
         parameters: parameters.as_slice(),
         tyre,
         load: LOAD,

@@ -2,22 +2,14 @@
 
 use qcar_runtime::model::{LANES, Lanes, Model, ResponseMut};
 
-qcar_derive::axle! {
-    axle axle_d_z from "models/families/corner.axle" {
-        "The vertical chain of axle_d"
-        subframe = on;
-        powertrain = subframe;
-        spring = arm;
-        damper = arm;
-        longitudinal = off;
-    }
-}
+qcar_derive::axle_file!("benches/subject/axle_d_z.axle");
 
 /// Behind the seam, as the workbench sees it.
 pub const MODEL: &dyn Model = &axle_d_z::AxleDZ;
 
 /// Places of inputs and outputs for a call through the seam.
-pub struct Subject {
+pub struct Subject<'a> {
+    model: &'a dyn Model,
     /// A parameter set.
     pub p: Vec<f64>,
     /// What it prepares to.
@@ -36,17 +28,17 @@ pub struct Subject {
     pub response: [Vec<f64>; 4],
 }
 
-impl Subject {
+impl<'a> Subject<'a> {
     /// Room for everything, and a plausible axle.
-    pub fn new() -> Subject {
-        let about = MODEL.about();
+    pub fn new(model: &'a dyn Model) -> Self {
+        let about = model.about();
         let p = about
             .parameters
             .iter()
             .map(|parameter| value(&parameter.name))
             .collect::<Vec<_>>();
         let mut constants = vec![0.0; about.constants];
-        MODEL.prepare(&p, &mut constants);
+        model.prepare(&p, &mut constants);
         let omega = (0..300)
             .map(|line| std::f64::consts::TAU * frequency(line))
             .collect::<Vec<_>>();
@@ -58,6 +50,7 @@ impl Subject {
             layout.jacobian.len(),
         ];
         Subject {
+            model,
             p,
             constants,
             x: vec![0.0; about.states.len()],
@@ -71,25 +64,27 @@ impl Subject {
 
     /// A, B, C, D and all their parameter Jacobians.
     pub fn linearise(&mut self) {
-        MODEL.matrices(&self.p, &self.x, &self.u, &mut self.matrices);
-        MODEL.sensitivities(&self.p, &self.x, &self.u, &mut self.sensitivities);
+        self.model.matrices(&self.p, &self.x, &self.u, &mut self.matrices);
+        self.model
+            .sensitivities(&self.p, &self.x, &self.u, &mut self.sensitivities);
     }
 
     /// The response of five accelerations to the pad with its full Jacobian, constants included.
     pub fn respond(&mut self) {
-        MODEL.prepare(&self.p, &mut self.constants);
+        self.model.prepare(&self.p, &mut self.constants);
         let [re, im, slopes_re, slopes_im] = &mut self.response;
         let into = ResponseMut {
             re,
             im,
             jacobian: Some((slopes_re, slopes_im)),
         };
-        MODEL.response(0, &self.constants, &self.omega, into);
+        self.model.response(0, &self.constants, &self.omega, into);
     }
 }
 
 /// Several parameter sets together.
-pub struct Sets {
+pub struct Sets<'a> {
+    model: &'a dyn Model,
     p: Vec<Lanes>,
     x: Vec<Lanes>,
     u: Vec<Lanes>,
@@ -99,14 +94,15 @@ pub struct Sets {
     pub sensitivities: Vec<Lanes>,
 }
 
-impl Sets {
+impl<'a> Sets<'a> {
     /// Room for everything, and plausible axles.
-    pub fn new() -> Sets {
-        let about = MODEL.about();
+    pub fn new(model: &'a dyn Model) -> Self {
+        let about = model.about();
         let row = |p: &f64| std::array::from_fn(|set| p * (1.0 + 0.01 * set as f64));
         let room = |rows: usize| vec![[0.0; LANES]; rows];
         Sets {
-            p: Subject::new().p.iter().map(row).collect(),
+            model,
+            p: Subject::new(model).p.iter().map(row).collect(),
             x: room(about.states.len()),
             u: room(about.inputs.len()),
             matrices: room(about.matrices.len()),
@@ -116,8 +112,9 @@ impl Sets {
 
     /// A, B, C, D and all their parameter Jacobians.
     pub fn linearise(&mut self) {
-        MODEL.matrices_sets(&self.p, &self.x, &self.u, &mut self.matrices);
-        MODEL.sensitivities_sets(&self.p, &self.x, &self.u, &mut self.sensitivities);
+        self.model.matrices_sets(&self.p, &self.x, &self.u, &mut self.matrices);
+        self.model
+            .sensitivities_sets(&self.p, &self.x, &self.u, &mut self.sensitivities);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Programs interpreted at run time: the operations of the generated code, in an order of their own.
 
 // What it reads.
-mod given;
+pub mod given;
 // Which operation comes after which.
 mod order;
 // One program.
@@ -11,7 +11,7 @@ use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
 use code::Code;
-use given::{Given, Part};
+use given::{Given, Part, contact_entries, prepared, unprepared};
 
 /// A compiled model, ready to be evaluated.
 ///
@@ -47,11 +47,6 @@ struct RollingCode {
 /// At several points.
 fn sweep(code: &Code, given: &Given, count: usize, into: &mut [f64]) {
     code.sweep(given, &[Part::States, Part::Inputs], count, &mut [into]);
-}
-
-/// In the order of the part that programs read.
-fn entries(contact: &Contact) -> [f64; 4] {
-    [contact.s, contact.v, contact.force[0], contact.force[1]]
 }
 
 impl Evaluator {
@@ -184,7 +179,7 @@ impl Model for Evaluator {
 
     fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.derivative);
-        let contact = entries(contact);
+        let contact = contact_entries(contact);
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.derivative).run(&given, dx);
     }
@@ -196,24 +191,10 @@ impl Model for Evaluator {
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
         let rolling = self.rolling.as_ref().map(|rolling| &rolling.outputs);
-        let contact = entries(contact);
+        let contact = contact_entries(contact);
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.outputs).run(&given, y);
     }
-}
-
-/// What a program reads that sees the parameters through what was prepared of them.
-fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    moving(x, u).with(Part::Constants, constants)
-}
-
-/// What a program reads that sees the parameters themselves.
-fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    moving(x, u).with(Part::Parameters, p)
-}
-
-fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
-    Given::default().with(Part::States, x).with(Part::Inputs, u)
 }
 
 type GivenSets<'a> = [(Part, &'a [Lanes]); 3];

@@ -3,6 +3,8 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use qcar_model::Contact;
+
 use crate::derive::vectors::Vectors;
 use crate::expr::Symbol;
 use crate::program::{Op, Program};
@@ -10,12 +12,17 @@ use crate::program::{Op, Program};
 /// A part of what is given.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Part {
+    /// One value each.
     Parameters,
+    /// What was prepared of them.
     Constants,
+    /// `x`
     States,
+    /// `u`
     Inputs,
     /// Stretch, rate and forces of a rolling tyre.
     Contact,
+    /// rad/s
     Frequency,
 }
 
@@ -25,22 +32,50 @@ pub struct Given<'a>([&'a [f64]; 6]);
 
 impl<'a> Given<'a> {
     /// The same with a part.
+    #[inline]
     pub fn with(mut self, part: Part, entries: &'a [f64]) -> Self {
         self.0[part as usize] = entries;
         self
     }
 
     /// The entries of a part.
+    #[inline]
     pub fn part(&self, part: Part) -> &'a [f64] {
         self.0[part as usize]
     }
 }
 
+/// What a program reads that sees the parameters through what was prepared of them.
+#[inline]
+pub fn prepared<'a>(constants: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    moving(x, u).with(Part::Constants, constants)
+}
+
+/// What a program reads that sees the parameters themselves.
+#[inline]
+pub fn unprepared<'a>(p: &'a [f64], x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    moving(x, u).with(Part::Parameters, p)
+}
+
+#[inline]
+fn moving<'a>(x: &'a [f64], u: &'a [f64]) -> Given<'a> {
+    Given::default().with(Part::States, x).with(Part::Inputs, u)
+}
+
+/// A contact in the order of [`Part::Contact`].
+#[inline]
+pub fn contact_entries(contact: &Contact) -> [f64; 4] {
+    [contact.s, contact.v, contact.force[0], contact.force[1]]
+}
+
 /// The entries of a part that a program reads, in order; they stand together in the registers, from `first`.
 #[derive(Clone, Debug)]
 pub struct Read {
+    /// Which.
     pub part: Part,
+    /// Those that are read.
     pub entries: Vec<usize>,
+    /// The register of the first.
     pub first: usize,
 }
 
@@ -79,8 +114,8 @@ pub fn register(vectors: &Vectors, reads: &[Read], op: &Op) -> Option<usize> {
     reads.iter().find_map(|read| read.register(place))
 }
 
-/// The part and place of a leaf in what is given.
-fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
+/// The part and place of a leaf in what is given; `None` of a number and of an operation.
+pub fn place(vectors: &Vectors, op: &Op) -> Option<(Part, usize)> {
     match *op {
         Op::Prepared(place) => Some((Part::Constants, place as usize)),
         Op::Input(symbol) => place_of(vectors, symbol),

@@ -1,0 +1,166 @@
+//! qcar beside others on the same work: code written by hand, CasADi's C, Ceres, NumPy and SciPy.
+//!
+//! `cargo bench --bench peers` builds what it can (g++, libceres-dev; casadi, numpy and scipy for the Python in `target/python`, else
+//! `python3`), says what is missing, holds the results of each against qcar's, and times all of them in turn, in processor time.
+//! `docs/benchmarks.md` holds what it prints. The tasks are the same to the letter: the vertical chain of axle_d of `benches/subject`,
+//! 300 lines, five accelerations over the pad; the fit has qcar's residuals, bounds, starts and tolerances.
+
+// Programs of others.
+#[path = "peers/child.rs"]
+mod child;
+// What they find.
+#[path = "peers/judge.rs"]
+mod judge;
+
+mod fit;
+mod subject;
+
+use std::fs;
+use std::hint::black_box;
+use std::path::Path;
+
+use child::Peer;
+use qcar_dsl::disk::compile_file;
+use qcar_machine::Machine;
+use qcar_runtime::fit::Setup;
+use qcar_runtime::model::{LANES, Model};
+use subject::{MODEL, Sets, Subject};
+
+/// Of each task in each way.
+const ROUNDS: usize = 15;
+
+/// A way to do a task: its name, how many results one run has, and the seconds that so many runs take.
+struct Way<'a> {
+    name: String,
+    results: usize,
+    time: Box<dyn FnMut(usize) -> f64 + 'a>,
+}
+
+fn main() {
+    let from_disk = compile_file(Path::new(""), "benches/subject/axle_d_z.axle").expect("the model can be read");
+    let machine = Machine::new(&from_disk.compiled.expect("the model compiles"));
+    let (peers, missing) = child::all();
+    for reason in missing {
+        println!("left out: {reason}");
+    }
+    println!(
+        "{}, one thread, processor time, median of {ROUNDS} rounds in turn\n",
+        processor()
+    );
+    println!("| task | by | time | qcar / it | differs from qcar by |\n|---|---|---|---|---|");
+    let models: [(&str, &dyn Model); 2] = [("qcar", MODEL), ("qcar, from a file", &machine)];
+    let linear = models.map(|(name, model)| way(name, 1, subject(model, Subject::linearise)));
+    let sets = models.map(|(name, model)| {
+        let mut sets = Sets::new(model);
+        way(&format!("{name}, eight sets"), LANES, move || {
+            black_box(&mut sets).linearise()
+        })
+    });
+    table(
+        "A, B, C, D and all Jacobians",
+        "matrices",
+        20_000,
+        linear.into_iter().chain(sets),
+        &peers,
+    );
+    let responses = models.map(|(name, model)| way(name, 1, subject(model, Subject::respond)));
+    table(
+        "300 lines, 5 channels, Jacobian",
+        "response",
+        50,
+        responses.into_iter(),
+        &peers,
+    );
+    let (plan, levels) = (fit::plan(), [fit::level()]);
+    let setups = models.map(|(name, model)| {
+        (
+            name,
+            Setup::new(model, &plan, &levels).expect("the plan suits the model"),
+        )
+    });
+    let fits = setups.each_ref().map(|(name, setup)| {
+        let start = setup.start();
+        way(name, 1, move || drop(black_box(setup.local(black_box(&start)))))
+    });
+    table("fit of 12 parameters", "fit", 2, fits.into_iter(), &peers);
+}
+
+fn subject<'a>(model: &'a dyn Model, work: fn(&mut Subject<'a>)) -> impl FnMut() + 'a {
+    let mut subject = Subject::new(model);
+    move || work(black_box(&mut subject))
+}
+
+/// What runs here.
+fn way<'a>(name: &str, results: usize, mut work: impl FnMut() + 'a) -> Way<'a> {
+    let time = move |count| {
+        let start = on_processor();
+        (0..count).for_each(|_| work());
+        on_processor() - start
+    };
+    Way {
+        name: name.into(),
+        results,
+        time: Box::new(time),
+    }
+}
+
+/// The rows of a task, in multiples of the first way's time.
+fn table<'a>(title: &str, task: &'static str, count: usize, own: impl Iterator<Item = Way<'a>>, peers: &'a [Peer]) {
+    let others = peers.iter().filter(|peer| peer.tasks.contains(&task));
+    let theirs = others.clone().map(|peer| Way {
+        name: peer.name.into(),
+        results: if task == "matrices" { peer.lanes } else { 1 },
+        time: Box::new(move |count| peer.time(task, count)),
+    });
+    let mut ways: Vec<Way> = own.chain(theirs).collect();
+    let mut rounds: Vec<Vec<f64>> = vec![Vec::new(); ways.len()];
+    for _ in 0..ROUNDS {
+        for (way, times) in ways.iter_mut().zip(&mut rounds) {
+            times.push((way.time)(count) / (count * way.results) as f64);
+        }
+    }
+    let own = ways.len() - others.clone().count();
+    let differences = (0..own)
+        .map(|_| String::new())
+        .chain(others.map(|peer| judge::difference(task, peer)));
+    let medians: Vec<f64> = rounds.into_iter().map(median).collect();
+    for ((way, time), difference) in ways.iter().zip(&medians).zip(differences) {
+        let ratio = medians[0] / time;
+        println!(
+            "| {title} | {} | {} | {ratio:.3} | {difference} |",
+            way.name,
+            shown(*time)
+        );
+    }
+}
+
+fn median(mut times: Vec<f64>) -> f64 {
+    times.sort_by(f64::total_cmp);
+    times[times.len() / 2]
+}
+
+fn shown(seconds: f64) -> String {
+    match seconds {
+        _ if seconds < 1e-6 => format!("{:.1} ns", 1e9 * seconds),
+        _ if seconds < 1e-3 => format!("{:.1} µs", 1e6 * seconds),
+        _ => format!("{:.2} ms", 1e3 * seconds),
+    }
+}
+
+/// Seconds that this thread has had a processor.
+fn on_processor() -> f64 {
+    let times = fs::read_to_string("/proc/thread-self/schedstat").expect("Linux counts processor time");
+    let first = times
+        .split(' ')
+        .next()
+        .and_then(|nanoseconds| nanoseconds.parse::<f64>().ok());
+    1e-9 * first.expect("the first number is that time")
+}
+
+/// Its name, as Linux has it.
+fn processor() -> String {
+    let text = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let line = text.lines().find(|line| line.starts_with("model name"));
+    let name = line.and_then(|line| line.split_once(": "));
+    name.map_or("a processor without a name".into(), |(_, name)| name.into())
+}

@@ -1,0 +1,179 @@
+//! Programs that do the same work: how they are built, and asked on their standard input.
+
+use std::cell::RefCell;
+use std::fs;
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use crate::subject::{MODEL, Subject};
+
+/// Where they are built.
+const FOLDER: &str = "target/peers";
+
+/// As a user who wants speed compiles, but that products and sums stay apart, as they do in qcar.
+const FLAGS: [&str; 4] = ["-std=c++20", "-O3", "-march=native", "-ffp-contract=off"];
+
+/// One that runs and waits to be asked.
+pub struct Peer {
+    pub name: &'static str,
+    /// What it is asked for.
+    pub tasks: &'static [&'static str],
+    /// How many parameter sets it has matrices of at once.
+    pub lanes: usize,
+    talk: RefCell<Talk>,
+}
+
+struct Talk {
+    child: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+}
+
+/// All that could be built, and why others could not.
+pub fn all() -> (Vec<Peer>, Vec<String>) {
+    fs::create_dir_all(FOLDER).expect("a folder in target");
+    let built = [
+        cpp("hand").and_then(|program| start("by hand", &["matrices", "response", "fit"], 1, program)),
+        cpp_with("wide", &["-DWIDE"], &[])
+            .and_then(|program| start("by hand, eight at once", &["matrices", "response", "fit"], 8, program)),
+        casadi().and_then(|program| start("CasADi's C", &["matrices", "response"], 1, program)),
+        cpp_with("ceres", &["-DCERES", "-I/usr/include/eigen3"], &["-lceres", "-lglog"])
+            .and_then(|program| start("Ceres", &["fit"], 1, program)),
+        scipy().and_then(|program| start("NumPy and SciPy", &["response", "fit"], 1, program)),
+    ];
+    let (mut peers, mut missing) = (Vec::new(), Vec::new());
+    for peer in built {
+        match peer {
+            Ok(peer) => peers.push(peer),
+            Err(reason) => missing.push(reason),
+        }
+    }
+    (peers, missing)
+}
+
+fn cpp(name: &str) -> Result<Command, String> {
+    cpp_with(name, &[], &[])
+}
+
+fn cpp_with(name: &str, flags: &[&str], last: &[&str]) -> Result<Command, String> {
+    let program = Path::new(FOLDER).join(name);
+    let mut compiler = Command::new("g++");
+    compiler
+        .args(FLAGS)
+        .args(flags)
+        .arg("benches/peers/peers.cpp")
+        .args(last);
+    run(compiler.arg("-o").arg(&program), name)?;
+    Ok(Command::new(program))
+}
+
+/// CasADi writes its C, which is compiled by itself.
+fn casadi() -> Result<Command, String> {
+    run(
+        Command::new(python()).args(["benches/peers/casadi_model.py", FOLDER]),
+        "casadi",
+    )?;
+    let [code, object] = ["casadi_model.c", "casadi_model.o"].map(|file| Path::new(FOLDER).join(file));
+    let mut compiler = Command::new("gcc");
+    run(
+        compiler.args(&FLAGS[1..]).arg("-c").arg(code).arg("-o").arg(&object),
+        "casadi",
+    )?;
+    let object = object.display().to_string();
+    cpp_with("casadi", &["-DCASADI", &format!("-I{FOLDER}")], &[&object])
+}
+
+fn scipy() -> Result<Command, String> {
+    run(Command::new(python()).args(["-c", "import numpy, scipy"]), "scipy")?;
+    let mut program = Command::new(python());
+    program
+        .arg("benches/peers/scipy_fit.py")
+        .env("OPENBLAS_NUM_THREADS", "1");
+    Ok(program)
+}
+
+/// That of the tests, where it is there.
+fn python() -> PathBuf {
+    let own = Path::new("target/python/bin/python");
+    if own.exists() { own.into() } else { "python3".into() }
+}
+
+fn run(command: &mut Command, name: &str) -> Result<(), String> {
+    let output = command.output().map_err(|error| format!("{name}: {error}"))?;
+    let text = String::from_utf8_lossy(&output.stderr);
+    let reason = text.lines().find(|line| line.contains("rror")).unwrap_or("it failed");
+    if output.status.success() {
+        Ok(())
+    } else {
+        Err(format!("{name}: {reason}"))
+    }
+}
+
+/// Starts a program and gives it the parameters of the subject.
+fn start(
+    name: &'static str,
+    tasks: &'static [&'static str],
+    lanes: usize,
+    mut program: Command,
+) -> Result<Peer, String> {
+    let child = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
+    let mut child = child.map_err(|error| format!("{name}: {error}"))?;
+    let (to, from) = (
+        child.stdin.take().expect("a pipe"),
+        child.stdout.take().expect("a pipe"),
+    );
+    let mut talk = Talk {
+        child,
+        to,
+        from: BufReader::new(from),
+    };
+    for (parameter, value) in MODEL.about().parameters.iter().zip(Subject::new(MODEL).p) {
+        talk.say(&format!("set {} {value:?}", parameter.name));
+    }
+    Ok(Peer {
+        name,
+        tasks,
+        lanes,
+        talk: RefCell::new(talk),
+    })
+}
+
+impl Peer {
+    /// Seconds of processor time that it takes for so many.
+    pub fn time(&self, task: &str, count: usize) -> f64 {
+        let mut talk = self.talk.borrow_mut();
+        talk.say(&format!("time {task} {count}"));
+        talk.line().parse().expect("a time")
+    }
+
+    /// Its results, line by line, word by word.
+    pub fn shown(&self, task: &str) -> Vec<Vec<String>> {
+        let mut talk = self.talk.borrow_mut();
+        talk.say(&format!("show {task}"));
+        let lines = std::iter::from_fn(|| Some(talk.line()).filter(|line| line != "end"));
+        lines.map(|line| line.split(' ').map(String::from).collect()).collect()
+    }
+}
+
+impl Talk {
+    fn say(&mut self, line: &str) {
+        writeln!(self.to, "{line}")
+            .and_then(|()| self.to.flush())
+            .expect("it listens");
+    }
+
+    fn line(&mut self) -> String {
+        let mut line = String::new();
+        let read = self.from.read_line(&mut line).expect("it answers");
+        assert!(read > 0, "it has stopped");
+        line.trim_end().into()
+    }
+}
+
+impl Drop for Talk {
+    fn drop(&mut self) {
+        // It is of no use any more, and one that has ended by itself is gone.
+        let _ = self.child.kill().and_then(|()| self.child.wait());
+    }
+}

@@ -1,0 +1,51 @@
+//! What machine code does not compute itself: Rust's functions, and tables.
+
+use qcar_dsl::expr::{Curve, Function};
+use qcar_dsl::program::{Op, Program};
+
+/// An operation by a function of Rust.
+#[derive(Debug)]
+pub enum Call {
+    /// Of one argument.
+    Function(Function),
+    /// A power.
+    Power,
+    /// A curve of an order, by the places of its entries among the arguments; the first is the abscissa.
+    Table(u8, Curve<usize>),
+}
+
+impl Call {
+    /// The operation, if it is such a one.
+    pub fn of(program: &Program, op: Op) -> Option<Call> {
+        match op {
+            // What one or two instructions do.
+            Op::Call(Function::Abs | Function::Sign | Function::Sqrt, _) => None,
+            Op::Call(function, _) => Some(Call::Function(function)),
+            Op::Pow(..) => Some(Call::Power),
+            Op::Table(order, _, curve) => {
+                let mut places = 1..;
+                let curve = program.curves[curve as usize].map(|_| places.next().unwrap_or_default());
+                Some(Call::Table(order, curve))
+            }
+            _ => None,
+        }
+    }
+
+    /// How many arguments it has.
+    pub fn arguments(&self) -> usize {
+        match self {
+            Call::Function(_) => 1,
+            Call::Power => 2,
+            Call::Table(_, curve) => 1 + curve.entries().count(),
+        }
+    }
+
+    /// Its value, as the interpreter has it.
+    pub fn value(&self, argument: impl Fn(usize) -> f64) -> f64 {
+        match self {
+            Call::Function(function) => function.value(argument(0)),
+            Call::Power => argument(0).powf(argument(1)),
+            Call::Table(order, curve) => curve.at(*order, argument(0), |&entry| argument(entry)),
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! The way into machine code, and out of it: all that the compiler cannot see into.
+#![allow(
+    unsafe_code,
+    reason = "a processor runs what was written into memory, and Rust cannot know what that does"
+)]
+
+use memmap2::{Mmap, MmapMut};
+use qcar_dsl::derive::vectors::Vectors;
+use qcar_dsl::evaluate::given::{Given, Part};
+use qcar_dsl::program::Program;
+use qcar_model::{LANES, Lanes};
+
+use crate::call::Call;
+use crate::reads::Reads;
+use crate::shape::Shape;
+use crate::translate::{Translated, Wide, translate};
+
+/// How many sets or points the instructions compute together.
+const WIDTH: usize = 4;
+/// Bytes of a number.
+const NUMBER: usize = size_of::<f64>();
+
+/// At one point, or for a row of sets: addresses of four parts, of the results and of the numbers.
+type Entered = unsafe extern "sysv64" fn(*const f64, *const f64, *const f64, *const f64, *mut f64, *const Wide);
+/// At many points: the shared part, the rows that are read and written, the bytes to the first point and to the end, and the numbers.
+type Swept = unsafe extern "sysv64" fn(*const f64, *const *const f64, *const *mut f64, usize, usize, *const Wide);
+
+/// A program as machine code in one shape.
+#[derive(Debug)]
+pub struct Code {
+    memory: Mmap,
+    /// Where they stand is written in the code.
+    _calls: Box<[Call]>,
+    numbers: Box<[Wide]>,
+    reads: Reads,
+    results: usize,
+}
+
+impl Code {
+    /// Nothing where this machine cannot run such code, the system allows none, or the program has no translation.
+    pub fn new(vectors: &Vectors, program: &Program, shape: Shape) -> Option<Code> {
+        if !std::arch::is_x86_feature_detected!("avx") {
+            return None;
+        }
+        let reads = Reads::new(vectors, program, shape);
+        let enter = match shape {
+            Shape::Once => compute::<1> as *const () as usize,
+            Shape::Sets | Shape::Points(_) => compute::<WIDTH> as *const () as usize,
+        };
+        let Translated { code, calls, numbers } = translate(program, &reads, shape, enter)?;
+        let mut memory = MmapMut::map_anon(code.len()).ok()?;
+        memory.copy_from_slice(&code);
+        Some(Code {
+            memory: memory.make_exec().ok()?,
+            _calls: calls,
+            numbers,
+            reads,
+            results: program.outputs.len(),
+        })
+    }
+
+    /// Computes it at one point, if it is code for one.
+    ///
+    /// # Panics
+    /// Where something is given fewer entries than the program reads, or less room than it has results.
+    pub fn run(&self, given: &Given, into: &mut [f64]) {
+        let mut parts = [std::ptr::null(); 4];
+        for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
+            *pointer = at_least(given.part(part), least).as_ptr();
+        }
+        let into = &mut into[..self.results];
+        let [a, b, c, d] = parts;
+        // SAFETY: `memory` holds a function of this signature, since `translate` wrote it so. It reads the entries of the parts below
+        // those lengths, the numbers, and its own stack, and writes as many results as there are.
+        unsafe {
+            let code: Entered = std::mem::transmute(self.memory.as_ptr());
+            code(a, b, c, d, into.as_mut_ptr(), self.numbers.as_ptr());
+        }
+    }
+
+    /// Computes it for each of the sets, if it is code for them.
+    ///
+    /// # Panics
+    /// As [`Code::run`].
+    pub fn sets(&self, given: &[(Part, &[Lanes])], into: &mut [Lanes]) {
+        let mut parts = [std::ptr::null::<f64>(); 4];
+        for (pointer, &(part, least)) in parts.iter_mut().zip(&self.reads.parts) {
+            let rows = given.iter().find(|own| own.0 == part).map_or(&[][..], |own| own.1);
+            *pointer = at_least(rows, least).as_flattened().as_ptr();
+        }
+        let into = into[..self.results].as_flattened_mut();
+        for first in (0..LANES).step_by(WIDTH) {
+            let [a, b, c, d] = parts.map(|part| part.wrapping_add(first));
+            let into = into.as_mut_ptr().wrapping_add(first);
+            // SAFETY: as in `run`, where each entry and each result is `WIDTH` numbers of its row, from `first` on.
+            unsafe {
+                let code: Entered = std::mem::transmute(self.memory.as_ptr());
+                code(a, b, c, d, into, self.numbers.as_ptr());
+            }
+        }
+    }
+
+    /// Computes it at so many points, if it is code for many, and says whether there were enough. The results fill the slices one
+    /// after the other, a row of points each.
+    ///
+    /// # Panics
+    /// As [`Code::run`].
+    pub fn sweep(&self, given: &Given, points: usize, into: &mut [&mut [f64]]) -> bool {
+        if points < WIDTH {
+            return false;
+        }
+        let shared = self.reads.parts.first();
+        let shared = shared.map_or(&[][..], |&(part, least)| at_least(given.part(part), least));
+        let read = self.reads.rows.iter();
+        let read: Vec<*const f64> = read
+            .map(|&(part, entry)| given.part(part)[entry * points..][..points].as_ptr())
+            .collect();
+        let rows = into.iter_mut().flat_map(|part| part.chunks_exact_mut(points));
+        let written: Vec<*mut f64> = rows.map(|row| row.as_mut_ptr()).collect();
+        assert!(
+            written.len() >= self.results,
+            "{} rows for {} results",
+            written.len(),
+            self.results
+        );
+        let run = |from: usize, to: usize| {
+            // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of `WIDTH` while
+            // their first is below `to`, and each row has `points` of them, which is at least `to + WIDTH - 1`.
+            unsafe {
+                let code: Swept = std::mem::transmute(self.memory.as_ptr());
+                let (from, to, numbers) = (NUMBER * from, NUMBER * to, self.numbers.as_ptr());
+                code(shared.as_ptr(), read.as_ptr(), written.as_ptr(), from, to, numbers);
+            }
+        };
+        // The last group is whole, too: it may compute again what the one before it has.
+        let last = points - WIDTH;
+        if last > 0 {
+            run(0, last);
+        }
+        run(last, last + 1);
+        true
+    }
+}
+
+#[track_caller]
+fn at_least<T>(entries: &[T], least: usize) -> &[T] {
+    assert!(
+        entries.len() >= least,
+        "{} entries where a model reads {least}",
+        entries.len()
+    );
+    entries
+}
+
+/// Computes what the code calls at `N` points, each argument a row of them.
+///
+/// # Safety
+/// There are as many rows as the call has arguments.
+unsafe extern "sysv64" fn compute<const N: usize>(call: &Call, rows: *const Wide, result: &mut Wide) {
+    // SAFETY: the caller, which is the code of a program with this call, says so.
+    let rows = unsafe { std::slice::from_raw_parts(rows, call.arguments()) };
+    for (point, result) in result.iter_mut().enumerate().take(N) {
+        *result = call.value(|argument| rows[argument][point]);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use qcar_dsl::expr::Function;
+    use qcar_dsl::program::{Op, Value};
+
+    /// Else all would be left to the interpreter, which has the same bits.
+    #[test]
+    fn a_processor_with_avx_runs_machine_code_in_each_shape() {
+        let ops = vec![
+            Op::Prepared(1),
+            Op::Constant(2.0),
+            Op::Mul(Value(0), Value(1)),
+            Op::Call(Function::Sin, Value(2)),
+        ];
+        let outputs = vec![Value(2), Value(3)];
+        let program = Program {
+            ops,
+            outputs,
+            curves: Vec::new(),
+        };
+        let code = |shape| Code::new(&Vectors::default(), &program, shape);
+        let shapes = [Shape::Once, Shape::Sets, Shape::Points(&[Part::Constants])];
+        if !std::arch::is_x86_feature_detected!("avx") {
+            return assert!(shapes.into_iter().all(|shape| code(shape).is_none()));
+        }
+        let [once, sets, points] = shapes.map(|shape| code(shape).expect("the program has a translation"));
+        let constants = [7.0, 0.25, 0.5, 0.75, 1.0, 1.25];
+        let mut at = [0.0; 2];
+        once.run(&Given::default().with(Part::Constants, &constants), &mut at);
+        assert_eq!(at, [0.5, 0.5f64.sin()]);
+        let mut rows = [[0.0; LANES]; 2];
+        sets.sets(&[(Part::Constants, &[[7.0; LANES], [0.25; LANES]])], &mut rows);
+        assert_eq!(rows, [[0.5; LANES], [0.5f64.sin(); LANES]]);
+        let columns = [[0.0; 5], [0.25, 0.5, 0.75, 1.0, 1.25]];
+        let given = Given::default().with(Part::Constants, columns.as_flattened());
+        let (mut twice, mut sine) = ([0.0; 5], [0.0; 5]);
+        assert!(points.sweep(&given, 5, &mut [&mut twice, &mut sine]));
+        assert_eq!(
+            (twice, sine),
+            (columns[1].map(|x| 2.0 * x), columns[1].map(|x| (2.0 * x).sin()))
+        );
+    }
+}

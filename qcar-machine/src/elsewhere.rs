@@ -1,0 +1,34 @@
+//! In place of machine code on processors that it is not written for: there is none.
+
+use qcar_dsl::derive::vectors::Vectors;
+use qcar_dsl::evaluate::given::{Given, Part};
+use qcar_dsl::program::Program;
+use qcar_model::Lanes;
+
+use crate::shape::Shape;
+
+/// A program as machine code, of which there is none.
+#[derive(Debug)]
+pub enum Code {}
+
+impl Code {
+    /// Nothing.
+    pub fn new(_vectors: &Vectors, _program: &Program, _shape: Shape) -> Option<Code> {
+        None
+    }
+
+    /// Of no code.
+    pub fn run(&self, _given: &Given, _into: &mut [f64]) {
+        match *self {}
+    }
+
+    /// Of no code.
+    pub fn sets(&self, _given: &[(Part, &[Lanes])], _into: &mut [Lanes]) {
+        match *self {}
+    }
+
+    /// Of no code.
+    pub fn sweep(&self, _given: &Given, _points: usize, _into: &mut [&mut [f64]]) -> bool {
+        match *self {}
+    }
+}

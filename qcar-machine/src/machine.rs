@@ -1,0 +1,281 @@
+//! A model whose programs are machine code, each from its first use on.
+
+use std::sync::OnceLock;
+
+use qcar_dsl::derive::vectors::Vectors;
+use qcar_dsl::evaluate::Evaluator;
+use qcar_dsl::evaluate::given::{Given, Part, contact_entries, prepared, unprepared};
+use qcar_dsl::program::{Program, Programs};
+use qcar_dsl::schedule::Compiled;
+use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
+
+#[cfg(target_arch = "x86_64")]
+use crate::code::Code;
+#[cfg(not(target_arch = "x86_64"))]
+use crate::elsewhere::Code;
+use crate::shape::Shape;
+
+/// A compiled model, its programs translated into machine code.
+///
+/// Slices have the lengths that [`About`] states; a shorter one panics.
+#[derive(Debug)]
+pub struct Machine {
+    /// Computes what has no machine code.
+    interpreter: Evaluator,
+    vectors: Vectors,
+    programs: Programs,
+    prepare: Routine,
+    derivative: Routine,
+    outputs: Routine,
+    matrices: Routine,
+    sensitivities: Routine,
+    parameter_jacobian: Routine,
+    /// Of each excitation the response, and that with its Jacobian.
+    responses: Vec<[Routine; 2]>,
+    contact_force: Routine,
+    rolling_derivative: Routine,
+    rolling_outputs: Routine,
+    /// Links that stand alone, by their places.
+    alone: Vec<(usize, Machine)>,
+}
+
+/// The code of a program in each shape, from its first use on; `None` where there is none.
+#[derive(Debug, Default)]
+struct Routine {
+    once: OnceLock<Option<Code>>,
+    sets: OnceLock<Option<Code>>,
+    points: OnceLock<Option<Code>>,
+}
+
+/// What varies from point to point.
+const MOVING: Shape = Shape::Points(&[Part::States, Part::Inputs]);
+const LINES: Shape = Shape::Points(&[Part::Frequency]);
+
+impl Machine {
+    /// Of a compiled model. Nothing is translated yet.
+    pub fn new(compiled: &Compiled) -> Self {
+        Machine {
+            interpreter: Evaluator::new(compiled),
+            vectors: compiled.vectors.clone(),
+            responses: compiled.programs.responses.iter().map(|_| Default::default()).collect(),
+            programs: compiled.programs.clone(),
+            prepare: Routine::default(),
+            derivative: Routine::default(),
+            outputs: Routine::default(),
+            matrices: Routine::default(),
+            sensitivities: Routine::default(),
+            parameter_jacobian: Routine::default(),
+            contact_force: Routine::default(),
+            rolling_derivative: Routine::default(),
+            rolling_outputs: Routine::default(),
+            alone: Vec::new(),
+        }
+    }
+
+    /// The same with a link that stands alone, too, compiled as a model of its own.
+    pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
+        let mut links = self.about().links.iter();
+        let place = links.position(|own| own.axis == axis && own.name == link);
+        self.alone.extend(place.map(|place| (place, Machine::new(compiled))));
+        self
+    }
+
+    #[inline]
+    fn code<'a>(&self, known: &'a OnceLock<Option<Code>>, program: &Program, shape: Shape) -> Option<&'a Code> {
+        known.get_or_init(|| Code::new(&self.vectors, program, shape)).as_ref()
+    }
+
+    #[inline]
+    fn once<'a>(&self, routine: &'a Routine, program: &Program) -> Option<&'a Code> {
+        self.code(&routine.once, program, Shape::Once)
+    }
+
+    #[inline]
+    fn sets<'a>(&self, routine: &'a Routine, program: &Program) -> Option<&'a Code> {
+        self.code(&routine.sets, program, Shape::Sets)
+    }
+
+    /// At several points; false where that is left to the interpreter.
+    fn sweep(&self, routine: &Routine, program: &Program, given: &Given, points: usize, into: &mut [f64]) -> bool {
+        let code = self.code(&routine.points, program, MOVING);
+        code.is_some_and(|code| code.sweep(given, points, &mut [into]))
+    }
+}
+
+impl Model for Machine {
+    fn about(&self) -> &About {
+        self.interpreter.about()
+    }
+
+    fn prepare(&self, p: &[f64], constants: &mut [f64]) {
+        match self.once(&self.prepare, &self.programs.prepare) {
+            Some(code) => code.run(&Given::default().with(Part::Parameters, p), constants),
+            None => self.interpreter.prepare(p, constants),
+        }
+    }
+
+    fn derivative(&self, constants: &[f64], x: &[f64], u: &[f64], dx: &mut [f64]) {
+        match self.once(&self.derivative, &self.programs.derivative) {
+            Some(code) => code.run(&prepared(constants, x, u), dx),
+            None => self.interpreter.derivative(constants, x, u, dx),
+        }
+    }
+
+    fn derivative_at(&self, constants: &[f64], at: &Points, dx: &mut [f64]) {
+        let (routine, program) = (&self.derivative, &self.programs.derivative);
+        if !self.sweep(routine, program, &prepared(constants, at.x, at.u), at.count, dx) {
+            self.interpreter.derivative_at(constants, at, dx);
+        }
+    }
+
+    fn outputs(&self, constants: &[f64], x: &[f64], u: &[f64], y: &mut [f64]) {
+        match self.once(&self.outputs, &self.programs.outputs) {
+            Some(code) => code.run(&prepared(constants, x, u), y),
+            None => self.interpreter.outputs(constants, x, u, y),
+        }
+    }
+
+    fn outputs_at(&self, constants: &[f64], at: &Points, y: &mut [f64]) {
+        let (routine, program) = (&self.outputs, &self.programs.outputs);
+        if !self.sweep(routine, program, &prepared(constants, at.x, at.u), at.count, y) {
+            self.interpreter.outputs_at(constants, at, y);
+        }
+    }
+
+    fn matrices(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        match self.once(&self.matrices, &self.programs.matrices) {
+            Some(code) => code.run(&unprepared(p, x, u), nonzeros),
+            None => self.interpreter.matrices(p, x, u, nonzeros),
+        }
+    }
+
+    fn matrices_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        let (routine, program) = (&self.matrices, &self.programs.matrices);
+        if !self.sweep(routine, program, &unprepared(p, at.x, at.u), at.count, nonzeros) {
+            self.interpreter.matrices_at(p, at, nonzeros);
+        }
+    }
+
+    fn sensitivities(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        match self.once(&self.sensitivities, &self.programs.sensitivities) {
+            Some(code) => code.run(&unprepared(p, x, u), nonzeros),
+            None => self.interpreter.sensitivities(p, x, u, nonzeros),
+        }
+    }
+
+    fn parameter_jacobian(&self, p: &[f64], x: &[f64], u: &[f64], nonzeros: &mut [f64]) {
+        match self.once(&self.parameter_jacobian, &self.programs.parameter_jacobian) {
+            Some(code) => code.run(&unprepared(p, x, u), nonzeros),
+            None => self.interpreter.parameter_jacobian(p, x, u, nonzeros),
+        }
+    }
+
+    fn parameter_jacobian_at(&self, p: &[f64], at: &Points, nonzeros: &mut [f64]) {
+        let (routine, program) = (&self.parameter_jacobian, &self.programs.parameter_jacobian);
+        if !self.sweep(routine, program, &unprepared(p, at.x, at.u), at.count, nonzeros) {
+            self.interpreter.parameter_jacobian_at(p, at, nonzeros);
+        }
+    }
+
+    fn prepare_sets(&self, p: &[Lanes], constants: &mut [Lanes]) {
+        match self.sets(&self.prepare, &self.programs.prepare) {
+            Some(code) => code.sets(&[(Part::Parameters, p)], constants),
+            None => self.interpreter.prepare_sets(p, constants),
+        }
+    }
+
+    fn derivative_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], dx: &mut [Lanes]) {
+        match self.sets(&self.derivative, &self.programs.derivative) {
+            Some(code) => code.sets(&moving_sets((Part::Constants, constants), x, u), dx),
+            None => self.interpreter.derivative_sets(constants, x, u, dx),
+        }
+    }
+
+    fn outputs_sets(&self, constants: &[Lanes], x: &[Lanes], u: &[Lanes], y: &mut [Lanes]) {
+        match self.sets(&self.outputs, &self.programs.outputs) {
+            Some(code) => code.sets(&moving_sets((Part::Constants, constants), x, u), y),
+            None => self.interpreter.outputs_sets(constants, x, u, y),
+        }
+    }
+
+    fn matrices_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        match self.sets(&self.matrices, &self.programs.matrices) {
+            Some(code) => code.sets(&moving_sets((Part::Parameters, p), x, u), nonzeros),
+            None => self.interpreter.matrices_sets(p, x, u, nonzeros),
+        }
+    }
+
+    fn sensitivities_sets(&self, p: &[Lanes], x: &[Lanes], u: &[Lanes], nonzeros: &mut [Lanes]) {
+        match self.sets(&self.sensitivities, &self.programs.sensitivities) {
+            Some(code) => code.sets(&moving_sets((Part::Parameters, p), x, u), nonzeros),
+            None => self.interpreter.sensitivities_sets(p, x, u, nonzeros),
+        }
+    }
+
+    fn response(&self, excitation: usize, constants: &[f64], omega: &[f64], mut into: ResponseMut<'_>) {
+        let given = Given::default()
+            .with(Part::Constants, constants)
+            .with(Part::Frequency, omega);
+        let lines = omega.len();
+        let known = self
+            .responses
+            .get(excitation)
+            .zip(self.programs.responses.get(excitation));
+        let is_done = known.is_some_and(|([value, with_jacobian], programs)| match &mut into.jacobian {
+            None => {
+                let code = self.code(&value.points, &programs.value, LINES);
+                code.is_some_and(|code| code.sweep(&given, lines, &mut [into.re, into.im]))
+            }
+            Some((d_re, d_im)) => {
+                let code = self.code(&with_jacobian.points, &programs.with_jacobian, LINES);
+                code.is_some_and(|code| code.sweep(&given, lines, &mut [into.re, into.im, d_re, d_im]))
+            }
+        });
+        if !is_done {
+            self.interpreter.response(excitation, constants, omega, into);
+        }
+    }
+
+    fn contact_force(&self, constants: &[f64], x: &[f64], s: f64, v: f64) -> f64 {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.once(&self.contact_force, &rolling.contact_force)) else {
+            return self.interpreter.contact_force(constants, x, s, v);
+        };
+        let (mut force, contact) = ([0.0], [s, v]);
+        code.run(&prepared(constants, x, &[]).with(Part::Contact, &contact), &mut force);
+        force[0]
+    }
+
+    fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_derivative, &rolling.derivative)) else {
+            return self.interpreter.rolling_derivative(constants, x, u, contact, dx);
+        };
+        code.run(
+            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
+            dx,
+        );
+    }
+
+    fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.once(&self.rolling_outputs, &rolling.outputs)) else {
+            return self.interpreter.rolling_outputs(constants, x, u, contact, y);
+        };
+        code.run(
+            &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
+            y,
+        );
+    }
+
+    fn alone(&self, link: usize) -> Option<&dyn Model> {
+        let found = self.alone.iter().find(|(place, _)| *place == link);
+        found.map(|(_, own)| own as &dyn Model)
+    }
+}
+
+type GivenSets<'a> = [(Part, &'a [Lanes]); 3];
+
+fn moving_sets<'a>(of_set: (Part, &'a [Lanes]), x: &'a [Lanes], u: &'a [Lanes]) -> GivenSets<'a> {
+    [of_set, (Part::States, x), (Part::Inputs, u)]
+}

@@ -1,0 +1,63 @@
+//! Where the leaves of a program stand in what its code is given.
+
+use qcar_dsl::evaluate::given::{Part, place};
+use qcar_dsl::program::{Program, Value};
+
+use crate::shape::Shape;
+use qcar_dsl::derive::vectors::Vectors;
+
+/// A leaf that is given.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Leaf {
+    /// An entry of a part, by the place of the part in [`Reads::parts`].
+    Entry { part: usize, entry: usize },
+    /// A row of points, by its place in [`Reads::rows`].
+    Row(usize),
+}
+
+/// What a program reads in a shape.
+#[derive(Debug)]
+pub struct Reads {
+    /// Parts that are read by entry, each with how many entries it has at least.
+    pub parts: Vec<(Part, usize)>,
+    /// The entries of varying parts that are read by row.
+    pub rows: Vec<(Part, usize)>,
+    /// The leaf of each value of the program; of a number and an operation none.
+    leaves: Vec<Option<Leaf>>,
+}
+
+impl Reads {
+    /// Of all leaves of a program.
+    pub fn new(vectors: &Vectors, program: &Program, shape: Shape) -> Self {
+        let mut reads = Reads {
+            parts: Vec::new(),
+            rows: Vec::new(),
+            leaves: Vec::with_capacity(program.ops.len()),
+        };
+        for op in &program.ops {
+            let leaf = place(vectors, op).map(|place| reads.leaf(place, shape));
+            reads.leaves.push(leaf);
+        }
+        reads
+    }
+
+    /// How a value is given.
+    pub fn of(&self, value: Value) -> Option<Leaf> {
+        self.leaves[value.0 as usize]
+    }
+
+    fn leaf(&mut self, (part, entry): (Part, usize), shape: Shape) -> Leaf {
+        if matches!(shape, Shape::Points(varying) if varying.contains(&part)) {
+            self.rows.push((part, entry));
+            return Leaf::Row(self.rows.len() - 1);
+        }
+        let known = self.parts.iter().position(|own| own.0 == part);
+        let place = known.unwrap_or_else(|| {
+            self.parts.push((part, 0));
+            self.parts.len() - 1
+        });
+        let least = &mut self.parts[place].1;
+        *least = (*least).max(entry + 1);
+        Leaf::Entry { part: place, entry }
+    }
+}

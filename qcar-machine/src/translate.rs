@@ -1,0 +1,315 @@
+//! A straight-line program as machine code: the operations in their order, each as its instruction.
+
+// Before and after them.
+mod frame;
+
+use qcar_dsl::expr::Function;
+use qcar_dsl::program::{Op, Program, Value};
+
+use crate::assemble::{Arithmetic, Assembler, Bits, Comparison, Operand, Pointer, Register, Width};
+use crate::call::Call;
+use crate::reads::{Leaf, Reads};
+use crate::shape::Shape;
+use crate::values::{OWN, Values};
+use frame::{Frame, Place};
+
+/// A number as wide as a register.
+pub type Wide = [f64; 4];
+
+/// In front of the numbers of a program: what signs and directions are made of.
+const OWN_NUMBERS: [f64; 4] = [-0.0, f64::from_bits(!SIGN), 1.0, 0.0];
+const SIGN: u64 = 1 << 63;
+const SIGN_BIT: usize = 0;
+const ALL_BUT_SIGN: usize = 1;
+const ONE: usize = 2;
+const ZERO: usize = 3;
+
+/// The code of a program with what it refers to.
+#[derive(Debug)]
+pub struct Translated {
+    /// The instructions.
+    pub code: Vec<u8>,
+    /// What it calls; the code knows where each stands.
+    pub calls: Box<[Call]>,
+    /// The numbers of the program.
+    pub numbers: Box<[Wide]>,
+}
+
+/// Translates a program. `enter` is the address of the function that computes a [`Call`].
+///
+/// Nothing where it reads more parts than there are registers for their addresses, or needs too much of the stack.
+pub fn translate(program: &Program, reads: &Reads, shape: Shape, enter: usize) -> Option<Translated> {
+    if reads.parts.len() > frame::parts(shape) {
+        return None;
+    }
+    let calls: Box<[Call]> = program.ops.iter().filter_map(|&op| Call::of(program, op)).collect();
+    let mut writer = Writer::new(program, reads, shape, &calls, enter);
+    writer.program();
+    let code = writer.frame.around(writer.body, writer.values.slots())?;
+    Some(Translated {
+        code,
+        numbers: writer.numbers.into(),
+        calls,
+    })
+}
+
+/// Writes the code of one program.
+struct Writer<'a> {
+    program: &'a Program,
+    reads: &'a Reads,
+    frame: Frame,
+    values: Values,
+    body: Assembler,
+    numbers: Vec<Wide>,
+    /// Of each value of the program, where its number stands.
+    number: Vec<Option<usize>>,
+    /// The results that are each value, in a row of pairs of value and place.
+    results: Vec<(Value, usize)>,
+    calls: std::slice::Iter<'a, Call>,
+    enter: usize,
+}
+
+impl<'a> Writer<'a> {
+    fn new(program: &'a Program, reads: &'a Reads, shape: Shape, calls: &'a [Call], enter: usize) -> Self {
+        let mut numbers: Vec<Wide> = OWN_NUMBERS.map(|number| [number; 4]).into();
+        let number = program.ops.iter().map(|op| match *op {
+            Op::Constant(number) => {
+                numbers.push([number; 4]);
+                Some(numbers.len() - 1)
+            }
+            _ => None,
+        });
+        let number = number.collect();
+        let results = program.outputs.iter().enumerate();
+        let mut results: Vec<(Value, usize)> = results.map(|(place, &value)| (value, place)).collect();
+        results.sort_unstable();
+        Writer {
+            program,
+            reads,
+            frame: Frame::new(shape, calls),
+            values: Values::new(program),
+            body: Assembler::default(),
+            numbers,
+            number,
+            results,
+            calls: calls.iter(),
+            enter,
+        }
+    }
+
+    /// All operations, for each group of points.
+    fn program(&mut self) {
+        let start = self.body.here();
+        for (place, &op) in self.program.ops.iter().enumerate() {
+            let value = Value(place as u32);
+            self.operation(value, op);
+            self.store_results(value);
+            self.program
+                .arguments(op)
+                .chain([value])
+                .for_each(|done| self.values.release(done));
+        }
+        self.values.clear().for_each(drop);
+        self.frame.repeat(&mut self.body, start);
+    }
+
+    fn operation(&mut self, value: Value, op: Op) {
+        match op {
+            Op::Constant(_) | Op::Input(_) | Op::Prepared(_) => {}
+            Op::Add(a, b) => self.either_way(Arithmetic::Add, value, a, b),
+            Op::Mul(a, b) => self.either_way(Arithmetic::Mul, value, a, b),
+            Op::Sub(a, b) => self.arithmetic(Arithmetic::Sub, value, a, b),
+            Op::Div(a, b) => self.arithmetic(Arithmetic::Div, value, a, b),
+            Op::Min(a, b) => self.extreme(Arithmetic::Min, value, a, b),
+            Op::Max(a, b) => self.extreme(Arithmetic::Max, value, a, b),
+            Op::Neg(a) => self.bits(Bits::Xor, value, a, SIGN_BIT),
+            Op::Call(Function::Abs, a) => self.bits(Bits::And, value, a, ALL_BUT_SIGN),
+            Op::Call(Function::Sign, a) => self.sign(value, a),
+            Op::Call(Function::Sqrt, a) => self.root(value, a),
+            Op::Select(test, a, b) => self.select(value, test, a, b),
+            Op::Call(..) | Op::Pow(..) | Op::Table(..) => self.call(value, op),
+        }
+    }
+
+    /// An operation whose arguments may change places.
+    fn either_way(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
+        let swap = self.values.register(a).is_none() && self.values.register(b).is_some();
+        let (a, b) = if swap { (b, a) } else { (a, b) };
+        self.arithmetic(what, value, a, b);
+    }
+
+    fn arithmetic(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
+        let first = self.in_register(a);
+        let second = self.operand(b);
+        self.values.consume(a);
+        self.values.consume(b);
+        let to = self.allocate(value);
+        self.body.arithmetic(what, self.width(), to, first, second);
+    }
+
+    fn root(&mut self, value: Value, a: Value) {
+        let from = self.in_register(a);
+        self.values.consume(a);
+        let to = self.allocate(value);
+        self.body
+            .arithmetic(Arithmetic::Sqrt, self.width(), to, from, Operand::Register(from));
+    }
+
+    fn bits(&mut self, what: Bits, value: Value, a: Value, number: usize) {
+        let from = self.in_register(a);
+        self.values.consume(a);
+        let to = self.allocate(value);
+        let number = self.own_number(number);
+        self.body.bits(what, self.width(), to, from, number);
+    }
+
+    /// The other one where one is not a number, the first where both are zero: what Rust's functions come to.
+    fn extreme(&mut self, what: Arithmetic, value: Value, a: Value, b: Value) {
+        let ([a, b], to) = self.apart(value, [a, b]);
+        let width = self.width();
+        self.body.arithmetic(what, width, to, b, Operand::Register(a));
+        self.body
+            .compare(Comparison::Unordered, width, OWN, a, Operand::Register(a));
+        self.body.blend(width, to, to, b, OWN);
+    }
+
+    /// One with the sign of `a`; zero, and what is not a number, as it is.
+    fn sign(&mut self, value: Value, argument: Value) {
+        let a = self.in_register(argument);
+        let (to, width) = (self.allocate(value), self.width());
+        let [sign_bit, one, zero] = [SIGN_BIT, ONE, ZERO].map(|number| self.own_number(number));
+        self.body.bits(Bits::And, width, OWN, a, sign_bit);
+        self.body.bits(Bits::Or, width, OWN, OWN, one);
+        self.body.compare(Comparison::EqualOrUnordered, width, to, a, zero);
+        self.body.blend(width, to, OWN, a, to);
+        self.values.consume(argument);
+    }
+
+    fn select(&mut self, value: Value, test: Value, a: Value, b: Value) {
+        let test_register = self.in_register(test);
+        let zero = self.own_number(ZERO);
+        self.body
+            .compare(Comparison::Greater, self.width(), OWN, test_register, zero);
+        self.values.consume(test);
+        let ([a, b], to) = self.apart(value, [a, b]);
+        self.body.blend(self.width(), to, b, a, OWN);
+    }
+
+    /// Two arguments in registers, and another one for the result.
+    fn apart(&mut self, value: Value, arguments: [Value; 2]) -> ([Register; 2], Register) {
+        let registers = arguments.map(|argument| self.in_register(argument));
+        let to = self.allocate(value);
+        arguments.iter().for_each(|&argument| self.values.consume(argument));
+        (registers, to)
+    }
+
+    /// The arguments go to a row in memory, and all that is needed later to memory, too.
+    fn call(&mut self, value: Value, op: Op) {
+        let width = self.width();
+        let arguments: Vec<Value> = self.program.arguments(op).collect();
+        for (place, &argument) in arguments.iter().enumerate() {
+            let register = self.values.register(argument);
+            let register = register.unwrap_or_else(|| self.load(argument, OWN));
+            self.body.store(width, register, self.frame.argument(place));
+        }
+        arguments.iter().for_each(|&argument| self.values.consume(argument));
+        for (register, stood) in self.values.clear() {
+            self.keep(register, stood);
+        }
+        let own = self.calls.next().map_or(0, |call| std::ptr::from_ref(call) as u64);
+        self.body.set(Pointer::RDI, own);
+        self.body.address(Pointer::RSI, self.frame.argument(0));
+        self.body.address(Pointer::RDX, self.frame.result());
+        self.body.set(Pointer::RAX, self.enter as u64);
+        if width == Width::Four {
+            self.body.narrow();
+        }
+        self.body.call(Pointer::RAX);
+        let to = self.allocate(value);
+        self.body.load(width, to, self.frame.result());
+    }
+
+    fn store_results(&mut self, value: Value) {
+        let first = self.results.partition_point(|result| result.0 < value);
+        let own = self.results[first..].iter().take_while(|result| result.0 == value);
+        let places: Vec<usize> = own.map(|result| result.1).collect();
+        for place in places {
+            let register = self.values.register(value);
+            let register = register.unwrap_or_else(|| self.load(value, OWN));
+            let to = self.frame.output(&mut self.body, place);
+            self.body.store(self.width(), register, to);
+        }
+    }
+
+    fn width(&self) -> Width {
+        self.frame.width()
+    }
+
+    /// A register for a result or what is loaded; what stood there before, and is computed, is kept in memory.
+    fn allocate(&mut self, value: Value) -> Register {
+        let (register, evicted) = self.values.allocate(value);
+        if let Some(evicted) = evicted {
+            self.keep(register, evicted);
+        }
+        register
+    }
+
+    /// A computed value that leaves its register stays in memory; a leaf is there anyway.
+    fn keep(&mut self, register: Register, value: Value) {
+        let is_leaf = self.program.ops[value.0 as usize].is_leaf();
+        if !is_leaf && self.values.slot(value).is_none() {
+            let slot = self.values.keep(value);
+            self.body.store(self.width(), register, self.frame.slot(slot));
+        }
+    }
+
+    fn in_register(&mut self, value: Value) -> Register {
+        match self.values.register(value) {
+            Some(register) => register,
+            None => {
+                let register = self.allocate(value);
+                self.load(value, register)
+            }
+        }
+    }
+
+    /// A value that is read once more stays in memory, and so does one that would drive out another.
+    fn operand(&mut self, value: Value) -> Operand {
+        let waits = self.values.register(value).is_none();
+        if waits
+            && (self.values.is_last(value) || !self.values.has_room())
+            && let Place::Whole(place) = self.place(value)
+        {
+            return Operand::Memory(place);
+        }
+        Operand::Register(self.in_register(value))
+    }
+
+    fn load(&mut self, value: Value, to: Register) -> Register {
+        let width = self.width();
+        match self.place(value) {
+            Place::Whole(place) => self.body.load(width, to, place),
+            Place::Shared(place) => self.body.broadcast(to, place),
+        }
+        to
+    }
+
+    /// Where a value that is in no register stands in memory.
+    fn place(&mut self, value: Value) -> Place {
+        if let Some(slot) = self.values.slot(value) {
+            return Place::Whole(self.frame.slot(slot));
+        }
+        if let Some(number) = self.number[value.0 as usize] {
+            return Place::Whole(self.frame.number(number));
+        }
+        match self.reads.of(value) {
+            Some(Leaf::Row(row)) => Place::Whole(self.frame.row(&mut self.body, row)),
+            Some(Leaf::Entry { part, entry }) => self.frame.entry(part, entry),
+            None => unreachable!("{value:?} is no leaf, and was computed without being kept"),
+        }
+    }
+
+    fn own_number(&self, number: usize) -> Operand {
+        Operand::Memory(self.frame.number(number))
+    }
+}
