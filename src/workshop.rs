@@ -196,7 +196,8 @@ impl Workshop for Bench {
     }
 
     fn candidates_of(&self, effect: &str) -> Vec<Candidate> {
-        self.patch(effect).map_or_else(Vec::new, |patch| self.with_each(std::slice::from_ref(patch)))
+        self.patch(effect)
+            .map_or_else(Vec::new, |patch| self.with_each(std::slice::from_ref(patch)))
     }
 
     fn laws(&self) -> Vec<Candidate> {
