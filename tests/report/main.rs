@@ -261,7 +261,9 @@ fn a_class_is_told_as_one_of_several() {
         );
         let consequence = found["paragraphs"][1].as_str().unwrap();
         assert!(
-            consequence.contains(&format!("With {other} instead the fitted runs are explained equally well")),
+            consequence.contains(&format!(
+                "With {other} instead the fitted runs are explained equally well"
+            )),
             "{place}"
         );
     }

@@ -34,7 +34,10 @@ fn where_much_is_left_it_is_partly_explained() {
             data["discover"]["by_channel"]["wheel_z"]["after"] = json!(7.0);
         }),
     );
-    assert_eq!(partly[0], "Partly explained by suspended mass at body. Large residuals remain.");
+    assert_eq!(
+        partly[0],
+        "Partly explained by suspended mass at body. Large residuals remain."
+    );
     assert!(
         partly[1].contains("Largest residual: wheel z in sweeps, 18 % of the signal, 7.00"),
         "{partly:?}"
@@ -79,7 +82,8 @@ fn a_learned_law_is_told_without_a_cause() {
             });
         }),
     );
-    let law = "Learned from the data, without a physical cause: damping law at damper, which would explain 93.0 % of it.";
+    let law =
+        "Learned from the data, without a physical cause: damping law at damper, which would explain 93.0 % of it.";
     assert!(said[1].contains(law), "{said:?}");
 }
 

@@ -133,7 +133,10 @@ fn mappings_are_read_with_care() {
 fn windows_without_samples_are_refused() {
     let body = |of_run: &str, said: &[&str]| body("source = \"FL_Body_Acc_Z\"", of_run, said);
     body("from = 1.0\nto = 1.0", &["`run[1].to`", "the window is empty"]);
-    body("from = 3.0", &["a window from 3 to 1.99 s", "within the recording, from 0 to 1.99 s"]);
+    body(
+        "from = 3.0",
+        &["a window from 3 to 1.99 s", "within the recording, from 0 to 1.99 s"],
+    );
     body("to = 7.0", &["a window from 0 to 7 s"]);
     body("from = 1.001\nto = 1.008", &["a window from 1.001 to 1.008 s"]);
 }
