@@ -140,7 +140,7 @@ fn a_model_that_cannot_stand_is_refused_once() {
     assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{}", ran.stderr);
     assert_eq!(ran.stderr.lines().count(), 1, "{}", ran.stderr);
     for said in [
-        "v20_h30.csv.gz: found model",
+        "v20_h30.csv.gz: this run cannot be simulated: model",
         "has no static equilibrium",
         "d(vz_body)/dt",
         "check k_tire",

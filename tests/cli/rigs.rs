@@ -205,7 +205,7 @@ fn two_roads_that_move_in_one_sweep_are_refused() {
         2,
         &[
             "fast.csv",
-            "roads that move at once: `pad_f`, `pad_r`",
+            "several moving roads: `pad_f`, `pad_r`",
             "move one at a time",
         ],
     );
