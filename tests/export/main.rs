@@ -6,5 +6,6 @@ mod javascript;
 mod matlab;
 mod modelica;
 mod programs;
+mod rolling;
 mod tables;
 mod workbook;
