@@ -2,8 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use clap_complete::engine::ArgValueCompleter;
 use super::inspect::{self, Contents};
 use super::new::campaign::{make_head, seen_from};
 use crate::catalogue;
@@ -11,6 +9,8 @@ use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::terminal::prose;
+use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 
 // Names taken apart.
 mod tokens;

@@ -1,5 +1,6 @@
-//! Exported models against other programs: FMPy, SciPy, GNU Octave, Node; and tables against pyarrow.
+//! Exported models against other programs: FMPy, the FMU Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
 
+mod conformity;
 mod fmu;
 mod histories;
 mod javascript;

@@ -72,7 +72,10 @@ fn compare(model: &str, changed: Changed) {
         return;
     };
     let own = driven(model, changed);
-    assert!(own.force[1].iter().any(|force| force.abs() > 100.0), "the cleat is felt");
+    assert!(
+        own.force[1].iter().any(|force| force.abs() > 100.0),
+        "the cleat is felt"
+    );
     let folder = tempfile::tempdir().unwrap();
     for fmi in ["2", "3"] {
         let unit = folder.path().join(format!("unit{fmi}.fmu"));

@@ -82,7 +82,13 @@ fn profile(course: &Course) -> Result<Vec<[f64; 2]>, Failure> {
     if points.len() > POINTS {
         let found = format!("a road of {} points", points.len());
         let expected = format!("at most {POINTS} in a unit");
-        return Err(flag("--road", found, &expected, "write a duration behind the speed, such as `:20s`").into());
+        return Err(flag(
+            "--road",
+            found,
+            &expected,
+            "write a duration behind the speed, such as `:20s`",
+        )
+        .into());
     }
     Ok(points.to_vec())
 }

@@ -148,8 +148,7 @@ fn curve<T>(contents: &Contents<T>) -> Option<Kind> {
     let timeless = contents.channels().all(|(_, course)| course.start.is_none());
     let only = |quantity: Quantity| {
         let signals = contents.recording.signals.iter();
-        let mut of = signals
-            .filter(|signal| quantity_of(&signal.unit) == Some(quantity));
+        let mut of = signals.filter(|signal| quantity_of(&signal.unit) == Some(quantity));
         of.next()
             .filter(|_| of.next().is_none())
             .map(|signal| signal.name.clone())

@@ -30,12 +30,16 @@ impl<T> Contents<T> {
     /// # Errors
     /// A file that cannot be read.
     pub fn of(file: &Path, look: impl Fn(&Signal) -> T) -> Result<Self, Failure> {
+        Self::in_parts(file, AT_ONCE, look)
+    }
+
+    fn in_parts(file: &Path, at_once: u64, look: impl Fn(&Signal) -> T) -> Result<Self, Failure> {
         let content = bounded::measured_file(file, "correct the path, or put the file there")?;
         let read = |wanted: &Wanted| {
             let file = file.into();
             channels(&content, wanted).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
         };
-        let parts = content.length().div_ceil(AT_ONCE) as usize;
+        let parts = content.length().div_ceil(at_once) as usize;
         if parts <= 1 {
             return Ok(Self::of_whole(read(&Wanted::All)?, &look));
         }
@@ -108,4 +112,59 @@ fn looked_into<T>(signal: &mut Signal, look: &impl Fn(&Signal) -> T) -> (Course,
     signal.samples = Samples::default();
     signal.time = TimeBase::Unknown;
     found
+}
+
+#[cfg(test)]
+mod tests {
+    use std::path::Path;
+
+    use super::{AT_ONCE, Contents, Signal};
+
+    /// One channel or two at a time, of every format that may be long.
+    #[test]
+    fn a_file_in_parts_is_told_as_the_whole() {
+        for name in [
+            "mdf/plain_3groups.mf4",
+            "mdf/special_text_invalid_bits.mf4",
+            "mdf/v330_3groups.mdf",
+            "rpc/short_4frames_group.tim",
+            "rpc/drive_spaces_zero_channel.drv",
+            "tdms/waveform_2segments.tdms",
+            "tdms/int16_linear_scale_time_channel.tdms",
+            "mat/labcontrol_ensaio_A1.mat",
+            "mat/dspace_v6.mat",
+            "mat/testlab_v7.mat",
+            "mat/testlab_v73.mat",
+            "mat/h5py_v114.mat",
+            "table/rig_units_row_bom_crlf.csv",
+        ] {
+            let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
+            let told = |at_once: u64| {
+                let bits = |signal: &Signal| signal.samples.iter().map(f64::to_bits).collect();
+                let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, bits).unwrap();
+                let found = contents.found.iter().map(|(course, samples)| {
+                    let numbers = [
+                        course.min,
+                        course.max,
+                        course.mean,
+                        course.rms,
+                        course.rate,
+                        course.start,
+                    ];
+                    (
+                        course.samples,
+                        course.missing,
+                        numbers,
+                        course.sparkline.clone(),
+                        samples.clone(),
+                    )
+                });
+                let found: Vec<_> = found.collect();
+                (format!("{:?}", contents.recording), found)
+            };
+            let (whole, parts) = (told(AT_ONCE), told(1));
+            assert_eq!(parts.0, whole.0, "{name}");
+            assert_eq!(parts.1, whole.1, "{name}");
+        }
+    }
 }

@@ -45,7 +45,10 @@ fn kind(name: &str, (model, variables): (&str, &Variables), own: &[(&str, &str)]
         ("modelIdentifier", model),
         ("canGetAndSetFMUstate", "true"),
         ("canSerializeFMUstate", "true"),
-        ("providesDirectionalDerivative", if variables.rolls { "false" } else { "true" }),
+        (
+            "providesDirectionalDerivative",
+            if variables.rolls { "false" } else { "true" },
+        ),
     ];
     let attributes = common.iter().chain(own).map(|&(name, value)| (name, value.into()));
     let attributes: Vec<(&str, String)> = attributes.collect();

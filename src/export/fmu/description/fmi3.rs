@@ -55,7 +55,10 @@ fn kind(name: &str, (model, variables): (&str, &Variables), own: &[(&str, &str)]
         ("modelIdentifier", model),
         ("canGetAndSetFMUState", "true"),
         ("canSerializeFMUState", "true"),
-        ("providesDirectionalDerivatives", if variables.rolls { "false" } else { "true" }),
+        (
+            "providesDirectionalDerivatives",
+            if variables.rolls { "false" } else { "true" },
+        ),
     ];
     let attributes = common.iter().chain(own).map(|&(name, value)| (name, value.into()));
     element(name, &attributes.collect::<Vec<_>>())
