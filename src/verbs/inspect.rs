@@ -12,6 +12,8 @@ use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
 use crate::verbs::Format;
 
+// Units that samples contradict.
+mod doubt;
 // What is told of a channel when its samples are gone.
 mod course;
 // A file gone through, channel by channel.
@@ -71,6 +73,7 @@ struct Channel<'a> {
     mean: Option<f64>,
     rms: Option<f64>,
     labels: Vec<(f64, &'a str)>,
+    doubt: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -126,6 +129,7 @@ impl<'a> Channel<'a> {
                 .iter()
                 .map(|(value, text)| (*value, text.as_str()))
                 .collect(),
+            doubt: course.doubt.as_deref(),
         }
     }
 }
@@ -153,6 +157,15 @@ pub(super) fn text<T>(contents: &Contents<T>) -> String {
     let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
     if !recording.signals.is_empty() {
         text += &format!("\n{}", table(contents));
+    }
+    let doubted = contents
+        .channels()
+        .filter_map(|(signal, course)| Some((signal, course.doubt.as_ref()?)));
+    let doubts: String = doubted
+        .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
+        .collect();
+    if !doubts.is_empty() {
+        text += &format!("\nunits to be checked, which are taken as the file says them:\n{doubts}");
     }
     if !recording.scalars.is_empty() {
         text += &format!("\n{}", scalars(&recording.scalars));

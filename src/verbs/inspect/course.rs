@@ -3,6 +3,8 @@
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::Signal;
 
+use super::doubt::{Does, doubt};
+
 /// Columns of a sparkline.
 const SPARKS: usize = 16;
 
@@ -22,6 +24,8 @@ pub(in crate::verbs) struct Course {
     pub rms: Option<f64>,
     /// A few characters, from the lowest to the highest.
     pub sparkline: String,
+    /// What is odd about its unit, as a sentence.
+    pub doubt: Option<String>,
 }
 
 impl Course {
@@ -30,16 +34,20 @@ impl Course {
         let valid = || signal.samples.iter().filter(|value| value.is_finite());
         let count = valid().count();
         let mean = |sum: f64| (count > 0).then(|| sum / count as f64);
+        let range = valid().reduce(f64::min).zip(valid().reduce(f64::max));
+        let average = mean(valid().sum());
+        let does = range.zip(average).map(|((min, max), mean)| Does { mean, min, max });
         Course {
             samples: signal.samples.len(),
             missing: signal.samples.len() - count,
             rate: signal.time.rate(),
             start: signal.time.start(),
-            min: valid().reduce(f64::min),
-            max: valid().reduce(f64::max),
-            mean: mean(valid().sum()),
+            min: range.map(|(min, _)| min),
+            max: range.map(|(_, max)| max),
+            mean: average,
             rms: mean(valid().map(|value| value * value).sum()).map(f64::sqrt),
             sparkline: sparkline(&signal.samples),
+            doubt: doubt(&signal.unit, does),
         }
     }
 
