@@ -31,21 +31,25 @@ pub(in crate::verbs) struct Course {
 impl Course {
     /// Of a channel whose samples are there.
     pub fn of(signal: &Signal) -> Self {
-        let valid = || signal.samples.iter().filter(|value| value.is_finite());
-        let count = valid().count();
-        let mean = |sum: f64| (count > 0).then(|| sum / count as f64);
-        let range = valid().reduce(f64::min).zip(valid().reduce(f64::max));
-        let average = mean(valid().sum());
-        let does = range.zip(average).map(|((min, max), mean)| Does { mean, min, max });
+        let mut sums = Sums::default();
+        let valid = signal.samples.iter().filter(|value| value.is_finite());
+        valid.for_each(|value| sums.add(value));
+        let mean = |sum: f64| (sums.count > 0).then(|| sum / sums.count as f64);
+        let average = mean(sums.values);
+        let does = average.map(|mean| Does {
+            mean,
+            min: sums.min,
+            max: sums.max,
+        });
         Course {
             samples: signal.samples.len(),
-            missing: signal.samples.len() - count,
+            missing: signal.samples.len() - sums.count,
             rate: signal.time.rate(),
             start: signal.time.start(),
-            min: range.map(|(min, _)| min),
-            max: range.map(|(_, max)| max),
+            min: average.map(|_| sums.min),
+            max: average.map(|_| sums.max),
             mean: average,
-            rms: mean(valid().map(|value| value * value).sum()).map(f64::sqrt),
+            rms: mean(sums.squares).map(f64::sqrt),
             sparkline: sparkline(&signal.samples),
             doubt: doubt(&signal.unit, does),
         }
@@ -54,6 +58,37 @@ impl Course {
     /// The largest absolute value.
     pub fn peak(&self) -> Option<f64> {
         Some(self.min?.abs().max(self.max?.abs()))
+    }
+}
+
+/// What one pass over the samples gives; a long recording has a billion of them.
+struct Sums {
+    count: usize,
+    min: f64,
+    max: f64,
+    values: f64,
+    squares: f64,
+}
+
+impl Default for Sums {
+    fn default() -> Self {
+        Sums {
+            count: 0,
+            min: f64::INFINITY,
+            max: f64::NEG_INFINITY,
+            values: 0.0,
+            squares: 0.0,
+        }
+    }
+}
+
+impl Sums {
+    fn add(&mut self, value: f64) {
+        self.count += 1;
+        self.min = self.min.min(value);
+        self.max = self.max.max(value);
+        self.values += value;
+        self.squares += value * value;
     }
 }
 
