@@ -110,7 +110,7 @@ impl<'a> Inspected<'a> {
 }
 
 impl<'a> Channel<'a> {
-    fn of((signal, course): (&'a Signal, &Course)) -> Self {
+    fn of((signal, course): (&'a Signal, &'a Course)) -> Self {
         Channel {
             name: &signal.name,
             unit: &signal.unit,
