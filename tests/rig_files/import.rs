@@ -144,7 +144,7 @@ fn units_that_the_samples_contradict_are_named() {
     for part in [
         "body_left_z: a mean of 1.00 m/s^2",
         "if it is, give `unit = \"g\"`",
-        "spring_travel: -22.915 to 30.914 m",
+        "spring_travel: -22.915 to 30.915 m",
         "if it is mm, give `unit = \"mm\"`",
         "damper_force: `kp` is an old name of kgf",
         "yaw_rate: `furlong` is no unit that is known",
@@ -156,7 +156,7 @@ fn units_that_the_samples_contradict_are_named() {
     for sound in [
         "mdf/plain_3groups.mf4",
         "mdf/special_text_invalid_bits.mf4",
-        "rpc/drive_spaces_zero_channel.drv",
+        "rpc/short_4frames_group.tim",
         "uff/151_164_58_58b.uff",
         "tdms/waveform_2segments.tdms",
         "mat/testlab_v7.mat",
