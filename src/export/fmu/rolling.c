@@ -142,10 +142,13 @@ static void add_ground(Overlap *of, Vector from, Vector to)
 
 static Overlap overlap(double radius, Vector centre, Vector velocity)
 {
-    Overlap of = {radius, copysign(sqrt(dot(velocity, velocity)), velocity.x), {1.0, 0.0}, {0}, {0}, 0.0, {0}};
+    Overlap of = {0};
     const int last = piece_at(centre.x + radius);
     int k, is_open = 0;
     Vector entry = {0}, end = {0};
+    of.radius = radius;
+    of.speed = copysign(sqrt(dot(velocity, velocity)), velocity.x);
+    of.forward.x = 1.0;
     if (of.speed != 0.0)
         of.forward = (Vector){velocity.x / of.speed, velocity.z / of.speed};
     for (k = piece_at(centre.x - radius); k <= last; k++) {
