@@ -47,7 +47,8 @@ impl<'a> Content<'a> {
         })))
     }
 
-    pub(crate) fn length(&self) -> u64 {
+    /// How many bytes there are.
+    pub fn length(&self) -> u64 {
         match &self.0 {
             Where::Memory(bytes) => bytes.len() as u64,
             Where::Disk(disk) => disk.length,

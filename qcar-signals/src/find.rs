@@ -27,6 +27,11 @@ impl Wanted<'_> {
         }
     }
 
+    /// Whether this channel is to be read.
+    pub fn means(&self, signal: &Signal) -> bool {
+        self.has(&signal.source.group, &signal.name)
+    }
+
     /// Whether a channel whose name begins so may be to be read.
     pub(crate) fn may_begin(&self, beginning: &str) -> bool {
         match self {

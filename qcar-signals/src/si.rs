@@ -1,6 +1,6 @@
 //! What a unit is in SI: its size, and its powers of kilogram, metre and second.
 
-use crate::units::bare;
+use crate::units::{bare, is_unit};
 
 /// A unit in SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -73,6 +73,11 @@ pub fn in_si(unit: &str) -> Option<Si> {
     let mut parts = plain.split('/');
     let above = product(parts.next()?)?;
     parts.try_fold(above, |above, below| Some(per(above, product(below)?)))
+}
+
+/// Whether a text is a unit at all, be it one that is none of mechanics, such as `V` or `°C`.
+pub fn is_known(unit: &str) -> bool {
+    is_unit(unit) || in_si(unit).is_some()
 }
 
 fn product(text: &str) -> Option<Si> {

@@ -4,6 +4,8 @@
 
 // Text and attributes of XML.
 mod xml;
+// A tyre that rolls, as the sources read it.
+mod tyre;
 // What the variables are.
 mod variables;
 // Which of them the results depend on.
@@ -23,12 +25,14 @@ use description::{fmi2, fmi3};
 use variables::{Variable, Variables};
 
 pub use library::Library;
+pub use tyre::OnTyre;
 
 /// The relative tolerance to which Co-Simulation integrates.
 const TOLERANCE: f64 = 1e-9;
 
 /// What is the same in every unit, but for what stands before it all.
-const SOURCES: [(&str, &str); 4] = [
+const SOURCES: [(&str, &str); 5] = [
+    ("motion.h", include_str!("fmu/motion.h")),
     ("core.h", include_str!("fmu/core.h")),
     ("core.c", include_str!("fmu/core.c")),
     ("advance.c", include_str!("fmu/advance.c")),
@@ -62,14 +66,14 @@ pub struct Unit {
     pub library: Library,
 }
 
-/// Packs a model.
+/// Packs a model: on an effective road, or on a tyre that rolls over a profile.
 ///
 /// # Errors
 /// Where a C compiler is there and cannot compile the model, its message.
-pub fn pack(subject: Subject, version: Version) -> Result<Unit, String> {
+pub fn pack(subject: Subject, version: Version, tyre: Option<&OnTyre>) -> Result<Unit, String> {
     let name = &subject.compiled.about.name;
-    let variables = Variables::of(subject);
-    let mut sources = sources(subject, &variables, version);
+    let variables = Variables::of(subject, tyre);
+    let mut sources = sources(subject, &variables, version, tyre);
     let compiled: Vec<String> = names(&sources)
         .filter(|name| name.ends_with(".c"))
         .map(String::from)
@@ -107,17 +111,24 @@ pub fn pack(subject: Subject, version: Version) -> Result<Unit, String> {
 /// What `core.h` reads of the model.
 const MODEL_HEADER: &str = "fmu_model.h";
 
-fn sources(subject: Subject, variables: &Variables, version: Version) -> Vec<File> {
-    let fixed = SOURCES.into_iter().chain([version.source()]).map(|(name, text)| File {
+fn sources(subject: Subject, variables: &Variables, version: Version, tyre: Option<&OnTyre>) -> Vec<File> {
+    let motion = match tyre {
+        None => ("effective.c", include_str!("fmu/effective.c")),
+        Some(_) => ("rolling.c", include_str!("fmu/rolling.c")),
+    };
+    let file = |(name, text): (&str, &str)| File {
         name: name.into(),
         content: text.into(),
-    });
-    let own = File {
-        name: MODEL_HEADER.into(),
-        content: model_header(subject, variables).into_bytes(),
     };
+    let fixed = SOURCES.into_iter().chain([motion, version.source()]).map(file);
+    let header = model_header(subject, variables, tyre);
+    let profile = tyre.map(OnTyre::profile);
+    let own = [(MODEL_HEADER, header)]
+        .into_iter()
+        .chain(profile.map(|text| ("road.h", text)));
+    let own = own.map(|(name, text)| file((name, &text))).collect::<Vec<_>>();
     let model = c::files(subject, &subject.compiled.about.name);
-    fixed.chain([own]).chain(model).collect()
+    fixed.chain(own).chain(model).collect()
 }
 
 fn names(files: &[File]) -> impl Iterator<Item = &str> {
@@ -125,7 +136,7 @@ fn names(files: &[File]) -> impl Iterator<Item = &str> {
 }
 
 /// Sizes and names without the name of the model in them; the token and the end come when the rest is known.
-fn model_header(subject: Subject, variables: &Variables) -> String {
+fn model_header(subject: Subject, variables: &Variables, tyre: Option<&OnTyre>) -> String {
     let about = &subject.compiled.about;
     let upper = about.name.to_uppercase();
     let sizes = [
@@ -138,12 +149,20 @@ fn model_header(subject: Subject, variables: &Variables) -> String {
         "PARAMETER_JACOBIAN",
         "KINKS",
     ];
-    let sizes = sizes.map(|size| format!("#define {size} {upper}_{size}\n")).concat();
+    let added = tyre.map(|tyre| tyre.added(about));
+    let size = |size: &str| match added.iter().flatten().find(|(of, _)| *of == size) {
+        Some((_, more)) => {
+            format!("#define MODEL_{size} {upper}_{size}\n#define {size} ({upper}_{size} + {more})\n")
+        }
+        None => format!("#define {size} {upper}_{size}\n"),
+    };
+    let sizes = sizes.map(size).concat();
     let nominals = variables.all.iter().filter_map(Variable::nominal).chain([1.0]);
     let nominals: Vec<String> = nominals.map(|nominal| format!("{nominal:?}")).collect();
+    let tyre = tyre.map_or_else(String::new, |tyre| tyre.definitions(about));
     format!(
         "/* Names and sizes of the model. */\n#ifndef FMU_MODEL_H\n#define FMU_MODEL_H\n\n#include \"{name}.h\"\n\n\
-         #define MODEL(name) {name}_##name\n{sizes}#define TOLERANCE {TOLERANCE:?}\n#define NOMINALS {{{nominals}}}",
+         #define MODEL(name) {name}_##name\n{sizes}{tyre}#define TOLERANCE {TOLERANCE:?}\n#define NOMINALS {{{nominals}}}",
         name = about.name,
         nominals = nominals.join(", "),
     )

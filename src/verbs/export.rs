@@ -15,7 +15,11 @@ use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::json;
 use crate::parameters;
+use crate::roads;
 use crate::state_space::{StateSpace, state_space};
+
+// The tyre and the profile of a unit that rolls.
+mod on_tyre;
 
 /// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables
 ///
@@ -23,7 +27,7 @@ use crate::state_space::{StateSpace, state_space};
 /// overwritten.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu"
+    after_help = "Examples:\n  qcar export quarter_car --as c --out quarter_car.c\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --out axle_a.fmu\n  qcar export axle_a --params models/campaigns/axle_a_rig --as fmu --road C@80km/h:10s --out axle_a_on_road.fmu"
 )]
 pub struct Arguments {
     #[command(flatten)]
@@ -34,6 +38,10 @@ pub struct Arguments {
     /// Version of the Functional Mock-up Interface of an FMU; default: 2
     #[arg(long, value_enum, value_name = "VERSION")]
     fmi: Option<Fmi>,
+    /// For an FMU: roll over this road on the tyre of the vehicle in --params; a class of ISO 8608 such as C@80km/h, or a profile such as
+    /// cleat.csv@30km/h or road.crg#v=0.5@50km/h. Without it the effective road is an input
+    #[arg(long, value_name = "ROAD@SPEED")]
+    road: Option<roads::Asked>,
     /// The file to write, with the ending of its kind
     #[arg(long, value_name = "FILE")]
     out: PathBuf,
@@ -114,7 +122,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         compiled: &compiled,
         values: values.as_slice(),
     };
-    let (files, note) = files((arguments.kind, version), subject, (&loaded, &values), &stem)?;
+    let roll = |road| on_tyre::on_tyre(road, (&loaded, &values), params.as_deref());
+    let unit = UnitOf {
+        version,
+        tyre: arguments.road.as_ref().map(roll).transpose()?,
+    };
+    let (files, note) = files((arguments.kind, &unit), subject, (&loaded, &values), &stem)?;
     let folder = arguments.out.parent().unwrap_or("".as_ref());
     let paths: Vec<PathBuf> = files.iter().map(|file| folder.join(&file.name)).collect();
     paths.iter().try_for_each(|path| must_be_free(path))?;
@@ -129,8 +142,18 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     ))
 }
 
-/// The version of the interface, which only an FMU has.
+/// What an FMU is beside its model.
+struct UnitOf {
+    version: fmu::Version,
+    tyre: Option<fmu::OnTyre>,
+}
+
+/// The version of the interface, which only an FMU has, as only it has a road.
 fn version(arguments: &Arguments) -> Result<fmu::Version, Failure> {
+    if arguments.road.is_some() && !matches!(arguments.kind, Kind::Fmu) {
+        let remedy = "leave it out, or write --as fmu";
+        return Err(flag("--road", "a road", "it with `--as fmu` alone", remedy).into());
+    }
     match (arguments.kind, arguments.fmi) {
         (Kind::Fmu, version) => Ok(version.unwrap_or(Fmi::Two).into()),
         (_, None) => Ok(fmu::Version::Two),
@@ -170,7 +193,7 @@ fn must_be_free(path: &Path) -> Result<(), Failure> {
 
 /// What is to be written, and what to say of it beside.
 fn files(
-    (kind, version): (Kind, fmu::Version),
+    (kind, unit): (Kind, &UnitOf),
     subject: Subject,
     (model, values): (&Loaded, &Values),
     stem: &str,
@@ -183,8 +206,9 @@ fn files(
     Ok(match kind {
         Kind::C => (c::files(subject, stem), String::new()),
         Kind::Fmu => {
-            let unit = fmu::pack(subject, version).map_err(|message| cannot_compile(&message))?;
-            (vec![own(unit.archive)], library(&unit.library))
+            let packed = fmu::pack(subject, unit.version, unit.tyre.as_ref());
+            let packed = packed.map_err(|message| cannot_compile(&message))?;
+            (vec![own(packed.archive)], library(&packed.library))
         }
         Kind::Matlab => (vec![matlab::program(subject, stem)?], String::new()),
         Kind::Mat | Kind::Mat73 => {

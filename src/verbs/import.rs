@@ -2,17 +2,15 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::Args;
-use clap_complete::engine::ArgValueCompleter;
-use qcar_signals::signal::Recording;
-
-use super::inspect;
+use super::inspect::{self, Contents};
 use super::new::campaign::{make_head, seen_from};
 use crate::catalogue;
 use crate::completion;
 use crate::failure::{Failure, flag};
 use crate::files::put;
 use crate::terminal::prose;
+use clap::Args;
+use clap_complete::engine::ArgValueCompleter;
 
 // Names taken apart.
 mod tokens;
@@ -52,7 +50,7 @@ struct Measured {
     file: PathBuf,
     /// As the campaign must name it.
     seen: String,
-    recording: Recording,
+    contents: Contents<Option<kind::Driven>>,
 }
 
 /// Does it.
@@ -64,7 +62,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     for file in &arguments.files {
         files.push(Measured {
             seen: seen_from(&arguments.out, &file.display().to_string(), false),
-            recording: inspect::recording(file)?,
+            contents: Contents::of(file, |signal| kind::Driven::of(signal, model.about()))?,
             file: file.clone(),
         });
     }
@@ -121,7 +119,7 @@ fn told(
 ) -> String {
     let mut text = String::new();
     for (file, runs) in files.iter().zip(runs) {
-        text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.recording));
+        text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.contents));
         text.extend(runs.iter().map(|run| format!("taken for {}\n", run.said())));
         text += "\n";
     }

@@ -1,14 +1,9 @@
 //! `qcar inspect`: the channels of a measured file.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
-use qcar_runtime::bounded;
-use qcar_signals::error::ReadError;
-use qcar_signals::find::Wanted;
-use qcar_signals::read::channels;
-use qcar_signals::samples::Samples;
-use qcar_signals::signal::{Recording, Scalar, Signal, Value};
+use qcar_signals::signal::{Scalar, Signal, Value};
 use serde::Serialize;
 
 use crate::failure::Failure;
@@ -17,8 +12,16 @@ use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
 use crate::verbs::Format;
 
-/// Columns of a sparkline.
-const SPARKS: usize = 16;
+// Units that samples contradict.
+mod doubt;
+// What is told of a channel when its samples are gone.
+mod course;
+// A file gone through, channel by channel.
+mod contents;
+
+pub(super) use contents::Contents;
+pub(super) use course::Course;
+
 /// Significant digits of what is printed for people.
 const DIGITS: usize = 6;
 
@@ -39,21 +42,11 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let recording = recording(&arguments.file)?;
+    let contents = Contents::of(&arguments.file, |_| ())?;
     Ok(match arguments.format {
-        Format::Text => prose(&text(&recording)),
-        Format::Json => json::line(&Inspected::of(&recording)),
+        Format::Text => prose(&text(&contents)),
+        Format::Json => json::line(&Inspected::of(&contents)),
     })
-}
-
-/// What is in a file.
-///
-/// # Errors
-/// A file that cannot be read.
-pub(super) fn recording(file: &Path) -> Result<Recording, Failure> {
-    let content = bounded::measured_file(file, "correct the path, or put the file there")?;
-    let file = file.into();
-    channels(&content, &Wanted::All).map_err(|fault| Failure::Input(ReadError { file, fault }.to_string()))
 }
 
 /// What a file holds, as JSON.
@@ -80,6 +73,7 @@ struct Channel<'a> {
     mean: Option<f64>,
     rms: Option<f64>,
     labels: Vec<(f64, &'a str)>,
+    doubt: Option<&'a str>,
 }
 
 #[derive(Serialize)]
@@ -99,7 +93,8 @@ struct Passed<'a> {
 }
 
 impl<'a> Inspected<'a> {
-    fn of(recording: &'a Recording) -> Self {
+    fn of<T>(contents: &'a Contents<T>) -> Self {
+        let recording = &contents.recording;
         let passed = recording.passed_over.iter().map(|passed| Passed {
             name: &passed.name,
             place: passed.place.to_string(),
@@ -107,7 +102,7 @@ impl<'a> Inspected<'a> {
         });
         Inspected {
             format: &recording.format,
-            channels: recording.signals.iter().map(Channel::of).collect(),
+            channels: contents.channels().map(Channel::of).collect(),
             values: recording.scalars.iter().map(Single::of).collect(),
             passed_over: passed.collect(),
         }
@@ -115,28 +110,26 @@ impl<'a> Inspected<'a> {
 }
 
 impl<'a> Channel<'a> {
-    fn of(signal: &'a Signal) -> Self {
-        let valid = || signal.samples.iter().filter(|value| value.is_finite());
-        let count = valid().count();
-        let mean = |sum: f64| (count > 0).then(|| sum / count as f64);
+    fn of((signal, course): (&'a Signal, &'a Course)) -> Self {
         Channel {
             name: &signal.name,
             unit: &signal.unit,
             group: &signal.source.group,
             place: signal.source.place.to_string(),
-            samples: signal.samples.len(),
-            missing: signal.samples.len() - count,
-            rate: signal.time.rate(),
-            start: signal.time.start(),
-            min: valid().reduce(f64::min),
-            max: valid().reduce(f64::max),
-            mean: mean(valid().sum()),
-            rms: mean(valid().map(|value| value * value).sum()).map(f64::sqrt),
+            samples: course.samples,
+            missing: course.missing,
+            rate: course.rate,
+            start: course.start,
+            min: course.min,
+            max: course.max,
+            mean: course.mean,
+            rms: course.rms,
             labels: signal
                 .labels
                 .iter()
                 .map(|(value, text)| (*value, text.as_str()))
                 .collect(),
+            doubt: course.doubt.as_deref(),
         }
     }
 }
@@ -159,13 +152,23 @@ impl<'a> Single<'a> {
 }
 
 /// What is in a file, for people.
-pub(super) fn text(recording: &Recording) -> String {
+pub(super) fn text<T>(contents: &Contents<T>) -> String {
+    let recording = &contents.recording;
     let mut text = format!("{}, {} channels\n", recording.format, recording.signals.len());
     if !recording.signals.is_empty() {
-        text += &format!("\n{}", table(recording));
+        text += &format!("\n{}", table(contents));
+    }
+    let doubted = contents
+        .channels()
+        .filter_map(|(signal, course)| Some((signal, course.doubt.as_ref()?)));
+    let doubts: String = doubted
+        .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
+        .collect();
+    if !doubts.is_empty() {
+        text += &format!("\nunits to be checked, which are taken as the file says them:\n{doubts}");
     }
     if !recording.scalars.is_empty() {
-        text += &format!("\n{}", scalars(recording));
+        text += &format!("\n{}", scalars(&recording.scalars));
     }
     if !recording.passed_over.is_empty() {
         text += "\npassed over:\n";
@@ -176,33 +179,32 @@ pub(super) fn text(recording: &Recording) -> String {
         .collect::<String>()
 }
 
-fn table(recording: &Recording) -> String {
+fn table<T>(contents: &Contents<T>) -> String {
     let headings = [
         "channel", "group", "unit", "samples", "missing", "rate_Hz", "start_s", "min", "max", "rms", "",
     ];
     let mut table = Table::new(headings);
-    for signal in &recording.signals {
-        let channel = Channel::of(signal);
+    for (signal, course) in contents.channels() {
         table.row(vec![
-            channel.name.into(),
-            channel.group.into(),
-            channel.unit.into(),
-            channel.samples.to_string(),
-            channel.missing.to_string(),
-            or_dash(channel.rate, DIGITS),
-            or_dash(channel.start, DIGITS),
-            or_dash(channel.min, DIGITS),
-            or_dash(channel.max, DIGITS),
-            or_dash(channel.rms, DIGITS),
-            sparkline(&signal.samples),
+            signal.name.clone(),
+            signal.source.group.clone(),
+            signal.unit.clone(),
+            course.samples.to_string(),
+            course.missing.to_string(),
+            or_dash(course.rate, DIGITS),
+            or_dash(course.start, DIGITS),
+            or_dash(course.min, DIGITS),
+            or_dash(course.max, DIGITS),
+            or_dash(course.rms, DIGITS),
+            course.sparkline.clone(),
         ]);
     }
     table.text()
 }
 
-fn scalars(recording: &Recording) -> String {
+fn scalars(scalars: &[Scalar]) -> String {
     let mut table = Table::new(["value", "unit", "is", "place"]);
-    for scalar in &recording.scalars {
+    for scalar in scalars {
         let is = match &scalar.value {
             Value::Number(value) => number(*value, DIGITS),
             Value::Text(text) => format!("`{text}` (a text)"),
@@ -217,26 +219,4 @@ fn scalars(recording: &Recording) -> String {
         ]);
     }
     table.text()
-}
-
-/// The course of a channel in a few characters: the means of as many parts, from the lowest to the highest.
-fn sparkline(samples: &Samples) -> String {
-    let part = samples.len().div_ceil(SPARKS).max(1);
-    let means = (0..samples.len()).step_by(part).map(|from| {
-        let valid = samples
-            .range(from..samples.len().min(from + part))
-            .filter(|value| value.is_finite());
-        valid.clone().sum::<f64>() / valid.count() as f64
-    });
-    let means: Vec<f64> = means.collect();
-    let low = means.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let level = |mean: &f64| match mean.is_nan() {
-        true => ' ',
-        false if high > low => {
-            ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'][((mean - low) / (high - low) * 7.0).round() as usize % 8]
-        }
-        false => '▄',
-    };
-    means.iter().map(level).collect()
 }

@@ -108,7 +108,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
 
 fn write(answer: &Answer, plan: &Plan, subject: &Subject, ground: &Ground<'_>, folder: &Path) -> Result<(), Failure> {
     let design = gather::design(plan, answer, subject);
-    let contents = Contents::of(answer, &plan.moves, ground, [&subject.values, &design]);
+    let contents = Contents::of(answer, &plan.moves, (subject, ground), [&subject.values, &design]);
     put(folder, "target.json", &json::line(answer))?;
     put(
         folder,

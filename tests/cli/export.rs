@@ -148,6 +148,20 @@ fn what_cannot_be_written_is_said_before_anything_is() {
         &export("no_such", "c", &path("own.c"), &[]),
         &["`no_such`", "choose among"],
     );
+    let road = ["--road", "C@80km/h"];
+    refused(
+        &export("quarter_car", "c", &path("own.c"), &road),
+        &["--road", "--as fmu"],
+    );
+    refused(
+        &export("quarter_car", "fmu", &path("own.fmu"), &road),
+        &["--road", "r_tire, static_tire_def and static_tire_load", "--params"],
+    );
+    let rig = ["--params", "models/campaigns/axle_a_rig", "--road", "C@80km/h:600s"];
+    refused(
+        &export("axle_a", "fmu", &path("own.fmu"), &rig),
+        &["444446 points", "at most 200000", ":20s"],
+    );
     assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 }
 

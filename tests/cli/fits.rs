@@ -91,6 +91,55 @@ fn a_nonlinear_model_is_fitted_to_its_truth() {
     assert!(fit["gap"]["held_out"].as_f64() < Some(1.5), "{}", fit["gap"]);
 }
 
+/// Where bristles damp, a model without that makes up for it by its top mount; with it, all is found. What is hidden is written by
+/// hand in the generator, with a Stribeck peak that is none here.
+#[test]
+fn friction_with_damped_bristles_is_fitted_to_its_truth() {
+    let folder = tempfile::tempdir().unwrap();
+    let [campaign, plain, damped] = ["campaign", "plain.axle", "damped.axle"].map(|name| folder.path().join(name));
+    let hidden = [
+        ("f_coulomb", 143.0),
+        ("static_ratio", 1.0),
+        ("v_stribeck", 0.01),
+        ("sigma0", 1.15e6),
+        ("sigma1", 400.0),
+    ];
+    let order = Order {
+        cleats: false,
+        programme: Programme::fast(),
+        effects: vec![Hidden::new("lugre_friction", "damper", &hidden).form("strut")],
+        ..Order::clean("c", 2102)
+    };
+    make(order, &campaign).unwrap();
+    let [campaign, plain, damped] = [&campaign, &plain, &damped].map(|path| path.to_str().unwrap());
+    let patched = |effect: &str, out: &str| {
+        let place = ["patch", "axle_c", effect, "--at", "damper", "--form", "across_strut"];
+        succeeds(&[&place[..], &["--params", campaign, "--out", out]].concat());
+        fitted(&[campaign, "--model", out])
+    };
+    let truth = Truth::read(&Path::new(campaign).join("truth.toml")).unwrap();
+    let k_tm = truth.parameters.iter().find(|(name, _)| name == "k_tm").unwrap().1;
+    let off = |fit: &Value, name: &str, truth: f64| {
+        let own = &fit["parameters"][name];
+        let [value, error] = ["value", "stderr"].map(|key| own[key].as_f64().unwrap_or(f64::NAN));
+        println!("{name}: {value} ± {error}, truth {truth}");
+        (value - truth) / error
+    };
+    let without = off(&patched("coulomb_friction", plain), "k_tm", k_tm);
+    assert!(without.abs() > 3.0, "{without}");
+    let fit = patched("tests/data/bristle_friction.axle", damped);
+    let found = [("f_coulomb", 143.0), ("k_presliding", 1.15e6), ("c_bristle", 400.0)];
+    let unseen = ["m_tm", "k_wheel_x", "c_wheel_x"];
+    let parameters = truth.parameters.iter().map(|(name, value)| (&**name, *value));
+    for (name, truth) in parameters.chain(found).filter(|(name, _)| !unseen.contains(name)) {
+        assert!(
+            off(&fit, name, truth).abs() < 3.0,
+            "{name}: {}",
+            fit["parameters"][name]
+        );
+    }
+}
+
 /// The rig excites nothing along the road; a K&C curve does.
 #[test]
 fn what_the_rig_does_not_see_comes_from_its_curve() {

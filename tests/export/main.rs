@@ -1,10 +1,12 @@
-//! Exported models against other programs: FMPy, SciPy, GNU Octave, Node; and tables against pyarrow.
+//! Exported models against other programs: FMPy, the FMU Manipulation Toolbox, SciPy, GNU Octave, Node; and tables against pyarrow.
 
+mod conformity;
 mod fmu;
 mod histories;
 mod javascript;
 mod matlab;
 mod modelica;
 mod programs;
+mod rolling;
 mod tables;
 mod workbook;

@@ -134,3 +134,37 @@ fn a_workbook_of_a_kinematics_rig_becomes_a_curve() {
     assert_eq!((curve.displacement.len(), curve.displacement[0]), (81, -0.08));
     assert!(curve.force.iter().all(|force| (1632.0..7295.0).contains(force)));
 }
+
+/// A trap whose units are wrong, and files of programs whose units are right.
+#[test]
+fn units_that_the_samples_contradict_are_named() {
+    let samples = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
+    let (status, said) = qcar(&samples, "inspect traps/wrong_units.csv");
+    assert_eq!(status, 0, "{said}");
+    for part in [
+        "body_left_z: a mean of 1.00 m/s^2",
+        "if it is, give `unit = \"g\"`",
+        "spring_travel: -22.915 to 30.915 m",
+        "if it is mm, give `unit = \"mm\"`",
+        "damper_force: `kp` is an old name of kgf",
+        "yaw_rate: `furlong` is no unit that is known",
+    ] {
+        let unbroken = said.split_whitespace().collect::<Vec<_>>().join(" ");
+        assert!(unbroken.contains(part), "{part}\n{said}");
+    }
+    assert!(!said.contains("wheel_left_z: "), "{said}");
+    for sound in [
+        "mdf/plain_3groups.mf4",
+        "mdf/special_text_invalid_bits.mf4",
+        "rpc/short_4frames_group.tim",
+        "uff/151_164_58_58b.uff",
+        "tdms/waveform_2segments.tdms",
+        "mat/testlab_v7.mat",
+        "mat/dspace_v6.mat",
+        "table/kc_bounce.xlsx",
+        "crg/slope_banking_krbi.crg",
+    ] {
+        let (status, said) = qcar(&samples, &format!("inspect {sound}"));
+        assert!(status == 0 && !said.contains("units to be checked"), "{sound}\n{said}");
+    }
+}

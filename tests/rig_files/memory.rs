@@ -1,5 +1,8 @@
 //! Of a long recording, a campaign holds the channels that its sensors name, as narrow as the file stores them, and not the file.
 
+use std::fs::{self, File};
+use std::process::Command;
+
 use crate::counting::memory_of;
 use crate::writers::{Channel, Group, mat5, mdf4, rpc, tdms};
 use crate::{channel, folder, history, open};
@@ -45,4 +48,42 @@ fn a_campaign_holds_the_channels_that_it_names() {
     of("long.tdms", tdms::file(&doubles), "", 0.25);
     of("long.mat", mat5::file(&doubles), "\nunit = \"m/s^2\"", 0.4);
     of("long.rsp", rpc::file(&shorts), "", 0.25);
+}
+
+/// A program that may take no more than 400 MB of addresses tells all sixteen channels of 520 MB, which it looks at in parts.
+#[cfg(target_os = "linux")]
+#[test]
+fn all_channels_of_a_long_recording_are_told_in_less_memory_than_it_has() {
+    const FRAMES: usize = 8000;
+    let folder = tempfile::tempdir().unwrap();
+    let mut file = rpc::file(&group(2048));
+    let data = file.len() - 16 * 2048 * 2;
+    for (name, value) in [("FRAMES", FRAMES), ("SAMPLES", 2048 * FRAMES)] {
+        let at = file
+            .windows(33)
+            .position(|bytes| bytes.starts_with(format!("{name}\0").as_bytes()));
+        let value = format!("{value}\0");
+        file[at.unwrap() + 32..][..value.len()].copy_from_slice(value.as_bytes());
+    }
+    fs::write(folder.path().join("long.rsp"), &file).unwrap();
+    // Zeros that take no place on the disk follow.
+    let length = (data + FRAMES * 16 * 2048 * 2) as u64;
+    let long = File::options()
+        .write(true)
+        .open(folder.path().join("long.rsp"))
+        .unwrap();
+    long.set_len(length).unwrap();
+    let limited = |kilobytes: &str, file: &str| {
+        let qcar = env!("CARGO_BIN_EXE_qcar");
+        let line = format!("ulimit -v {kilobytes}; exec {qcar} inspect {file}");
+        let ran = Command::new("sh")
+            .args(["-c", &line])
+            .current_dir(folder.path())
+            .output();
+        ran.unwrap()
+    };
+    let told = limited("400000", "long.rsp");
+    let text = String::from_utf8_lossy(&told.stdout);
+    assert!(told.status.success(), "{}", String::from_utf8_lossy(&told.stderr));
+    assert_eq!(text.matches("16384000").count(), 16, "{text}");
 }

@@ -47,7 +47,7 @@ static void rate(Integration *of, double time, const double *x, double *dx)
 {
     double u[INPUTS + 1];
     inputs_at(of, time, u);
-    MODEL(derivative)(of->core->constants, x, u, dx);
+    motion_rates(of->core->constants, time, x, u, dx);
 }
 
 /* The state that a stage begins from. */
@@ -120,9 +120,9 @@ static int step(Integration *of, double end)
     Snapshot *now = &of->core->now;
     for (;;) {
         /* What is left is one step, or two of the same length. */
-        const double left = end - now->time;
-        const int last = now->step >= left;
-        const double h = last ? left : now->step > left / 2 ? left / 2 : now->step;
+        const double left = end - now->time, wanted = fmin(now->step, motion_longest_step(of->core->constants));
+        const int last = wanted >= left;
+        const double h = last ? left : wanted > left / 2 ? left / 2 : wanted;
         const double error = attempt(of, h);
         const double factor = error < HUGE_VAL ? fmin(5.0, fmax(0.2, 0.9 * pow(error, -0.2))) : 0.2;
         if (error <= 1.0 || (error < HUGE_VAL && h <= SHORTEST_OVER_A_KINK && crosses_a_kink(of, h))) {

@@ -11,6 +11,7 @@ const char *core_message(int result)
     case NOT_TO_BE_SET: return "this variable is computed and cannot be set; set parameters, inputs or states";
     case NOT_FINITE: return "a result is no finite number; correct the parameters, of which one is too large or zero";
     case TOO_STIFF: return "the model needs steps below 1e-12 s; correct its parameters";
+    case NO_DIRECTIONS: return "a unit whose tyre rolls has no directional derivatives; take differences";
     default: return "";
     }
 }
@@ -21,11 +22,9 @@ void core_reset(Core *core)
     Snapshot *now = &core->now;
     now->time = 0.0;
     now->step = 0.0;
-    MODEL(defaults)(now->p);
+    motion_start(now->p, now->x);
     for (i = 0; i < INPUTS; i++)
         now->u[i] = now->u_rate[i] = 0.0;
-    for (i = 0; i < STATES; i++)
-        now->x[i] = 0.0;
     core->is_prepared = 0;
     core->is_computed = 0;
     core->tolerance = TOLERANCE;
@@ -48,7 +47,7 @@ void core_restore(Core *core, const Snapshot *to)
 static void prepare(Core *core)
 {
     if (!core->is_prepared) {
-        MODEL(prepare)(core->now.p, core->constants);
+        motion_prepare(core->now.p, core->constants);
         core->is_prepared = 1;
     }
 }
@@ -56,9 +55,10 @@ static void prepare(Core *core)
 void core_compute(Core *core)
 {
     if (!core->is_computed) {
+        const Snapshot *now = &core->now;
         prepare(core);
-        MODEL(derivative)(core->constants, core->now.x, core->now.u, core->dx);
-        MODEL(outputs)(core->constants, core->now.x, core->now.u, core->y);
+        motion_rates(core->constants, now->time, now->x, now->u, core->dx);
+        motion_outputs(core->constants, now->time, now->x, now->u, core->y);
         core->is_computed = 1;
     }
 }
@@ -185,38 +185,16 @@ static int spread(const unsigned int *known, size_t knowns, const double *seed, 
     return OK;
 }
 
-/* What derivatives and outputs change by in a direction. */
-static void differentiate(Core *core, const double *direction, double *change)
-{
-    int i;
-    double nonzeros[MATRICES + PARAMETER_JACOBIAN + 1];
-    const double *p = core->now.p, *x = core->now.x, *u = core->now.u;
-    for (i = 0; i < STATES + OUTPUTS; i++)
-        change[i] = 0.0;
-    MODEL(matrices)(p, x, u, nonzeros);
-    for (i = 0; i < MATRICES; i++) {
-        const MODEL(entry) *at = &MODEL(matrices_at)[i];
-        const int is_output = at->matrix == 'C' || at->matrix == 'D';
-        const int is_input = at->matrix == 'B' || at->matrix == 'D';
-        const int from = (is_input ? FIRST_INPUT : FIRST_STATE) + at->column;
-        change[(is_output ? STATES : 0) + at->row] += nonzeros[i] * direction[from];
-    }
-    MODEL(parameter_jacobian)(p, x, u, nonzeros);
-    for (i = 0; i < PARAMETER_JACOBIAN; i++) {
-        const MODEL(derivative_by_parameter) *at = &MODEL(parameter_jacobian_at)[i];
-        change[(at->is_output ? STATES : 0) + at->row] += nonzeros[i] * direction[at->parameter];
-    }
-}
-
 int core_directional(Core *core, const unsigned int *unknown, size_t unknowns, const unsigned int *known, size_t knowns,
                      const double *seed, double *sensitivity)
 {
     size_t i;
     double direction[FIRST_DERIVATIVE + 1], change[STATES + OUTPUTS + 1];
-    const int result = spread(known, knowns, seed, direction);
+    int result = spread(known, knowns, seed, direction);
+    if (result == OK)
+        result = motion_directional(core->now.p, core->now.x, core->now.u, direction, change);
     if (result != OK)
         return result;
-    differentiate(core, direction, change);
     for (i = 0; i < unknowns; i++) {
         if (unknown[i] < FIRST_DERIVATIVE || unknown[i] >= FIRST_KINK)
             return UNKNOWN_VARIABLE;

@@ -3,6 +3,7 @@
 #define CORE_H
 
 #include "fmu_model.h"
+#include "motion.h"
 
 #include <stddef.h>
 
@@ -41,7 +42,7 @@ typedef struct {
     double tolerance;
 } Core;
 
-enum { OK = 0, UNKNOWN_VARIABLE, NOT_TO_BE_SET, NOT_FINITE, TOO_STIFF };
+enum { OK = 0, UNKNOWN_VARIABLE, NOT_TO_BE_SET, NOT_FINITE, TOO_STIFF, NO_DIRECTIONS };
 
 /* What to say of such a result. */
 const char *core_message(int result);

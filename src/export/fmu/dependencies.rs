@@ -17,12 +17,23 @@ pub struct Dependencies {
 }
 
 impl Dependencies {
-    /// Those of a model.
+    /// Those of a model. Where its tyre rolls, they are said of everything: the contact couples both directions.
     pub fn of(subject: Subject, variables: &Variables) -> Self {
         let (vectors, programs) = (&subject.compiled.vectors, &subject.compiled.programs);
+        let all = |count: usize| vec![variables.moving().collect(); count];
+        let (derivatives, outputs) = match variables.rolls {
+            false => (
+                of(vectors, variables, &programs.derivative),
+                of(vectors, variables, &programs.outputs),
+            ),
+            true => (
+                all(variables.first_output() - variables.first_derivative()),
+                all(variables.first_kink() - variables.first_output()),
+            ),
+        };
         Dependencies {
-            derivatives: of(vectors, variables, &programs.derivative),
-            outputs: of(vectors, variables, &programs.outputs),
+            derivatives,
+            outputs,
             kinks: of(vectors, variables, &motion_kinks(subject.compiled)),
         }
     }

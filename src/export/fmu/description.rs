@@ -58,6 +58,7 @@ fn units(variables: &Variables) -> Vec<String> {
 fn identity(reference: usize, own: &Variable) -> Vec<(&'static str, String)> {
     let [causality, variability, initial] = match own.role {
         Role::Parameter => ["parameter", "tunable", "exact"],
+        Role::Fixed => ["parameter", "fixed", "exact"],
         Role::Input => ["input", "continuous", ""],
         Role::State => ["local", "continuous", "exact"],
         Role::Derivative(_) | Role::Kink => ["local", "continuous", "calculated"],

@@ -2,6 +2,7 @@
 //! value references.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use qcar_dsl::about::{About, InputKind};
 use qcar_dsl::c::motion_kinks;
@@ -9,12 +10,15 @@ use qcar_dsl::model::Quantity;
 use qcar_dsl::schedule::Compiled;
 use qcar_dsl::units::Unit;
 
+use super::tyre::{self, Fact, OnTyre};
 use crate::export::Subject;
 
 /// What a variable is to its unit.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Role {
     Parameter,
+    /// A parameter that stays from the start on.
+    Fixed,
     Input,
     State,
     /// Of the state of this place.
@@ -52,31 +56,42 @@ pub struct Variables {
     outputs: usize,
     /// How many kinks there are.
     pub kinks: usize,
+    /// Whether the model rolls on its tyre.
+    pub rolls: bool,
 }
 
 impl Variables {
     /// Those of a model.
-    pub fn of(subject: Subject) -> Self {
+    pub fn of(subject: Subject, tyre: Option<&OnTyre>) -> Self {
         let (compiled, about) = (subject.compiled, &subject.compiled.about);
         let kinks = motion_kinks(subject.compiled).outputs.len();
-        let mut all: Vec<Variable> = parameters(subject)
-            .chain(inputs(compiled))
-            .chain(states(compiled))
+        let facts = tyre.map_or_else(Vec::new, |tyre| tyre.own_facts(about));
+        let contact = if tyre.is_some() { &tyre::OUTPUTS[..] } else { &[] };
+        let (parameters, outputs) = (
+            about.parameters.len() + facts.len(),
+            about.outputs.len() + contact.len(),
+        );
+        let mut all: Vec<Variable> = self::parameters(subject)
+            .chain(facts.into_iter().map(fact))
+            .chain(inputs(compiled, tyre.is_some()))
+            .chain(states(compiled, tyre))
             .collect();
         all.extend(
             derivatives(compiled)
-                .chain(outputs(compiled))
+                .chain(self::outputs(compiled))
+                .chain(contact.iter().copied().map(force))
                 .chain((1..=kinks).map(kink))
                 .chain([time()]),
         );
         make_distinct(&mut all);
         Variables {
             all,
-            parameters: about.parameters.len(),
+            parameters,
             inputs: about.inputs.len(),
             states: about.states.len(),
-            outputs: about.outputs.len(),
+            outputs,
             kinks,
+            rolls: tyre.is_some(),
         }
     }
 
@@ -98,6 +113,11 @@ impl Variables {
     /// The value reference of the first output.
     pub fn first_output(&self) -> usize {
         self.first_derivative() + self.states
+    }
+
+    /// The value references of all inputs and states.
+    pub fn moving(&self) -> Range<usize> {
+        self.first_input()..self.first_derivative()
     }
 
     /// The value reference of the first kink.
@@ -128,29 +148,39 @@ fn parameters(subject: Subject) -> impl Iterator<Item = Variable> {
     })
 }
 
-fn inputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
+fn fact(own: Fact) -> Variable {
+    Variable {
+        name: own.name.into(),
+        role: Role::Fixed,
+        description: own.doc.into(),
+        unit: (own.unit.0.into(), own.unit.1),
+        start: Some(own.value),
+    }
+}
+
+fn inputs(compiled: &Compiled, rolls: bool) -> impl Iterator<Item = Variable> {
     let inputs = compiled.about.inputs.iter().zip(&compiled.vectors.inputs);
-    inputs.map(|(input, own)| Variable {
+    inputs.map(move |(input, own)| Variable {
         name: input.name.to_string(),
         role: Role::Input,
-        description: meaning(&compiled.about, input.kind),
+        description: meaning(&compiled.about, input.kind, rolls),
         unit: (input.unit.to_string(), own.unit),
         start: Some(0.0),
     })
 }
 
 /// What an input is, for who connects it.
-fn meaning(about: &About, kind: InputKind) -> String {
+fn meaning(about: &About, kind: InputKind, rolls: bool) -> String {
     let excitation = |place: u16| &about.excitations[usize::from(place)];
     match kind {
         InputKind::Gravity => "Acceleration of gravity; 0 because states are relative to rest under gravity".into(),
         InputKind::Force(place) => format!("Force {}", excitation(place).name),
         InputKind::Motion(place, quantity) => {
             let (name, road) = (&excitation(place).name, excitation(place).road);
-            let what = if road {
-                "Effective road height under"
-            } else {
-                "Position of"
+            let what = match (road, rolls) {
+                (true, false) => "Effective road height under",
+                (true, true) => "Height by which all of the profile is lifted,",
+                (false, _) => "Position of",
             };
             match quantity {
                 Quantity::Position => format!("{what} {name}"),
@@ -161,14 +191,14 @@ fn meaning(about: &About, kind: InputKind) -> String {
     }
 }
 
-fn states(compiled: &Compiled) -> impl Iterator<Item = Variable> {
-    let states = compiled.about.states.iter().zip(&compiled.vectors.states);
-    states.map(|(state, own)| Variable {
+fn states<'a>(compiled: &'a Compiled, tyre: Option<&'a OnTyre>) -> impl Iterator<Item = Variable> + 'a {
+    let states = compiled.about.states.iter().zip(&compiled.vectors.states).enumerate();
+    states.map(move |(place, (state, own))| Variable {
         name: state.name.to_string(),
         role: Role::State,
         description: format!("State of {} along {}", state.location, state.axis),
         unit: (state.unit.to_string(), own.unit),
-        start: Some(0.0),
+        start: Some(tyre.map_or(0.0, |tyre| tyre.rest[place])),
     })
 }
 
@@ -195,6 +225,17 @@ fn outputs(compiled: &Compiled) -> impl Iterator<Item = Variable> {
         unit: (output.unit.to_string(), unit),
         start: None,
     })
+}
+
+/// Of the contact of a tyre that rolls.
+fn force((name, doc): (&str, &str)) -> Variable {
+    Variable {
+        name: name.into(),
+        role: Role::Output,
+        description: doc.into(),
+        unit: ("N".into(), Unit::NEWTON),
+        start: None,
+    }
 }
 
 fn kink(number: usize) -> Variable {

@@ -3,15 +3,16 @@
 use std::ops::Range;
 
 use qcar_runtime::campaign::Quantity;
-use qcar_signals::samples::Samples;
+use qcar_runtime::model::About;
 use qcar_signals::si::in_si;
-use qcar_signals::signal::{Recording, Signal, TimeBase};
+use qcar_signals::signal::Signal;
 
 use super::Measured;
-use super::guess::quantity_of;
+use super::guess::{Guess, quantity_of};
 use super::sensors::Sensors;
 use super::swept::{Swept, parts, swept};
 use crate::table::number;
+use crate::verbs::inspect::{Contents, Course};
 
 /// Significant digits of what is proposed.
 const DIGITS: usize = 6;
@@ -75,17 +76,46 @@ impl Proposed {
     }
 }
 
+/// What the samples of a pad show.
+pub(super) struct Driven {
+    /// The sweep that all of it is, if it is one.
+    whole: Option<Swept>,
+    /// The parts in which the pad moves, each with its sweep, if it is one, and the time from which and to which it lasts, s.
+    parts: Vec<(Option<Swept>, (f64, f64))>,
+}
+
+impl Driven {
+    /// Of a channel that is taken for a pad and has a clock.
+    pub fn of(signal: &Signal, about: &About) -> Option<Self> {
+        let guess = Guess::of(signal, about).ok().filter(|guess| guess.drives)?;
+        let (rate, start) = (signal.time.rate()?, signal.time.start()?);
+        let samples = in_units(signal);
+        let swept = |part: Range<usize>| swept(&samples[part], rate, guess.quantity);
+        let end = start + samples.len().saturating_sub(1) as f64 / rate;
+        let tenth = |sample: usize, round: fn(f64) -> f64| round(10.0 * (start + sample as f64 / rate)) / 10.0;
+        let lasts = |part: &Range<usize>| {
+            (
+                tenth(part.start, f64::floor).max(start),
+                tenth(part.end, f64::ceil).min(end),
+            )
+        };
+        let parts = parts(&samples, rate, guess.quantity).into_iter();
+        Some(Driven {
+            whole: swept(0..samples.len()),
+            parts: parts.map(|part| (swept(part.clone()), lasts(&part))).collect(),
+        })
+    }
+}
+
 /// The runs that a file holds: of a recording with several sweeps each of them, else one of all of it.
 pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
+    let contents = &file.contents;
     let of = |drives: bool| {
         let known = sensors.known.iter().filter(move |sensor| sensor.guess.drives == drives);
-        known.filter_map(|sensor| Some((sensor, file.recording.find(&sensor.source).ok()?)))
+        known.filter_map(|sensor| contents.found(contents.recording.find(&sensor.source).ok()?))
     };
-    let signals = of(true).chain(of(false)).map(|(_, signal)| signal);
-    let rate = signals
-        .filter_map(|signal| signal.time.rate())
-        .reduce(f64::max)
-        .map(whole);
+    let rates = of(true).chain(of(false)).filter_map(|(course, _)| course.rate);
+    let rate = rates.reduce(f64::max).map(whole);
     let proposed = |kind: Kind, part: Option<Part>| Proposed {
         file: file.seen.clone(),
         kind,
@@ -93,53 +123,32 @@ pub(super) fn propose(file: &Measured, sensors: &Sensors) -> Vec<Proposed> {
         part,
     };
     let pad = of(true).next();
-    let parts = pad.map_or_else(Vec::new, |(sensor, signal)| sweeps(signal, sensor.guess.quantity));
+    let driven = pad.and_then(|(_, driven)| driven.as_ref());
+    let parts = driven.map_or(&[][..], |driven| &driven.parts);
     if parts.iter().filter(|(swept, _)| swept.is_some()).count() > 1 {
-        let named = parts.into_iter().enumerate();
-        let one = |(at, (swept, (from, to))): (usize, (Option<Swept>, (f64, f64)))| {
+        let one = |(at, (swept, (from, to))): (usize, &(Option<Swept>, (f64, f64)))| {
             let name = format!("{} part {}", file.seen, at + 1);
+            let (from, to) = (*from, *to);
             proposed(swept.map_or(Kind::Other, Kind::Sweep), Some(Part { name, from, to }))
         };
-        return named.map(one).collect();
+        return parts.iter().enumerate().map(one).collect();
     }
     let kind = match pad {
-        Some((sensor, signal)) => {
-            let rate = signal.time.rate();
-            let swept = rate.and_then(|rate| swept(&in_units(signal), rate, sensor.guess.quantity));
-            swept.map_or(Kind::TimeHistory, Kind::Sweep)
-        }
-        None if of(false).any(|(_, signal)| is_impact(&signal.samples)) => Kind::Cleat,
-        None => curve(&file.recording).unwrap_or(Kind::TimeHistory),
+        Some(_) => driven
+            .and_then(|driven| driven.whole)
+            .map_or(Kind::TimeHistory, Kind::Sweep),
+        None if of(false).any(|(course, _)| is_impact(course)) => Kind::Cleat,
+        None => curve(contents).unwrap_or(Kind::TimeHistory),
     };
     vec![proposed(kind, None)]
 }
 
-/// The parts in which a pad moves, each with its sweep, if it is one, and the time from which and to which it lasts, s.
-fn sweeps(signal: &Signal, quantity: Quantity) -> Vec<(Option<Swept>, (f64, f64))> {
-    let (Some(rate), Some(start)) = (signal.time.rate(), signal.time.start()) else {
-        return Vec::new();
-    };
-    let samples = in_units(signal);
-    let tenth = |sample: usize, round: fn(f64) -> f64| round(10.0 * (start + sample as f64 / rate)) / 10.0;
-    let end = start + samples.len().saturating_sub(1) as f64 / rate;
-    let one = |part: Range<usize>| {
-        let span = (
-            tenth(part.start, f64::floor).max(start),
-            tenth(part.end, f64::ceil).min(end),
-        );
-        (swept(&samples[part], rate, quantity), span)
-    };
-    parts(&samples, rate, quantity).into_iter().map(one).collect()
-}
-
 /// A file without times that has one displacement and one force.
-fn curve(recording: &Recording) -> Option<Kind> {
-    let timeless = recording.signals.iter().all(|signal| signal.time == TimeBase::Unknown);
+fn curve<T>(contents: &Contents<T>) -> Option<Kind> {
+    let timeless = contents.channels().all(|(_, course)| course.start.is_none());
     let only = |quantity: Quantity| {
-        let mut of = recording
-            .signals
-            .iter()
-            .filter(|signal| quantity_of(&signal.unit) == Some(quantity));
+        let signals = contents.recording.signals.iter();
+        let mut of = signals.filter(|signal| quantity_of(&signal.unit) == Some(quantity));
         of.next()
             .filter(|_| of.next().is_none())
             .map(|signal| signal.name.clone())
@@ -172,10 +181,9 @@ fn in_units(signal: &Signal) -> Vec<f64> {
     signal.samples.iter().map(value).collect()
 }
 
-fn is_impact(samples: &Samples) -> bool {
-    let largest = samples.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let square = samples.iter().map(|value| value * value).sum::<f64>() / samples.len().max(1) as f64;
-    largest > IMPACT * square.sqrt()
+fn is_impact(course: &Course) -> bool {
+    let values = course.peak().zip(course.rms);
+    values.is_some_and(|(peak, rms)| peak > IMPACT * rms)
 }
 
 /// The `[[run]]` sections. The last sweep judges the fit of the others.

@@ -29,8 +29,9 @@ pub(super) fn propose(files: &[Measured], about: &About) -> Sensors {
         others: Vec::new(),
     };
     for file in files {
-        for signal in &file.recording.signals {
-            let source = match file.recording.signal(&signal.name) {
+        let recording = &file.contents.recording;
+        for signal in &recording.signals {
+            let source = match recording.signal(&signal.name) {
                 Ok(_) => signal.name.clone(),
                 Err(_) => signal.full_name(),
             };

@@ -33,8 +33,10 @@ pub(crate) struct Subject {
     pub notes: Vec<String>,
     /// The tyre and its load, N, where facts of a vehicle say them.
     pub tyre: Option<(Tyre, f64)>,
-    /// The cleat runs of the campaign, else the standard ones.
+    /// The cleat runs of the campaign, else the standard ones; then roads.
     pub courses: Vec<Course>,
+    /// What was measured on the first of them; nothing on the standard ones.
+    pub measured: Vec<Cleat>,
     /// How sure the values are.
     pub errors: Errors,
 }
@@ -240,9 +242,13 @@ fn finish(
         (None, _) | (_, None) => None,
         _ => Some(tyre_of(&fact, Path::new("[vehicle]"))?),
     };
+    let measured = match (&tyre, &campaign) {
+        (Some(_), Some(campaign)) => cleats(campaign)?,
+        _ => Vec::new(),
+    };
     let courses = match &tyre {
-        Some(_) => cleats(campaign.as_ref())?,
-        None => Vec::new(),
+        Some(_) if measured.is_empty() => Course::standard().expect("the standard cleats are roads"),
+        _ => measured.iter().map(Course::measured).collect(),
     };
     Ok(Subject {
         name: name.into(),
@@ -254,20 +260,15 @@ fn finish(
         roles: campaign.map_or_else(RoleNames::default, |campaign| campaign.roles),
         tyre,
         courses,
+        measured,
         errors,
     })
 }
 
-/// The cleat runs of a campaign, else those of the thesis.
-fn cleats(campaign: Option<&Campaign>) -> Result<Vec<Course>, Failure> {
-    let mut courses = Vec::new();
-    if let Some(campaign) = campaign {
-        for run in &campaign.runs {
-            courses.extend(Cleat::read(campaign, run)?.as_ref().map(Course::measured));
-        }
+fn cleats(campaign: &Campaign) -> Result<Vec<Cleat>, Failure> {
+    let mut cleats = Vec::new();
+    for run in &campaign.runs {
+        cleats.extend(Cleat::read(campaign, run)?);
     }
-    if courses.is_empty() {
-        courses = Course::standard().expect("the standard cleats are roads");
-    }
-    Ok(courses)
+    Ok(cleats)
 }

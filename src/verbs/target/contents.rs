@@ -1,12 +1,17 @@
-//! The data of the page: the answer, and the rides of today's axle and of the design.
+//! The data of the page: the answer, and the rides of today's axle and of the design beside what was measured.
 
-use qcar_runtime::metric::Ground;
+use qcar_runtime::campaign::{Channel, Quantity};
+use qcar_runtime::metric::{Ground, Trace};
+use qcar_runtime::model::Signal;
 use qcar_runtime::response::parameters::Values;
+use qcar_runtime::simulate::Cleat;
 use qcar_runtime::target::Move;
 use serde::Serialize;
 
 use super::gather::Answer;
 use crate::report::rounded::curve;
+use crate::verbs::sensitivity::subject::Subject;
+use crate::verbs::simulate::compared::{Pair, alignment};
 
 /// All of it.
 #[derive(Serialize)]
@@ -43,12 +48,19 @@ struct Both {
     axis: String,
     today: Vec<f64>,
     design: Vec<f64>,
+    /// Of the car that was tested, aligned with today's axle at the peak of the wheel.
+    measured: Option<Vec<f64>>,
 }
 
 impl<'a> Contents<'a> {
     /// Drives both axles, today's and the design; what cannot be driven has no ride.
-    pub fn of(answer: &'a Answer, moves: &[Move], ground: &'a Ground<'_>, axles: [&Values; 2]) -> Self {
-        let rides = (0..ground.courses().len()).filter_map(|course| ride(ground, course, axles));
+    pub fn of(
+        answer: &'a Answer,
+        moves: &[Move],
+        (subject, ground): (&Subject, &'a Ground<'_>),
+        axles: [&Values; 2],
+    ) -> Self {
+        let rides = (0..ground.courses().len()).filter_map(|course| ride((subject, ground), course, axles));
         let moves = moves.iter().map(|own| Moved {
             knob: own.knob,
             parameter: &ground.about().parameters[own.parameter].name,
@@ -63,20 +75,63 @@ impl<'a> Contents<'a> {
     }
 }
 
-fn ride(ground: &Ground<'_>, at: usize, [today, design]: [&Values; 2]) -> Option<Ride> {
+fn ride((subject, ground): (&Subject, &Ground<'_>), at: usize, [today, design]: [&Values; 2]) -> Option<Ride> {
     let course = &ground.courses()[at];
     let (before, after) = (ground.trace(today, at).ok()?, ground.trace(design, at).ok()?);
+    let measured = subject.measured.get(at).map(|cleat| beside(subject, cleat, &before));
+    let mut measured = measured.unwrap_or_default().into_iter();
     let pairs = before.accelerations.into_iter().zip(after.accelerations);
     let both = pairs.map(|((signal, today), (_, design))| Both {
         mass: signal.location.to_string(),
         axis: signal.axis.to_string(),
         today: curve(today),
         design: curve(design),
+        measured: measured.next().flatten().map(curve),
     });
     let time = (0..course.samples).map(|sample| sample as f64 / course.sample_rate - before.onset);
     Some(Ride {
         run: course.name.clone(),
-        time: curve(time),
         traces: both.collect(),
+        time: curve(time),
     })
+}
+
+/// What was measured of each acceleration of a ride, at the samples of the ride; nothing where no sensor was, or where both records
+/// do not lie beside each other.
+fn beside(subject: &Subject, cleat: &Cleat, ride: &Trace) -> Vec<Option<Vec<f64>>> {
+    let sensors = ride.accelerations.iter().map(|(signal, _)| sensor(cleat, signal));
+    let sensors: Vec<Option<&(Channel, Vec<f64>)>> = sensors.collect();
+    let pairs = sensors.iter().zip(&ride.accelerations);
+    let pairs: Vec<Pair<'_>> = pairs
+        .filter_map(|(sensor, (signal, simulated))| {
+            let (sensor, measured) = (*sensor)?;
+            Some(Pair {
+                mass: &signal.location,
+                axis: sensor.axis,
+                measured,
+                simulated,
+            })
+        })
+        .collect();
+    let Ok(Some(alignment)) = alignment(subject.model.about(), &subject.roles, &pairs) else {
+        return Vec::new();
+    };
+    // What lies outside of the record is at rest.
+    let shifted = |measured: &[f64]| {
+        let at = |sample: usize| usize::try_from(sample as isize - alignment.delay).ok();
+        let value = |sample: usize| at(sample).and_then(|sample| measured.get(sample).copied());
+        (0..measured.len()).map(|sample| value(sample).unwrap_or(0.0)).collect()
+    };
+    let measured = sensors.into_iter();
+    measured
+        .map(|sensor| sensor.map(|(_, measured)| shifted(measured)))
+        .collect()
+}
+
+fn sensor<'a>(cleat: &'a Cleat, signal: &Signal) -> Option<&'a (Channel, Vec<f64>)> {
+    let is_of = |sensor: &Channel| {
+        let place = sensor.location == *signal.location && *signal.axis == *sensor.axis.name();
+        place && sensor.quantity == Quantity::Acceleration
+    };
+    cleat.measured.signals.iter().find(|(sensor, _)| is_of(sensor))
 }

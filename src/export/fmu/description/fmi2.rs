@@ -25,8 +25,8 @@ pub fn description(subject: Subject, variables: &Variables, token: &str, compile
         ("numberOfEventIndicators", variables.kinks.to_string()),
     ];
     let kinds = [
-        kind("ModelExchange", &about.name, MODEL_EXCHANGE, compiled),
-        kind("CoSimulation", &about.name, CO_SIMULATION, compiled),
+        kind("ModelExchange", (&about.name, variables), MODEL_EXCHANGE, compiled),
+        kind("CoSimulation", (&about.name, variables), CO_SIMULATION, compiled),
     ];
     let model = [
         around("ModelVariables", &[], &scalars(variables)),
@@ -40,12 +40,15 @@ pub fn description(subject: Subject, variables: &Variables, token: &str, compile
     document(&attributes, &content)
 }
 
-fn kind(name: &str, model: &str, own: &[(&str, &str)], compiled: &[String]) -> String {
+fn kind(name: &str, (model, variables): (&str, &Variables), own: &[(&str, &str)], compiled: &[String]) -> String {
     let common = [
         ("modelIdentifier", model),
         ("canGetAndSetFMUstate", "true"),
         ("canSerializeFMUstate", "true"),
-        ("providesDirectionalDerivative", "true"),
+        (
+            "providesDirectionalDerivative",
+            if variables.rolls { "false" } else { "true" },
+        ),
     ];
     let attributes = common.iter().chain(own).map(|&(name, value)| (name, value.into()));
     let attributes: Vec<(&str, String)> = attributes.collect();

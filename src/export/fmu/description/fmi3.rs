@@ -21,8 +21,8 @@ pub fn description(subject: Subject, variables: &Variables, token: &str) -> Stri
         ("variableNamingConvention", "flat".into()),
     ];
     let kinds = [
-        kind("ModelExchange", &about.name, MODEL_EXCHANGE),
-        kind("CoSimulation", &about.name, CO_SIMULATION),
+        kind("ModelExchange", (&about.name, variables), MODEL_EXCHANGE),
+        kind("CoSimulation", (&about.name, variables), CO_SIMULATION),
     ];
     let floats = variables.all.iter().enumerate().map(|(reference, own)| {
         let attributes = [identity(reference, own), quantity(own, variables, 0)].concat();
@@ -50,12 +50,15 @@ pub fn build_description(model: &str, compiled: &[String]) -> String {
     format!("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n{root}\n")
 }
 
-fn kind(name: &str, model: &str, own: &[(&str, &str)]) -> String {
+fn kind(name: &str, (model, variables): (&str, &Variables), own: &[(&str, &str)]) -> String {
     let common = [
         ("modelIdentifier", model),
         ("canGetAndSetFMUState", "true"),
         ("canSerializeFMUState", "true"),
-        ("providesDirectionalDerivatives", "true"),
+        (
+            "providesDirectionalDerivatives",
+            if variables.rolls { "false" } else { "true" },
+        ),
     ];
     let attributes = common.iter().chain(own).map(|&(name, value)| (name, value.into()));
     element(name, &attributes.collect::<Vec<_>>())

@@ -1,4 +1,4 @@
-// Today's axle and the design over each cleat.
+// Today's axle and the design over each cleat, beside the car that was tested.
 
 function rides(data) {
   if (!data.rides.length) return null;
@@ -13,10 +13,23 @@ function rides(data) {
         text,
       ),
   });
+  const isMeasured = data.rides.some((ride) => ride.traces.some((trace) => trace.measured));
   const element = section(
     'cleat',
     'Over the cleat',
-    h('p', {}, 'Accelerations of ', key('before', 'today'), ' and ', key('after', 'the design'), '.', zoomHint()),
+    h(
+      'p',
+      {},
+      'Accelerations of ',
+      key('before', 'today'),
+      ' and ',
+      key('after', 'the design'),
+      isMeasured
+        ? [', beside what was ', key('measured', 'measured'), ' on the car, aligned with today at the peak of the wheel']
+        : [],
+      '.',
+      zoomHint(),
+    ),
     shown.control,
     shown.place,
   );
@@ -34,6 +47,7 @@ function ridePlots(ride, place, title) {
       sync: 'rides',
       from: RIDE_VIEW,
       curves: [
+        ...(trace.measured ? [{ role: 'measured', values: trace.measured }] : []),
         { role: 'before', label: 'today', values: trace.today },
         { role: 'after', label: 'design', values: trace.design },
       ],

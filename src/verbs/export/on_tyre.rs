@@ -1,0 +1,115 @@
+//! The tyre and the profile of a unit that rolls.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use qcar_runtime::error::InputError;
+use qcar_runtime::metric::Course;
+use qcar_runtime::model::Model;
+use qcar_runtime::response::parameters::Values;
+use qcar_runtime::road::Road;
+use qcar_runtime::simulate::{Car, Drive, Settings, Variant, end_of_ride, tyre_of};
+use qcar_runtime::tyre::Tyre;
+
+use crate::catalogue::Loaded;
+use crate::export::fmu::OnTyre;
+use crate::failure::{Failure, flag};
+use crate::parameters::Beside;
+use crate::roads::Asked;
+
+/// The most points of a profile, which become text of a C source.
+const POINTS: usize = 200_000;
+
+/// A model that stands before a road on the tyre of the vehicle in `params`, a campaign or parameter file.
+///
+/// # Errors
+/// A road that cannot be driven over, no vehicle, a model whose tyre does not roll, and no rest on the tyre.
+pub(super) fn on_tyre(
+    asked: &Asked,
+    (model, values): (&Loaded, &Values),
+    params: Option<&Path>,
+) -> Result<OnTyre, Failure> {
+    let course = asked.course()?;
+    let (tyre, load) = vehicle((model, values), params)?;
+    let road = profile(&course)?;
+    let car = Car {
+        model: &**model,
+        parameters: values.as_slice(),
+        tyre,
+        load,
+        variant: Variant::Complete,
+    };
+    let rest = rest(&car, course.speed).map_err(|error| {
+        let remedy = "correct the vehicle or the parameters";
+        flag("--road", error, "a car that stands on its tyre", remedy)
+    })?;
+    Ok(OnTyre {
+        start: start(&road, &tyre),
+        road,
+        radius: tyre.radius(),
+        deflection: tyre.static_deflection(),
+        load,
+        speed: course.speed,
+        rest,
+    })
+}
+
+fn vehicle((model, values): (&Loaded, &Values), params: Option<&Path>) -> Result<(Tyre, f64), InputError> {
+    let Some(file) = params else {
+        let expected = "r_tire, static_tire_def and static_tire_load";
+        let remedy = "add --params with a campaign, or a file that has [vehicle]";
+        return Err(flag("--road", "no --params", expected, remedy).into());
+    };
+    let facts: BTreeMap<String, f64> = Beside::read(file)?.vehicle;
+    let own = |name: &str| {
+        let place = model.about().parameters.iter().position(|own| own.name == name)?;
+        values.as_slice().get(place).copied()
+    };
+    let shown = match file.is_dir() {
+        true => file.join("campaign.toml"),
+        false => file.into(),
+    };
+    tyre_of(&|name| own(name).or_else(|| facts.get(name).copied()), &shown)
+}
+
+/// What of the road the ride needs.
+fn profile(course: &Course) -> Result<Vec<[f64; 2]>, Failure> {
+    let end = course.speed * course.samples as f64 / course.sample_rate;
+    let points = course.road.vertices();
+    // One point further than the last that is met.
+    let needed = points.partition_point(|[x, _]| *x <= end) + 1;
+    let points = &points[..needed.min(points.len())];
+    if points.len() > POINTS {
+        let found = format!("a road of {} points", points.len());
+        let expected = format!("at most {POINTS} in a unit");
+        return Err(flag(
+            "--road",
+            found,
+            &expected,
+            "write a duration behind the speed, such as `:20s`",
+        )
+        .into());
+    }
+    Ok(points.to_vec())
+}
+
+/// Above x = 0, or so far before it that the whole tyre stands on level ground.
+fn start(road: &[[f64; 2]], tyre: &Tyre) -> f64 {
+    let uneven = road.windows(2).find(|two| two[0][1] != two[1][1]);
+    uneven.map_or(0.0, |two| (two[0][0] - tyre.radius()).min(0.0))
+}
+
+/// The state in which it stands on level ground.
+fn rest<M: Model + ?Sized>(car: &Car<'_, M>, speed: f64) -> Result<Vec<f64>, String> {
+    /// Samples while a point passes through the contact: a ride needs a few.
+    const SAMPLES: f64 = 8.0;
+    let level = Road::flat(0.0);
+    let drive = Drive {
+        road: &level,
+        speed,
+        sample_rate: SAMPLES * speed / car.tyre.patch(),
+        samples: 1,
+    };
+    let ended = end_of_ride(car, &drive, &Settings::default());
+    ended.map(|(rest, _)| rest).map_err(|error| error.to_string())
+}

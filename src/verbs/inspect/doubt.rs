@@ -1,0 +1,45 @@
+//! Units that the samples of a channel contradict: only the engineer knows what they are.
+
+use qcar_signals::si::{in_si, is_known};
+
+/// A body that stands is accelerated by 1 g, if gravity is not taken off: means within this part of 1.
+const ABOUT_ONE: f64 = 0.05;
+/// No suspension travels so far, m.
+const TRAVEL: f64 = 1.0;
+
+/// What a channel does, in its unit.
+pub(super) struct Does {
+    pub mean: f64,
+    pub min: f64,
+    pub max: f64,
+}
+
+/// What is odd about a unit, beside what a channel does; nothing where it may be right.
+pub(super) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
+    if unit.is_empty() {
+        return None;
+    }
+    if !is_known(unit) {
+        return Some(format!(
+            "`{unit}` is no unit that is known; give its channel `unit` and `scale`"
+        ));
+    }
+    let si = in_si(unit)?;
+    let is_plain = si.multiply == si.divide;
+    let Does {
+        mean,
+        min: low,
+        max: high,
+    } = does?;
+    let swings = low < 0.0 && high > 0.0;
+    match si.dimension {
+        [0, 1, -2] if is_plain && (mean.abs() - 1.0).abs() < ABOUT_ONE && high > low => Some(format!(
+            "a mean of {mean:.2} {unit} is that of a sensor at rest in g; if it is, give `unit = \"g\"`"
+        )),
+        [0, 1, 0] if is_plain && swings && high.max(-low) > TRAVEL => Some(format!(
+            "{low:.3} to {high:.3} {unit} is more than a part of a car travels; if it is mm, give `unit = \"mm\"`"
+        )),
+        [1, 1, -2] if unit == "kp" => Some("`kp` is an old name of kgf, and taken for 9.80665 N".into()),
+        _ => None,
+    }
+}
