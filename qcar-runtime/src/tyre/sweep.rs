@@ -51,7 +51,7 @@ struct Rim {
 }
 
 impl Sweeps {
-    #[inline]
+    #[inline(always)]
     pub fn new(radius: f64, velocity: [f64; 2]) -> Self {
         let speed = dot(velocity, velocity).sqrt().copysign(velocity[0]);
         // A wheel at rest sweeps nothing, wherever its arcs are split.
@@ -89,20 +89,19 @@ impl Sweeps {
         to.angle - from.angle
     }
 
-    /// Growth and shrinkage of a single short arc that goes across the turning point; none for any other.
+    /// Growth and shrinkage of a single arc, and whether it is short and goes across the turning point; of any other they
+    /// mean nothing.
     #[inline(always)]
-    pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> Option<[Part; 2]> {
+    pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> ([Part; 2], bool) {
         let (sine, cosine) = self.places([from, to]);
-        if !(sine[0] < 0.0 && 0.0 < sine[1]) {
-            return None;
-        }
         let up = [-self.along[1], self.along[0]];
-        let directions = swept_directions(sine, cosine)?;
+        let (directions, are_short) = swept_directions(sine, cosine);
         let [behind, ahead] = array::from_fn(|i| Part {
             flux: self.radius * self.speed.abs() * (1.0 - cosine[i]),
             direction: combined([-directions[i][0], directions[i][1]], self.along, up),
         });
-        Some(self.growth_first(ahead, behind))
+        let is_across = (sine[0] < 0.0) & (0.0 < sine[1]) & are_short;
+        (self.growth_first(ahead, behind), is_across)
     }
 
     /// Growth and shrinkage of all arcs.
@@ -118,7 +117,7 @@ impl Sweeps {
     }
 
     /// What is ahead of the turning point grows where the wheel rolls to the front.
-    #[inline]
+    #[inline(always)]
     fn growth_first<T>(&self, ahead: T, behind: T) -> [T; 2] {
         if self.speed > 0.0 {
             [ahead, behind]
@@ -142,7 +141,7 @@ impl Sweeps {
     }
 
     /// Sines and cosines of the angles of two points of the circle.
-    #[inline]
+    #[inline(always)]
     fn places(&self, points: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
         let [along, down] = [self.along, [self.along[1], -self.along[0]]].map(|v| v.map(|v| v * self.per_radius));
         (
