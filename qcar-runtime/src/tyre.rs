@@ -29,7 +29,7 @@ mod force;
 // Several wheels at once.
 mod abreast;
 
-pub(crate) use abreast::{Pieces, Touches, Wheels};
+pub(crate) use abreast::{Pieces, Wheels};
 pub use area::Overlap;
 pub use circle::{segment_area, segment_deflection};
 

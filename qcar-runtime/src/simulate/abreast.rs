@@ -113,9 +113,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         let Some((shortcut, rolling)) = journey.recorder.shortcut() else {
             return false;
         };
-        let formation = self
-            .formation
-            .get_or_insert_with(|| Formation::like(shortcut, rolling));
+        let formation = self.formation.get_or_insert_with(|| Formation::like(shortcut, rolling));
         let fits = formation.fits(shortcut, rolling);
         if fits {
             formation.take(place, shortcut, rolling);
@@ -156,7 +154,11 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
     /// Lets all go on alone to the end.
     fn disband(&mut self) {
         for place in 0..LANES {
-            let Some(Lane { ride: (number, mut journey), .. }) = self.lanes[place].take() else {
+            let Some(Lane {
+                ride: (number, mut journey),
+                ..
+            }) = self.lanes[place].take()
+            else {
                 continue;
             };
             if let (Some(formation), Some((shortcut, _))) = (&mut self.formation, journey.recorder.shortcut()) {
@@ -176,7 +178,11 @@ fn step<M: Model + ?Sized>(
 ) -> [bool; LANES] {
     let mut leaving = [false; LANES];
     for (place, lane) in lanes.iter_mut().enumerate() {
-        let Some(Lane { ride: (_, journey), left }) = lane else {
+        let Some(Lane {
+            ride: (_, journey),
+            left,
+        }) = lane
+        else {
             continue;
         };
         let (shortcut, rolling) = journey.recorder.shortcut().expect("it has joined by one");

@@ -19,7 +19,6 @@ pub(super) struct Formation<'a, M: ?Sized> {
     tyre: Tyre,
     method: ExponentialAbreast<2>,
     relative: f64,
-    absolute: Vec<f64>,
     /// Where a step ends, s.
     times: Lanes,
     constants: Vec<Lanes>,
@@ -49,13 +48,13 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
     /// With room for motions like this one.
     pub fn like(shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> Self {
         let (relative, absolute) = shortcut.tolerance();
-        let (absolute, (states, _)) = (absolute.to_vec(), rolling.sizes());
+        let absolute = absolute.to_vec();
+        let (states, _) = rolling.sizes();
         Self {
             model: rolling.model,
             tyre: rolling.tyre,
-            method: ExponentialAbreast::like(shortcut.method()),
+            method: ExponentialAbreast::like(shortcut.method(), &absolute),
             relative,
-            absolute,
             times: NOTHING,
             constants: vec![NOTHING; rolling.constants.len()],
             inputs: vec![NOTHING; rolling.inputs.len()],
@@ -221,6 +220,6 @@ impl<M: Model + ?Sized> Loops for Advance<'_, '_, M> {
                 force[lane] = if self.smooth[lane] { driven } else { f64::NAN };
             }
         }
-        of.method.advance(&of.driven.force, of.relative, &of.absolute)
+        of.method.advance(&of.driven.force, of.relative)
     }
 }

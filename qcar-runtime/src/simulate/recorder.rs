@@ -157,7 +157,11 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
 
     /// Each output at the samples; nothing of those that are not kept.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
-        let filtered = |place| self.track(place).map(|track| self.tape.filtered(track)).unwrap_or_default();
+        let filtered = |place| {
+            self.track(place)
+                .map(|track| self.tape.filtered(track))
+                .unwrap_or_default()
+        };
         self.places.iter().copied().map(filtered).collect()
     }
 

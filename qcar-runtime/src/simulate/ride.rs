@@ -152,7 +152,9 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
     /// Where the integration stops before.
     pub fn advance(&mut self) -> Result<bool, SimulateError> {
         let span = (self.span, &[][..]);
-        let report = self.integrator.go_on(&mut self.recorder, self.spent.take(), span, &mut self.x);
+        let report = self
+            .integrator
+            .go_on(&mut self.recorder, self.spent.take(), span, &mut self.x);
         (self.span.0, self.effort) = (report.time, report.effort);
         match report.reason {
             Reason::TakenOver => Ok(true),

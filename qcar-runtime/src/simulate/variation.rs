@@ -266,7 +266,9 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         variation.act_beside_contact();
         variation.act_by_contact();
         variation.show();
-        variation.tape.record_rest(time - 0.5 * spacing, variation.shown.iter().copied());
+        variation
+            .tape
+            .record_rest(time - 0.5 * spacing, variation.shown.iter().copied());
         Some(variation)
     }
 

@@ -3,9 +3,10 @@
 
 use std::array;
 
-use super::area::usual;
+use super::area::with_rates;
 use super::patches::Line;
-use super::{Change, Geometry, Touch, Tyre, Wheel};
+use super::sweep::Sweeps;
+use super::{Change, Geometry, Rates, Touch, Tyre};
 use crate::model::{Contacts, LANES, Lanes};
 use crate::road::{Circle, Road, Segment};
 
@@ -84,31 +85,97 @@ impl Wheels {
     }
 }
 
+/// What the loops over the lanes hand on to each other. A loop that does all at once is not made one of vectors.
+struct Chords {
+    from: [Lanes; 2],
+    to: [Lanes; 2],
+    /// How far the centres are above the lines, m, and the directions up from these.
+    distance: Lanes,
+    up: [Lanes; 2],
+    is_inside: [bool; LANES],
+}
+
+/// Speeds and directions of the circles at their turning points, and sines and cosines of the ends of the chords.
+struct Turns {
+    speed: Lanes,
+    along: [Lanes; 2],
+    sine: [Lanes; 2],
+    cosine: [Lanes; 2],
+}
+
 impl Tyre {
     /// What the pieces under several such tyres do to them.
     #[inline(always)]
     pub(crate) fn touches(&self, pieces: &Pieces, wheels: &Wheels) -> Touches {
-        let mut touches = Touches::none();
-        if self.geometry != Geometry::Area {
-            return touches;
+        // Of any others each is looked at alone.
+        if self.geometry != Geometry::Area || self.rates != Rates::AtStaticDeflection {
+            return Touches::none();
         }
+        let (radius, rate) = (self.radius, self.static_rate);
+        let chords = chords(radius, pieces, wheels);
+        let turns = turns(radius, &chords, wheels);
+        let mut touches = Touches::none();
         for lane in 0..LANES {
-            let wheel = Wheel {
-                position: array::from_fn(|axis| wheels.position[axis][lane]),
-                velocity: array::from_fn(|axis| wheels.velocity[axis][lane]),
-            };
-            let circle = Circle {
-                centre: wheel.position,
-                radius: self.radius,
-            };
-            let x = circle.centre[0];
-            let is_carried = (pieces.span[0][lane] <= x - self.radius) & (x + self.radius <= pieces.span[1][lane]);
-            let (touch, is_usual) = usual(self, &wheel, &Line::new(&pieces.segment(lane), &circle));
-            touches.set(lane, &touch);
-            touches.holds[lane] = is_carried & is_usual;
+            let sweeps = Sweeps::turning(radius, turns.speed[lane], at(&turns.along, lane));
+            let (parts, is_across) = sweeps.between((at(&turns.sine, lane), at(&turns.cosine, lane)));
+            let deflection = radius - chords.distance[lane];
+            touches.set(lane, &with_rates(rate, deflection, at(&chords.up, lane), parts));
+            touches.holds[lane] = chords.is_inside[lane] & is_across;
         }
         touches
     }
+}
+
+#[inline(always)]
+fn chords(radius: f64, pieces: &Pieces, wheels: &Wheels) -> Chords {
+    let mut chords = Chords {
+        from: [NOTHING; 2],
+        to: [NOTHING; 2],
+        distance: NOTHING,
+        up: [NOTHING; 2],
+        is_inside: [false; LANES],
+    };
+    for lane in 0..LANES {
+        let centre = at(&wheels.position, lane);
+        let is_carried = (pieces.span[0][lane] <= centre[0] - radius) & (centre[0] + radius <= pieces.span[1][lane]);
+        let line = Line::new(&pieces.segment(lane), &Circle { centre, radius });
+        let (chord, is_inside) = line.chord();
+        let (from, to, up) = (line.at(chord.from), line.at(chord.to), line.frame().1);
+        for axis in 0..2 {
+            (chords.from[axis][lane], chords.to[axis][lane]) = (from[axis], to[axis]);
+            chords.up[axis][lane] = up[axis];
+        }
+        chords.distance[lane] = line.distance;
+        chords.is_inside[lane] = is_carried & is_inside;
+    }
+    chords
+}
+
+#[inline(always)]
+fn turns(radius: f64, chords: &Chords, wheels: &Wheels) -> Turns {
+    let mut turns = Turns {
+        speed: NOTHING,
+        along: [NOTHING; 2],
+        sine: [NOTHING; 2],
+        cosine: [NOTHING; 2],
+    };
+    for lane in 0..LANES {
+        let sweeps = Sweeps::new(radius, at(&wheels.velocity, lane));
+        let (speed, along) = sweeps.turn();
+        let (sine, cosine) = sweeps.places([at(&chords.from, lane), at(&chords.to, lane)]);
+        turns.speed[lane] = speed;
+        for end in 0..2 {
+            turns.along[end][lane] = along[end];
+            (turns.sine[end][lane], turns.cosine[end][lane]) = (sine[end], cosine[end]);
+        }
+    }
+    turns
+}
+
+/// Of a lane.
+#[inline(always)]
+fn at(rows: &[Lanes; 2], lane: usize) -> [f64; 2] {
+    [rows[0][lane], rows[1][lane]]
 }
 
 impl Touches {

@@ -52,25 +52,17 @@ pub(super) fn overlap(radius: f64, road: &Road, wheel: &Wheel) -> Overlap {
 /// On one straight piece of road the deflection is seen without a detour over the area.
 #[inline(always)]
 fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
-    if let (touch, true) = usual(tyre, wheel, line) {
-        return Some(touch);
-    }
-    let clip = line.clip()?;
-    let mut sweeps = Sweeps::new(tyre.radius, wheel.velocity);
-    sweeps.add(line.at(clip.from), line.at(clip.to));
-    let parts = sweeps.finish().map(Part::from);
-    Some(with_rates(tyre, tyre.radius - line.distance, line.frame().1, parts))
-}
-
-/// The contact with a straight piece of road, and whether it is as most are: the circle enters and leaves the ground inside the
-/// piece, a short arc apart, and turns between. Of any other it means nothing.
-#[inline(always)]
-pub(super) fn usual(tyre: &Tyre, wheel: &Wheel, line: &Line) -> (Touch, bool) {
-    let (clip, is_inside) = line.chord();
+    let (chord, is_inside) = line.chord();
     let sweeps = Sweeps::new(tyre.radius, wheel.velocity);
-    let (parts, is_across) = sweeps.across(line.at(clip.from), line.at(clip.to));
-    let touch = with_rates(tyre, tyre.radius - line.distance, line.frame().1, parts);
-    (touch, is_inside & is_across)
+    let (mut parts, is_across) = sweeps.across(line.at(chord.from), line.at(chord.to));
+    if !(is_inside && is_across) {
+        let clip = line.clip()?;
+        let mut sweeps = sweeps;
+        sweeps.add(line.at(clip.from), line.at(clip.to));
+        parts = sweeps.finish().map(Part::from);
+    }
+    let deflection = tyre.radius - line.distance;
+    Some(with_rates(tyre.rate(deflection), deflection, line.frame().1, parts))
 }
 
 #[inline(never)]
@@ -80,12 +72,16 @@ fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
     }
     let deflection = tyre.deflection(overlap.area);
     let parts = [overlap.growth, overlap.shrinkage].map(Part::from);
-    Some(with_rates(tyre, deflection, against(overlap.moment), parts))
+    Some(with_rates(
+        tyre.rate(deflection),
+        deflection,
+        against(overlap.moment),
+        parts,
+    ))
 }
 
 #[inline(always)]
-fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], parts: [Part; 2]) -> Touch {
-    let rate = tyre.rate(deflection);
+pub(super) fn with_rates(rate: f64, deflection: f64, direction: [f64; 2], parts: [Part; 2]) -> Touch {
     let [growth, shrinkage] = parts.map(|Part { flux, direction }| Change {
         rate: flux * rate,
         direction,

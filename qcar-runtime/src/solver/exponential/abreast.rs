@@ -15,7 +15,15 @@ pub struct ExponentialAbreast<const F: usize> {
     whole: [Vec<Lanes>; F],
     last_order: [Vec<Lanes>; F],
     state: Vec<Lanes>,
+    /// The states a step before, and whether that step stands.
+    before: Vec<Lanes>,
+    stands: [bool; LANES],
     ahead: Vec<Lanes>,
+    /// For each state: how much of its error is tolerated whatever its size, by how much the error is more than allowed, and of
+    /// each force how much of it was not foreseen. Loops over all lanes of all states need no others.
+    absolute: Vec<Lanes>,
+    excess: Vec<Lanes>,
+    off: [Vec<Lanes>; F],
     /// Each force at the points of the past, the last first.
     past: [[Lanes; KEPT]; F],
     /// At so many points they are known.
@@ -32,8 +40,8 @@ struct Part {
 }
 
 impl<const F: usize> ExponentialAbreast<F> {
-    /// With room for systems like this one; all lanes are free.
-    pub fn like(one: &ExponentialAdams<F>) -> Self {
+    /// With room for systems like this one, of whose states so much error is tolerated; all lanes are free.
+    pub fn like(one: &ExponentialAdams<F>, absolute: &[f64]) -> Self {
         const NOTHING: Lanes = [0.0; LANES];
         let states = || vec![NOTHING; one.state.len()];
         let part = |part: &super::Part| Part {
@@ -47,7 +55,12 @@ impl<const F: usize> ExponentialAbreast<F> {
             whole: array::from_fn(|_| states()),
             last_order: array::from_fn(|_| states()),
             state: states(),
+            before: states(),
+            stands: [true; LANES],
             ahead: states(),
+            absolute: absolute.iter().map(|value| [*value; LANES]).collect(),
+            excess: states(),
+            off: array::from_fn(|_| states()),
             past: [[NOTHING; KEPT]; F],
             known: [0; LANES],
         }
@@ -80,6 +93,7 @@ impl<const F: usize> ExponentialAbreast<F> {
             put(&mut self.past[force], &one.past[force]);
         }
         put(&mut self.state, &one.state);
+        self.stands[lane] = true;
         self.known[lane] = one.known;
     }
 
@@ -88,7 +102,10 @@ impl<const F: usize> ExponentialAbreast<F> {
         let get = |values: &mut [f64], rows: &[Lanes]| {
             values.iter_mut().zip(rows).for_each(|(value, row)| *value = row[lane]);
         };
-        get(&mut one.state, &self.state);
+        get(
+            &mut one.state,
+            if self.stands[lane] { &self.state } else { &self.before },
+        );
         for (past, own) in one.past.iter_mut().zip(&self.past) {
             get(past, own);
         }
@@ -139,47 +156,52 @@ impl<const F: usize> ExponentialAbreast<F> {
     }
 
     /// Steps to where the states were foreseen, with the forces as they are there, and says which lanes did: where the error
-    /// is more than `relative` of a state and `absolute`, the state stays as it was.
+    /// is more than `relative` of a state and what is tolerated besides, the lane is to be given back, as it was.
     #[inline(always)]
-    pub fn advance(&mut self, force: &[Lanes; F], relative: f64, absolute: &[f64]) -> [bool; LANES] {
-        let mut off = *force;
-        for (off, past) in off.iter_mut().zip(&self.past) {
+    pub fn advance(&mut self, force: &[Lanes; F], relative: f64) -> [bool; LANES] {
+        for ((rows, force), past) in self.off.iter_mut().zip(force).zip(&self.past) {
+            let mut off = *force;
             for lane in 0..LANES {
                 let term = |point: usize| EXTRAPOLATION[point] * past[point][lane];
                 off[lane] -= (1..PAST).fold(term(0), |sum, point| sum + term(point));
             }
+            rows.fill(off);
         }
-        let good = self.are_within(&off, relative, absolute);
-        self.go_on(force, &off, &good);
-        good
+        self.stands = self.are_within(relative);
+        self.go_on(force);
+        self.stands
     }
 
     #[inline(always)]
-    fn are_within(&self, off: &[Lanes; F], relative: f64, absolute: &[f64]) -> [bool; LANES] {
-        let n = self.state.len();
-        let (ahead, absolute) = (&self.ahead[..n], &absolute[..n]);
-        let errors = self.last_order.each_ref().map(|error| &error[..n]);
+    fn are_within(&mut self, relative: f64) -> [bool; LANES] {
+        let excess = self.excess.as_flattened_mut();
+        let n = excess.len();
+        let (ahead, absolute) = (&self.ahead.as_flattened()[..n], &self.absolute.as_flattened()[..n]);
+        let errors = self.last_order.each_ref().map(|error| &error.as_flattened()[..n]);
+        let off = self.off.each_ref().map(|off| &off.as_flattened()[..n]);
+        for i in 0..n {
+            let error = (0..F).fold(0.0, |sum, f| sum + errors[f][i] * off[f][i]);
+            excess[i] = error.abs() - (absolute[i] + relative * ahead[i].abs());
+        }
         let mut within = [0.0; LANES];
-        for i in 0..n {
+        for excess in &self.excess {
             for lane in 0..LANES {
-                let error = (0..F).fold(0.0, |sum, f| sum + errors[f][i][lane] * off[f][lane]);
-                let excess = error.abs() - (absolute[i] + relative * ahead[i][lane].abs());
-                within[lane] += if excess <= 0.0 { 1.0 } else { 0.0 };
+                within[lane] += if excess[lane] <= 0.0 { 1.0 } else { 0.0 };
             }
         }
-        within.map(|within| within == n as f64)
+        within.map(|within| within == self.excess.len() as f64)
     }
 
     #[inline(always)]
-    fn go_on(&mut self, force: &[Lanes; F], off: &[Lanes; F], good: &[bool; LANES]) {
-        let n = self.state.len();
-        let (ahead, state) = (&self.ahead[..n], &mut self.state[..n]);
-        let corrections = self.whole.each_ref().map(|correction| &correction[..n]);
+    fn go_on(&mut self, force: &[Lanes; F]) {
+        std::mem::swap(&mut self.state, &mut self.before);
+        let state = self.state.as_flattened_mut();
+        let n = state.len();
+        let ahead = &self.ahead.as_flattened()[..n];
+        let corrections = self.whole.each_ref().map(|correction| &correction.as_flattened()[..n]);
+        let off = self.off.each_ref().map(|off| &off.as_flattened()[..n]);
         for i in 0..n {
-            for lane in 0..LANES {
-                let next = (0..F).fold(ahead[i][lane], |sum, f| sum + corrections[f][i][lane] * off[f][lane]);
-                state[i][lane] = if good[lane] { next } else { state[i][lane] };
-            }
+            state[i] = (0..F).fold(ahead[i], |sum, f| sum + corrections[f][i] * off[f][i]);
         }
         for (past, force) in self.past.iter_mut().zip(force) {
             past.copy_within(..KEPT - 1, 1);
@@ -194,7 +216,7 @@ impl<const F: usize> ExponentialAbreast<F> {
             let places = forces.as_chunks_mut::<{ PAST + 1 }>().0;
             for (places, &force) in places.iter_mut().zip(&part.forces) {
                 places[..PAST].copy_from_slice(&self.past[force][..PAST]);
-                places[PAST] = off[force];
+                places[PAST] = self.off[force][0];
             }
         }
     }
