@@ -147,7 +147,7 @@ pub(crate) fn gather(
         let relative = |designs: &[Values]| {
             let measured = ground.measure_all(designs).into_iter();
             let own = measured.map(|values| Some(means(&values.ok()?, &local.values, &sizes)));
-            own.collect()
+            own.collect::<Vec<_>>()
         };
         let own = drawn(subject, asked, (plan, spread), told, relative);
         add(&mut found, &own, spread);
