@@ -4,8 +4,10 @@ mod cleat;
 
 use cleat::{car, cleat, drive, parameters};
 use divan::Bencher;
+use models::axle_d::AxleD;
+use qcar_runtime::model::Model;
 use qcar_runtime::progress::UNTOLD;
-use qcar_runtime::simulate::{Settings, end_of_ride, ride, rides};
+use qcar_runtime::simulate::{Car, Kept, Ridden, Settings, Standard, end_of_ride, ride, rides, rides_abreast};
 
 fn main() {
     divan::main();
@@ -37,4 +39,54 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
         .flat_map(|kmh| roads.iter().map(move |r| drive(r, kmh / 3.6)))
         .collect();
     bencher.bench_local(|| rides(&car, &drives, &Settings::default(), UNTOLD));
+}
+
+/// Parameters that differ: eight sets of the model's unknowns.
+fn sets() -> Vec<Vec<f64>> {
+    let (own, about) = (parameters(), AxleD.about());
+    let changed = |set: usize| {
+        let values = own.as_slice().iter().zip(&about.parameters);
+        let value = |(value, own): (&f64, &qcar_runtime::model::Parameter)| match own.known {
+            true => *value,
+            false => value * (1.0 + 0.003 * set as f64),
+        };
+        values.map(value).collect()
+    };
+    (0..8).map(changed).collect()
+}
+
+/// The twelve standard runs of eight parameter sets, one after the other on one core.
+#[divan::bench]
+fn ninety_six_rides_alone(bencher: Bencher<'_, '_>) {
+    let (sets, all) = (sets(), Standard::all().expect("the standard cleats are roads"));
+    let own = parameters();
+    let car = car(&own);
+    bencher.bench_local(|| {
+        for parameters in &sets {
+            for standard in &all {
+                let car = Car { parameters, ..car };
+                divan::black_box(ride(&car, &standard.drive(), &Settings::default()).expect("it rides"));
+            }
+        }
+    });
+}
+
+/// The same abreast on one core, with the ten accelerations kept.
+#[divan::bench]
+fn ninety_six_rides_abreast(bencher: Bencher<'_, '_>) {
+    let (sets, all) = (sets(), Standard::all().expect("the standard cleats are roads"));
+    let own = parameters();
+    let car = car(&own);
+    let of_set = |set| all.iter().map(move |standard| (set, standard.drive()));
+    let rides: Vec<Ridden<'_>> = sets.iter().flat_map(|set| of_set(set.as_slice())).collect();
+    let kept = Kept {
+        force: false,
+        area: false,
+        ..Kept::all(AxleD.about())
+    };
+    bencher.bench_local(|| {
+        rides_abreast(&car, &rides, &Settings::default(), &kept, |_, ride| {
+            divan::black_box(ride.expect("it rides"));
+        });
+    });
 }

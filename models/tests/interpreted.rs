@@ -5,7 +5,7 @@ use std::path::Path;
 use proptest::prelude::*;
 use qcar_dsl::disk::compile_file;
 use qcar_dsl::evaluate::Evaluator;
-use qcar_runtime::model::{Contact, LANES, Lanes, Model, Points, ResponseMut};
+use qcar_runtime::model::{Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 /// Models that no axle is: every operation of the language, nodes, inner states, levers and rotation.
 mod zoo {
@@ -149,6 +149,34 @@ impl Pair {
         sets_equal(&sensitivities, [&ps, &xs, &us], |[p, x, u], to| {
             alone.sensitivities(p, x, u, to)
         });
+        self.compare_rolling_sets(sets, &constants, &xs, &us);
+    }
+
+    fn compare_rolling_sets(&self, sets: &dyn Model, constants: &[Lanes], x: &[Lanes], u: &[Lanes]) {
+        let alone = &self.evaluator;
+        let row = |from: f64, by: f64| -> Lanes { std::array::from_fn(|set| from + by * set as f64) };
+        let contacts = Contacts {
+            s: row(-0.04, 0.01),
+            v: row(-1.0, 0.3),
+            force: [row(4000.0, 170.0), row(-300.0, 90.0)],
+        };
+        let given = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
+        let force = sets.contact_force_sets(constants, x, &contacts.s, &contacts.v);
+        sets_equal(&[force], [constants, x, &given], |[c, x, given], to| {
+            to[0] = alone.contact_force(c, x, given[0], given[1]);
+        });
+        let mut rates = vec![[0.0; LANES]; self.model.about().states.len()];
+        sets.rolling_derivative_sets(constants, x, u, &contacts, &mut rates);
+        for set in 0..LANES {
+            let alone_in = |rows: &[Lanes]| -> Vec<f64> { rows.iter().map(|row| row[set]).collect() };
+            let (c, x, u) = (alone_in(constants), alone_in(x), alone_in(u));
+            let mut expected = vec![0.0; rates.len()];
+            alone.rolling_derivative(&c, &x, &u, &contacts.get(set), &mut expected);
+            let found = alone_in(&rates);
+            let mut pairs = found.iter().zip(&expected);
+            let same = |(a, b): (&f64, &f64)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+            assert!(pairs.all(same), "set {set}: {found:?} and {expected:?}");
+        }
     }
 
     /// Thirty-five points: whole blocks and a rest. Generated code sees one after the other.

@@ -17,6 +17,36 @@ pub const LANES: usize = 8;
 /// One value of each of several parameter sets.
 pub type Lanes = [f64; LANES];
 
+/// What tyres that roll give to several parameter sets: as [`Contact`], row by row.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Contacts {
+    /// Equivalent stretches, m.
+    pub s: Lanes,
+    /// Their rates, m/s.
+    pub v: Lanes,
+    /// The forces on the wheels along [`crate::ContactAbout::axes`], N.
+    pub force: [Lanes; 2],
+}
+
+impl Contacts {
+    /// That of a set.
+    #[inline]
+    pub fn get(&self, set: usize) -> Contact {
+        Contact {
+            s: self.s[set],
+            v: self.v[set],
+            force: [self.force[0][set], self.force[1][set]],
+        }
+    }
+
+    /// Changes that of a set.
+    #[inline]
+    pub fn set(&mut self, set: usize, contact: &Contact) {
+        (self.s[set], self.v[set]) = (contact.s, contact.v);
+        (self.force[0][set], self.force[1][set]) = (contact.force[0], contact.force[1]);
+    }
+}
+
 /// Lets `work` find from the values of each set what stands there in the rows `into`.
 pub(crate) fn one_by_one(
     from: [&[Lanes]; 3],

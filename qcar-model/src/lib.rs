@@ -16,7 +16,7 @@ pub use about::{
     Output, Parameter, Quantity, ResponseLayout, Signal, SignalKind, State, StateKind,
 };
 use evaluation::one_by_one;
-pub use evaluation::{Contact, LANES, Lanes, Points, ResponseMut};
+pub use evaluation::{Contact, Contacts, LANES, Lanes, Points, ResponseMut};
 pub use role::ParameterRole;
 
 /// A compiled axle model.
@@ -125,6 +125,38 @@ pub trait Model: Send + Sync {
     /// The outputs with the tyre rolling over a profile. Without [`About::contact`] it is [`Model::outputs`].
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], _contact: &Contact, y: &mut [f64]) {
         self.outputs(constants, x, u, y);
+    }
+
+    /// [`Model::contact_force`] of several prepared parameter sets, each in a state of its own. The bits are the same.
+    fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
+        let mut force = [[0.0; LANES]];
+        one_by_one([constants, x, &[*s, *v]], &mut force, |constants, x, contact, force| {
+            force[0] = self.contact_force(constants, x, contact[0], contact[1]);
+        });
+        force[0]
+    }
+
+    /// [`Model::rolling_derivative`] of several prepared parameter sets, each in a state and under a contact of its own. The bits
+    /// are the same.
+    fn rolling_derivative_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        dx: &mut [Lanes],
+    ) {
+        let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
+        let given = [u, &contact].concat();
+        one_by_one([constants, x, &given], dx, |constants, x, given, dx| {
+            let (u, contact) = given.split_at(u.len());
+            let contact = Contact {
+                s: contact[0],
+                v: contact[1],
+                force: [contact[2], contact[3]],
+            };
+            self.rolling_derivative(constants, x, u, &contact, dx);
+        });
     }
 
     /// A link (its place in [`About::links`]) on a dynamometer: a model with the same parameters, whose one motion is the link's stretch

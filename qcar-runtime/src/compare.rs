@@ -6,5 +6,5 @@ mod histogram;
 
 pub use crate::mean::rms;
 pub use comfort::{Weighting, vibration_dose};
-pub use errors::{Alignment, CompareError, Errors, Windows, sizes};
+pub use errors::{Alignment, CompareError, Errors, Windows, onset, sizes};
 pub use histogram::{Histogram, Summary};

@@ -208,10 +208,16 @@ impl Road {
     /// True where nothing but piece `k` lies below the circle.
     #[inline]
     pub(crate) fn carries(&self, k: usize, circle: &Circle) -> bool {
-        let (vertices, [x, _]) = (&self.vertices, circle.centre);
-        let begins = k == 0 || vertices[k - 1][0] <= x - circle.radius;
-        let ends = vertices.get(k).is_none_or(|end| x + circle.radius <= end[0]);
-        begins && ends
+        let ([from, to], [x, _]) = (self.span(k), circle.centre);
+        from <= x - circle.radius && x + circle.radius <= to
+    }
+
+    /// Where piece `k` begins and ends, m: it may go on for ever.
+    #[inline]
+    pub(crate) fn span(&self, k: usize) -> [f64; 2] {
+        let before = k.checked_sub(1).and_then(|k| self.vertices.get(k));
+        let from = before.map_or(f64::NEG_INFINITY, |vertex| vertex[0]);
+        [from, self.vertices.get(k).map_or(f64::INFINITY, |vertex| vertex[0])]
     }
 
     pub(crate) fn bounds(&self) -> &Bounds {

@@ -24,6 +24,10 @@ mod shortcut;
 mod recorder;
 // Rides over a road.
 mod ride;
+// Several smooth motions in step,
+mod formation;
+// and rides that go on so.
+mod abreast;
 // How they change with the parameters,
 mod tangent;
 // and how those of linear axles do, faster.
@@ -39,10 +43,12 @@ mod recorded;
 // A model to which that is done.
 mod replay;
 
+pub use abreast::{Ridden, rides_abreast};
 pub use car::{Car, Variant};
 pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
 pub use recorded::{Between, Record, Recorded};
+pub use recorder::Kept;
 pub use replay::{Replay, replay};
 pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;

@@ -26,7 +26,7 @@ mod exponential;
 mod hold;
 
 pub use dormand_prince::{DormandPrince, Settings};
-pub use exponential::{Driven, ExponentialAdams};
+pub use exponential::{Driven, ExponentialAbreast, ExponentialAdams};
 pub use hold::Hold;
 pub use polynomial::PAST;
 pub use rk4::Rk4;
@@ -63,10 +63,10 @@ pub trait System {
         f64::INFINITY
     }
 
-    /// Goes on from an accepted step that ended at `t`, by a method of its own that takes less than this one: to what time,
-    /// inside the leg, and what that cost. It leaves the state there in `x`, and a new leg begins.
-    fn shortcut(&mut self, _t: f64, _x: &mut [f64], _most_steps: usize) -> Option<(f64, Effort)> {
-        None
+    /// True where the system goes on from an accepted step that ended at `t` in state `x` by a method of its own that takes
+    /// less than this one. The integration pauses there, until [`DormandPrince::resume`].
+    fn takes_over(&mut self, _t: f64, _x: &[f64]) -> bool {
+        false
     }
 
     /// The number of event functions.
@@ -126,6 +126,8 @@ pub enum Reason {
     End,
     /// The event function with this place asked for it.
     Event(usize),
+    /// The system goes on by itself; see [`System::takes_over`].
+    TakenOver,
     /// The state or its derivative is not finite just after this time, however short the step.
     NotFinite,
     /// The tolerance cannot be met after this time with a step that still advances it.
@@ -149,6 +151,7 @@ impl std::fmt::Display for Report {
         match self.reason {
             Reason::End => write!(f, "reached the end at t = {t} s"),
             Reason::Event(index) => write!(f, "stopped by event {index} at t = {t} s"),
+            Reason::TakenOver => write!(f, "left to the system at t = {t} s"),
             Reason::NotFinite => write!(f, "the state or its derivative is not finite after t = {t} s"),
             Reason::StepTooSmall => write!(f, "the tolerance cannot be met after t = {t} s with any step"),
             Reason::Crowded => write!(f, "endless events after t = {t} s"),

@@ -26,7 +26,10 @@ mod point;
 mod radial;
 // From geometry to force.
 mod force;
+// Several wheels at once.
+mod abreast;
 
+pub(crate) use abreast::{Pieces, Wheels};
 pub use area::Overlap;
 pub use circle::{segment_area, segment_deflection};
 
@@ -197,7 +200,7 @@ impl Tyre {
     }
 
     /// What turns the change of a contact into the rate of the equivalent deflection, which is `deflection` now.
-    #[inline]
+    #[inline(always)]
     fn rate(&self, deflection: f64) -> f64 {
         match self.rates {
             Rates::AtStaticDeflection => self.static_rate,

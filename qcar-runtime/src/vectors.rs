@@ -26,3 +26,22 @@ pub(crate) fn widest<L: Loops>(loops: L) -> L::Result {
 fn with_avx2<L: Loops>(loops: L) -> L::Result {
     loops.run()
 }
+
+/// Runs loops over the [lanes](crate::model::LANES) of several systems, which a vector of AVX-512 holds all; without it, as
+/// [`widest`]. The bits are the same.
+#[inline]
+pub(crate) fn over_lanes<L: Loops>(loops: L) -> L::Result {
+    #[cfg(target_arch = "x86_64")]
+    if std::arch::is_x86_feature_detected!("avx512f") && std::arch::is_x86_feature_detected!("avx512dq") {
+        #[allow(unsafe_code, reason = "the instruction set is there: it has just been asked for")]
+        // SAFETY: this machine has both parts of AVX-512, and the function asks for nothing else.
+        return unsafe { with_avx512(loops) };
+    }
+    widest(loops)
+}
+
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx512f,avx512dq")]
+fn with_avx512<L: Loops>(loops: L) -> L::Result {
+    loops.run()
+}

@@ -3,6 +3,7 @@
 #[path = "../../benches/cleat/mod.rs"]
 mod cleat;
 
+mod abreast;
 mod cleat_run;
 mod kc_rig;
 mod metrics;

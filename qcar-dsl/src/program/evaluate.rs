@@ -7,7 +7,7 @@ mod order;
 // One program.
 mod code;
 
-use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
+use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 use crate::program::schedule::Compiled;
 use code::Code;
@@ -182,6 +182,31 @@ impl Model for Evaluator {
         let contact = contact_entries(contact);
         let given = prepared(constants, x, u).with(Part::Contact, &contact);
         rolling.unwrap_or(&self.derivative).run(&given, dx);
+    }
+
+    fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
+        let mut force = [[0.0; LANES]];
+        if let Some(rolling) = &self.rolling {
+            let [constants, x, _] = prepared_sets(constants, x, &[]);
+            let given = [constants, x, (Part::Contact, &[*s, *v])];
+            rolling.contact_force.sets(&given, &mut force);
+        }
+        force[0]
+    }
+
+    fn rolling_derivative_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        dx: &mut [Lanes],
+    ) {
+        let rolling = self.rolling.as_ref().map(|rolling| &rolling.derivative);
+        let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
+        let [constants, x, u] = prepared_sets(constants, x, u);
+        let given = [constants, x, u, (Part::Contact, &contact)];
+        rolling.unwrap_or(&self.derivative).sets(&given, dx);
     }
 
     fn alone(&self, link: usize) -> Option<&dyn Model> {

@@ -67,12 +67,8 @@ impl Alignment {
     /// # Errors
     /// A record that never rises above zero.
     pub fn at_peak(measured: &[f64], simulated: &[f64]) -> Result<Self, CompareError> {
-        let (peak, height) = upward_peak(measured).ok_or(CompareError::NoPeak { record: "measurement" })?;
+        let (peak, onset) = peak_and_onset(measured)?;
         let (_, highest) = upward_peak(simulated).ok_or(CompareError::NoPeak { record: "simulation" })?;
-        let onset = measured
-            .iter()
-            .position(|a| a.abs() > ONSET_SHARE * height)
-            .unwrap_or(peak);
         let delays = high_peaks(simulated, PEAK_SHARE * highest).map(|place| place as isize - peak as isize);
         let apart = |delay: &isize| difference(measured, simulated, *delay);
         let delay = delays.min_by(|a, b| apart(a).total_cmp(&apart(b)));
@@ -81,6 +77,20 @@ impl Alignment {
             delay: delay.expect("the highest is among them"),
         })
     }
+}
+
+/// The first sample at which the wheel feels the obstacle, by its vertical acceleration.
+///
+/// # Errors
+/// A record that never rises above zero.
+pub fn onset(record: &[f64]) -> Result<usize, CompareError> {
+    Ok(peak_and_onset(record)?.1)
+}
+
+fn peak_and_onset(record: &[f64]) -> Result<(usize, usize), CompareError> {
+    let (peak, height) = upward_peak(record).ok_or(CompareError::NoPeak { record: "measurement" })?;
+    let onset = record.iter().position(|a| a.abs() > ONSET_SHARE * height);
+    Ok((peak, onset.unwrap_or(peak)))
 }
 
 /// The samples that are at least so high and no lower than those beside them.

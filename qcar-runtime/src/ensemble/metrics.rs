@@ -3,14 +3,14 @@
 use thiserror::Error;
 
 use crate::campaign::RoleNames;
-use crate::compare::{Alignment, CompareError, Weighting, Windows, sizes};
+use crate::compare::{CompareError, Weighting, Windows, onset, sizes};
 use crate::model::{About, Model, Quantity, Signal, SignalKind, StateKind};
 use crate::modes;
 use crate::response::Response;
 use crate::response::parameters::Values;
 use crate::response::resonance;
 use crate::roles::{RoleError, Roles};
-use crate::simulate::Ride;
+use crate::simulate::{Kept, Ride};
 
 /// A kind of numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -151,6 +151,16 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         self.chosen.iter().flat_map(of).collect()
     }
 
+    /// What has to be kept of a ride.
+    pub fn kept(&self) -> Kept {
+        let is_measured = |output: usize| self.accelerations.iter().any(|own| own.output == output);
+        Kept {
+            outputs: (0..self.model.about().outputs.len()).map(is_measured).collect(),
+            force: false,
+            area: false,
+        }
+    }
+
     /// The numbers of [`Metrics::columns_of_rides`], of a ride with samples at `rate` (Hz).
     ///
     /// # Errors
@@ -160,7 +170,7 @@ impl<'a, M: Model + ?Sized> Metrics<'a, M> {
         let Some(first) = self.accelerations.get(self.first) else {
             return Ok(Vec::new());
         };
-        let onset = Alignment::at_peak(record(first), record(first))?.onset;
+        let onset = onset(record(first))?;
         let sizes = |own: &Acceleration| sizes(record(own), onset, rate, &Windows::default());
         let sizes = self.accelerations.iter().map(sizes).collect::<Result<Vec<_>, _>>()?;
         let of = |metric: &Metric| -> Vec<f64> {

@@ -2,13 +2,14 @@
 
 use std::ops::Range;
 
+use rayon::current_num_threads;
 use rayon::prelude::*;
 
 use super::design::Design;
 use super::metrics::{Column, Metrics};
 use crate::model::Model;
 use crate::response::parameters::Values;
-use crate::simulate::{Car, Settings, SimulateError, Standard, Variant, ride};
+use crate::simulate::{Car, Ride, Settings, SimulateError, Standard, Variant, rides_abreast};
 use crate::tyre::Tyre;
 
 /// What every parameter set is driven over.
@@ -48,6 +49,19 @@ pub struct Rows {
     pub failure: Option<String>,
 }
 
+/// A parameter set.
+struct Set {
+    number: u64,
+    /// The values of the axes, and of all parameters.
+    varied: Vec<f64>,
+    values: Values,
+    /// Why it is none.
+    impossible: Option<String>,
+}
+
+/// So many rides are given to a thread at once: lanes are empty only while the last of them end.
+const TOGETHER: usize = 96;
+
 impl<M: Model + ?Sized> Ensemble<'_, M> {
     /// What a row holds: the numbers of set and ride from 0 on, height and speed of the ride, the parameters that vary, all
     /// metrics, and at the end 1 where they could not be computed (they are NaN then), else 0.
@@ -75,29 +89,46 @@ impl<M: Model + ?Sized> Ensemble<'_, M> {
 
     /// The rows of some sets in their order, computed in parallel; they do not depend on the number of threads.
     pub fn rows(&self, sets: Range<u64>) -> Vec<Rows> {
-        sets.into_par_iter().map(|set| self.of_set(set)).collect()
+        let all = (sets.end - sets.start) as usize;
+        let each = all
+            .div_ceil(current_num_threads())
+            .clamp(1, TOGETHER.div_ceil(self.rows_of_set()));
+        let some = (0..all.div_ceil(each)).into_par_iter().map(|part| {
+            let first = sets.start + (part * each) as u64;
+            self.of_sets(first..sets.end.min(first + each as u64))
+        });
+        some.flatten_iter().collect()
     }
 
-    fn of_set(&self, set: u64) -> Rows {
-        let varied = self.design.set(set);
+    fn of_sets(&self, numbers: Range<u64>) -> Vec<Rows> {
+        let sets: Vec<Set> = numbers.map(|number| self.set(number)).collect();
+        let mut measured = self.ridden(&sets).into_iter();
+        let rows = sets.iter().map(|set| {
+            let of_set = match set.impossible {
+                None => self.metrics.of_set(&set.values),
+                Some(_) => vec![f64::NAN; self.metrics.columns_of_sets().len()],
+            };
+            let mut rows = Rows::default();
+            for (ride, measured) in measured.by_ref().take(self.rows_of_set()).enumerate() {
+                self.row((set.number, ride), &set.varied, measured, &of_set, &mut rows);
+            }
+            rows
+        });
+        rows.collect()
+    }
+
+    fn set(&self, number: u64) -> Set {
+        let varied = self.design.set(number);
         let mut values = self.values.clone();
         for (axis, value) in self.design.axes().iter().zip(&varied) {
             values.set(axis.parameter, *value);
         }
-        let mut rows = Rows::default();
-        let impossible = self.impossible(&varied, &values);
-        let of_set = match impossible {
-            None => self.metrics.of_set(&values),
-            Some(_) => vec![f64::NAN; self.metrics.columns_of_sets().len()],
-        };
-        for ride in 0..self.rows_of_set() {
-            let measured = match &impossible {
-                None => self.of_ride(ride, &values),
-                Some(reason) => Err(reason.clone()),
-            };
-            self.row((set, ride), &varied, measured, &of_set, &mut rows);
+        Set {
+            impossible: self.impossible(&varied, &values),
+            number,
+            varied,
+            values,
         }
-        rows
     }
 
     fn impossible(&self, varied: &[f64], values: &Values) -> Option<String> {
@@ -134,22 +165,30 @@ impl<M: Model + ?Sized> Ensemble<'_, M> {
         into.numbers.push(f64::from(u8::from(failed)));
     }
 
-    /// What is measured of a ride; nothing without a track.
-    fn of_ride(&self, place: usize, values: &Values) -> Result<Vec<f64>, String> {
+    /// What is measured of each ride of each set; nothing without a track.
+    fn ridden(&self, sets: &[Set]) -> Vec<Result<Vec<f64>, String>> {
+        let each = self.rows_of_set();
+        let before = |set: &Set| set.impossible.clone().map_or(Ok(Vec::new()), Err);
+        let mut measured: Vec<_> = sets.iter().flat_map(|set| vec![before(set); each]).collect();
         let Some(track) = &self.track else {
-            return Ok(Vec::new());
+            return measured;
         };
+        let places: Vec<usize> = (0..measured.len()).filter(|&place| measured[place].is_ok()).collect();
+        let ride = |&place: &usize| (sets[place / each].values.as_slice(), track.rides[place % each].drive());
+        let rides: Vec<_> = places.iter().map(ride).collect();
         let car = Car {
             model: self.model,
-            parameters: values.as_slice(),
+            parameters: self.values.as_slice(),
             tyre: track.tyre,
             load: track.load,
             variant: track.variant,
         };
-        let drive = track.rides[place].drive();
-        let ride = ride(&car, &drive, &Settings::default()).map_err(|error: SimulateError| error.to_string())?;
-        self.metrics
-            .of_ride(&ride, drive.sample_rate)
-            .map_err(|error| error.to_string())
+        let done = |number: usize, ride: Result<Ride, SimulateError>| {
+            let rate = rides[number].1.sample_rate;
+            let of_ride = |ride| self.metrics.of_ride(&ride, rate).map_err(|error| error.to_string());
+            measured[places[number]] = ride.map_err(|error| error.to_string()).and_then(of_ride);
+        };
+        rides_abreast(&car, &rides, &Settings::default(), &self.metrics.kept(), done);
+        measured
     }
 }

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use rayon::current_num_threads;
 use rayon::prelude::*;
 
 use super::course::Course;
@@ -15,7 +16,9 @@ use crate::response::parameters::Values;
 use crate::response::resonance;
 use crate::response::signal::driver;
 use crate::roles::Roles;
-use crate::simulate::{Car, Settings, SimulateError, Tangent, Variant, ride, tangent};
+use crate::simulate::{
+    Car, Kept, Ridden, Ride, Settings, SimulateError, Tangent, Variant, ride, rides_abreast, tangent,
+};
 use crate::tyre::Tyre;
 
 /// Where metrics of a model are measured.
@@ -173,15 +176,59 @@ impl<'a> Ground<'a> {
     /// # Errors
     /// As [`Ground::measure`].
     pub fn measure_with(&self, values: &Values, directions: &[Vec<f64>]) -> Result<Slopes, MetricError> {
-        if let Some(reason) = self.impossible.as_ref().and_then(|why| why(values.as_slice())) {
-            return Err(MetricError::Impossible { reason });
-        }
+        self.check_possible(values)?;
+        let courses = self.ridden_courses();
+        let ridden: Result<Vec<Signals>, MetricError> = if directions.is_empty() {
+            let each = courses.len().div_ceil(current_num_threads()).max(1);
+            let parts = courses.par_chunks(each);
+            let some =
+                |courses: &[usize]| self.drive_abreast(&courses.iter().map(|&own| (values, own)).collect::<Vec<_>>());
+            parts.flat_map_iter(some).collect()
+        } else {
+            let one = |&course: &usize| self.drive(values, course, directions);
+            courses.par_iter().map(one).collect()
+        };
+        self.read(values, &courses, ridden?, directions)
+    }
+
+    /// [`Ground::measure`] of several designs, their rides abreast on this thread.
+    pub fn measure_all(&self, designs: &[Values]) -> Vec<Result<Vec<f64>, MetricError>> {
+        let courses = self.ridden_courses();
+        let possible: Vec<_> = designs.iter().map(|values| self.check_possible(values)).collect();
+        let ridable = designs.iter().zip(&possible).filter(|(_, possible)| possible.is_ok());
+        let runs: Vec<_> = ridable
+            .flat_map(|(values, _)| courses.iter().map(move |&course| (values, course)))
+            .collect();
+        let mut ridden = self.drive_abreast(&runs).into_iter();
+        let measured = designs.iter().zip(possible).map(|(values, possible)| {
+            possible?;
+            // All of a design's rides are taken, also where one of them failed.
+            let own: Vec<_> = ridden.by_ref().take(courses.len()).collect();
+            let own = own.into_iter().collect::<Result<_, _>>()?;
+            Ok(self.read(values, &courses, own, &[])?.values)
+        });
+        measured.collect()
+    }
+
+    fn check_possible(&self, values: &Values) -> Result<(), MetricError> {
+        let reason = self.impossible.as_ref().and_then(|why| why(values.as_slice()));
+        reason.map_or(Ok(()), |reason| Err(MetricError::Impossible { reason }))
+    }
+
+    /// The courses of all readings.
+    fn ridden_courses(&self) -> Vec<usize> {
         let courses: BTreeSet<usize> = self.readings.iter().filter_map(|reading| reading.course).collect();
-        let courses: Vec<usize> = courses.into_iter().collect();
-        let ridden = courses
-            .par_iter()
-            .map(|&course| Ok((course, self.drive(values, course, directions)?)));
-        let ridden: Vec<(usize, Signals)> = ridden.collect::<Result<_, MetricError>>()?;
+        courses.into_iter().collect()
+    }
+
+    /// The readings, from the signals of each course.
+    fn read(
+        &self,
+        values: &Values,
+        courses: &[usize],
+        ridden: Vec<Signals>,
+        directions: &[Vec<f64>],
+    ) -> Result<Slopes, MetricError> {
         let at_rest = AtRest::new(self, values, directions);
         let mut found = Slopes {
             values: Vec::new(),
@@ -190,10 +237,8 @@ impl<'a> Ground<'a> {
         for reading in &self.readings {
             let (value, slopes) = match (self.metrics[reading.metric].what, reading.course) {
                 (What::Ride(signal, measure), Some(course)) => {
-                    let (_, signals) = ridden
-                        .iter()
-                        .find(|(own, _)| *own == course)
-                        .expect("every course is ridden");
+                    let place = courses.iter().position(|own| *own == course);
+                    let signals = &ridden[place.expect("every course is ridden")];
                     let seen = Seen::new(measure, &signals.values[signal], signals.rate, &signals.impact);
                     let slope = |slopes: &Vec<Vec<f64>>| seen.slope(&slopes[signal], &signals.impact);
                     (seen.value(), signals.slopes.iter().map(slope).collect())
@@ -206,61 +251,102 @@ impl<'a> Ground<'a> {
         Ok(found)
     }
 
+    /// The signals of several parameter sets, each on a course.
+    fn drive_abreast(&self, runs: &[(&Values, usize)]) -> Vec<Result<Signals, MetricError>> {
+        let mut found: Vec<_> = runs.iter().map(|_| None).collect();
+        let (Some(&(values, _)), Some(_)) = (runs.first(), self.tyre) else {
+            return Vec::new();
+        };
+        let car = self.car(values);
+        let ridden = runs
+            .iter()
+            .map(|&(values, course)| (values.as_slice(), self.courses[course].drive()));
+        let ridden: Vec<Ridden<'_>> = ridden.collect();
+        let done = |number: usize, ride: Result<Ride, SimulateError>| {
+            let course = &self.courses[runs[number].1];
+            found[number] = Some(self.signals(course, ride.map(|ride| self.tangent_of(ride))));
+        };
+        rides_abreast(&car, &ridden, &Settings::default(), &self.kept(), done);
+        found.into_iter().map(|own| own.expect("each ride ends")).collect()
+    }
+
+    /// What is read of rides, and what tells where an impact begins.
+    fn kept(&self) -> Kept {
+        let is_kept = |output: usize| self.reads(output) || self.wheel == Some(output);
+        let about = self.car_model().about();
+        Kept {
+            outputs: (0..about.outputs.len()).map(is_kept).collect(),
+            force: self.reads(self.model.about().outputs.len()),
+            area: false,
+        }
+    }
+
     fn drive(&self, values: &Values, course: usize, directions: &[Vec<f64>]) -> Result<Signals, MetricError> {
         let course = &self.courses[course];
-        let failed = |reason| MetricError::Ride {
-            course: course.name.clone(),
-            reason,
+        let (car, drive, settings) = (self.car(values), course.drive(), Settings::default());
+        let found = if directions.is_empty() {
+            ride(&car, &drive, &settings).map(|ride| self.tangent_of(ride))
+        } else {
+            tangent(&car, &drive, &settings, directions).map(|tangent| self.with_added(tangent))
         };
-        let Tangent { signals, slopes } = self.ride(values, course, directions).map_err(failed)?;
+        self.signals(course, found)
+    }
+
+    fn signals(&self, course: &Course, found: Result<Tangent, SimulateError>) -> Result<Signals, MetricError> {
+        let name = || course.name.clone();
+        let Tangent { signals, slopes } = found.map_err(|reason| MetricError::Ride { course: name(), reason })?;
         let impact = match self.wheel {
             _ if !course.obstacle => Some(Impact::none(course.samples)),
             Some(wheel) => Impact::of(&signals[wheel], course.sample_rate),
             None => None,
         };
-        let impact = impact.ok_or_else(|| MetricError::NoImpact {
-            course: course.name.clone(),
-        })?;
         Ok(Signals {
             values: signals,
             slopes,
-            impact,
+            impact: impact.ok_or_else(|| MetricError::NoImpact { course: name() })?,
             rate: course.sample_rate,
         })
     }
 
-    /// The signals of a ride and, for each direction, their derivatives: outputs, then the force of the tyre.
-    fn ride(&self, values: &Values, course: &Course, directions: &[Vec<f64>]) -> Result<Tangent, SimulateError> {
+    /// The place of the added output where nothing reads it: all others are rates of states, which a ride need not ask for.
+    fn unasked(&self) -> Option<usize> {
+        self.model.added().filter(|added| !self.reads(*added))
+    }
+
+    fn car_model(&self) -> &dyn Model {
+        match self.unasked() {
+            Some(_) => self.model.inner(),
+            None => &self.model,
+        }
+    }
+
+    fn car<'v>(&'v self, values: &'v Values) -> Car<'v, dyn Model + 'v> {
         let (tyre, load) = self.tyre.expect("what is ridden has a tyre");
-        // All other outputs are rates of states, which a ride need not ask for.
-        let unasked = self.model.added().filter(|added| !self.reads(*added));
-        let car = Car {
-            model: if unasked.is_some() {
-                self.model.inner()
-            } else {
-                &self.model as &dyn Model
-            },
+        Car {
+            model: self.car_model(),
             parameters: values.as_slice(),
             tyre,
             load,
             variant: Variant::Complete,
-        };
-        let (drive, settings) = (course.drive(), Settings::default());
-        let mut found = if directions.is_empty() {
-            let ride = ride(&car, &drive, &settings)?;
-            let [vertical, _] = ride.force;
-            Tangent {
-                signals: ride.outputs.into_iter().chain([vertical]).collect(),
-                slopes: Vec::new(),
-            }
-        } else {
-            tangent(&car, &drive, &settings, directions)?
-        };
-        if let Some(added) = unasked {
+        }
+    }
+
+    /// The signals of a ride: outputs, then the force of the tyre.
+    fn tangent_of(&self, ride: Ride) -> Tangent {
+        let [vertical, _] = ride.force;
+        self.with_added(Tangent {
+            signals: ride.outputs.into_iter().chain([vertical]).collect(),
+            slopes: Vec::new(),
+        })
+    }
+
+    /// With nothing in the place of an output that was not asked for.
+    fn with_added(&self, mut found: Tangent) -> Tangent {
+        if let Some(added) = self.unasked() {
             let all = found.slopes.iter_mut().chain([&mut found.signals]);
             all.for_each(|own| own.insert(added, Vec::new()));
         }
-        Ok(found)
+        found
     }
 
     /// What each mass does on a course.

@@ -3,7 +3,9 @@
 use std::borrow::Cow;
 
 use crate::campaign::RoleNames;
-use crate::model::{About, Contact, Entry, Matrix, Model, Output, ResponseMut, Signal, SignalKind, StateKind};
+use crate::model::{
+    About, Contact, Contacts, Entry, Lanes, Matrix, Model, Output, ResponseMut, Signal, SignalKind, StateKind,
+};
 use crate::roles::{Roles, state};
 
 /// The output that is added.
@@ -114,6 +116,21 @@ impl Model for Watched<'_> {
 
     fn rolling_derivative(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, dx: &mut [f64]) {
         self.inner.rolling_derivative(constants, x, u, contact, dx);
+    }
+
+    fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
+        self.inner.contact_force_sets(constants, x, s, v)
+    }
+
+    fn rolling_derivative_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        dx: &mut [Lanes],
+    ) {
+        self.inner.rolling_derivative_sets(constants, x, u, contacts, dx);
     }
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &Contact, y: &mut [f64]) {

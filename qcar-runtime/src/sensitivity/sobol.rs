@@ -52,13 +52,13 @@ struct Row {
     mixed: Vec<Vec<f64>>,
 }
 
-/// Indices of `parameters` that are uniform in a unit cube, of the results that `evaluate` gives; `None` where a design has
-/// none.
+/// Indices of `parameters` that are uniform in a unit cube, of the results that `evaluate` gives of several designs at once; `None`
+/// where a design has none.
 pub fn indices(
     parameters: usize,
     plan: Plan,
     told: Told<'_>,
-    evaluate: impl Fn(&[f64]) -> Option<Vec<f64>> + Sync + Send,
+    evaluate: impl Fn(&[Vec<f64>]) -> Vec<Option<Vec<f64>>> + Sync + Send,
 ) -> Indices {
     let bases = (plan.designs / (parameters + 2)).max(2);
     // One cube for both halves, so that A and B are independent and each fills the ranges evenly.
@@ -68,12 +68,14 @@ pub fn indices(
         let mixed = (0..parameters).map(|k| {
             let mut design = a.to_vec();
             design[k] = b[k];
-            evaluate(&design)
+            design
         });
+        let designs: Vec<Vec<f64>> = [a.to_vec(), b.to_vec()].into_iter().chain(mixed).collect();
+        let mut found = evaluate(&designs).into_iter();
         Some(Row {
-            a: evaluate(a)?,
-            b: evaluate(b)?,
-            mixed: mixed.collect::<Option<_>>()?,
+            a: found.next()??,
+            b: found.next()??,
+            mixed: found.collect::<Option<_>>()?,
         })
     };
     let rows: Vec<Row> = progress::map(&points, told, row).into_iter().flatten().collect();

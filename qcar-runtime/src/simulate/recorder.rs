@@ -3,7 +3,7 @@
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
 use super::shortcut::Shortcut;
-use crate::model::{About, Contact, Model};
+use crate::model::{About, Contact, Lanes, Model};
 use crate::solver::{After, Effort, Event, Step, System};
 use crate::vectors::{Loops, widest};
 
@@ -15,9 +15,12 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     state: Vec<f64>,
     /// Room for its rate, after that the outputs where the model is asked for them, and what is told of the contact.
     rates: Vec<f64>,
-    /// For each output its place there. The acceleration of a mass is a rate, so that most models need not be asked.
-    places: Vec<usize>,
-    /// From this place on all is recorded.
+    /// For each output its place there, if it is kept. The acceleration of a mass is a rate, so that most models need not be
+    /// asked.
+    places: Vec<Option<usize>>,
+    /// The places that are recorded, those of outputs first,
+    recorded: Vec<usize>,
+    /// and the first of all.
     first: usize,
     tape: Tape,
     /// When the tyre lost the ground, s.
@@ -28,25 +31,60 @@ pub(super) struct Recorder<'a, M: ?Sized> {
     last: (f64, bool),
 }
 
+/// Which signals of a ride are kept.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kept {
+    /// Whether each output of the model is.
+    pub outputs: Vec<bool>,
+    /// Whether the force of the tyre is.
+    pub force: bool,
+    /// Whether the area of its contact is.
+    pub area: bool,
+}
+
+impl Kept {
+    /// All of them.
+    pub fn all(about: &About) -> Self {
+        Self {
+            outputs: vec![true; about.outputs.len()],
+            force: true,
+            area: true,
+        }
+    }
+}
+
 /// What is told of a contact, at the end of each row: force of the tyre in z and x, and its deflection.
 const OF_CONTACT: usize = 3;
 
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
-    pub fn new(rolling: Rolling<'a, M>, shortcut: Option<Shortcut>, grid: Grid, about: &About) -> Self {
+    /// Of what is `kept`, on a tape in the room of another one.
+    pub fn new(
+        rolling: Rolling<'a, M>,
+        shortcut: Option<Shortcut>,
+        (grid, room): (Grid, Vec<f64>),
+        about: &About,
+        kept: &Kept,
+    ) -> Self {
         let (states, outputs) = (about.states.len(), &about.outputs);
-        let rates: Option<Vec<_>> = outputs.iter().map(|output| about.rate(&output.signal)).collect();
-        let asked = if rates.is_some() { 0 } else { outputs.len() };
-        let places = rates.unwrap_or_else(|| (states..).take(asked).collect());
-        let first = places.iter().copied().min().unwrap_or(states);
-        let room = states + asked + OF_CONTACT;
+        let of_output = |output: usize| kept.outputs[output].then_some(output);
+        let wanted = || (0..outputs.len()).map(of_output);
+        let rate = |output: usize| about.rate(&outputs[output].signal);
+        let are_rates = wanted().flatten().all(|output| rate(output).is_some());
+        let asked = if are_rates { 0 } else { outputs.len() };
+        let place = |output: usize| if are_rates { rate(output) } else { Some(states + output) };
+        let places: Vec<Option<usize>> = wanted().map(|output| output.and_then(place)).collect();
+        let of_contact = [kept.force, kept.force, kept.area].into_iter().zip(states + asked..);
+        let of_contact = of_contact.filter_map(|(is_kept, place)| is_kept.then_some(place));
+        let recorded: Vec<usize> = places.iter().copied().flatten().chain(of_contact).collect();
         Self {
             rolling,
             shortcut,
             state: vec![0.0; states],
-            rates: vec![0.0; room],
+            rates: vec![0.0; states + asked + OF_CONTACT],
             places,
-            first,
-            tape: Tape::new(grid, room - first),
+            first: recorded.iter().copied().min().unwrap_or(states),
+            tape: Tape::over(room, grid, recorded.len()),
+            recorded,
             lift_offs: Vec::new(),
             landings: Vec::new(),
             last: (f64::NAN, true),
@@ -56,7 +94,8 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
     /// Records a car that is at rest in state `x` until a time, s.
     pub fn rest(&mut self, until: f64, x: &[f64]) {
         observe(&self.rolling, until, x, &mut self.rates);
-        self.tape.record_rest(until, &self.rates[self.first..]);
+        let values = self.recorded.iter().map(|&place| self.rates[place]);
+        self.tape.record_rest(until, values);
     }
 
     /// What rolls.
@@ -88,8 +127,27 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
             let (dx, outputs, of_contact) = parts(&mut self.rates, x.len());
             self.rolling.move_by(&self.rolling.driven(contact), x, dx, outputs);
             tell(&contact, of_contact);
-            self.tape.record(&self.rates[self.first..]);
+            self.record();
         }
+    }
+
+    /// The same by the rates of several, this one's in a lane of them; only where the model is asked for no outputs.
+    pub fn record_lane(&mut self, t: f64, (rates, lane): (&[Lanes], usize), contact: Contact) {
+        if self.tape.next(t).is_some() {
+            self.tape.skip_to(t);
+            tell(&contact, &mut self.rates[rates.len()..]);
+            let rate = |&place: &usize| rates.get(place).map_or(self.rates[place], |rates| rates[lane]);
+            self.tape.record(self.recorded.iter().map(rate));
+        }
+    }
+
+    /// True where the model is asked for outputs that are no rates.
+    pub fn asks(&self) -> bool {
+        self.rates.len() > self.state.len() + OF_CONTACT
+    }
+
+    fn record(&mut self) {
+        self.tape.record(self.recorded.iter().map(|&place| self.rates[place]));
     }
 
     /// Fills in what lies between the steps of which only the ends were recorded.
@@ -97,17 +155,51 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         self.tape.fill_in();
     }
 
-    /// Each output at the samples.
+    /// Each output at the samples; nothing of those that are not kept.
     pub fn outputs(&self) -> Vec<Vec<f64>> {
-        let filtered = |place| self.tape.filtered(place - self.first);
+        let filtered = |place| {
+            self.track(place)
+                .map(|track| self.tape.filtered(track))
+                .unwrap_or_default()
+        };
         self.places.iter().copied().map(filtered).collect()
     }
 
     /// Force of the tyre on the wheel in z and x at the samples, N, and area of its contact, m².
     pub fn contact(&self) -> [Vec<f64>; 3] {
-        let of = |what: usize| self.tape.plain(self.rates.len() - self.first - OF_CONTACT + what);
+        let place = |what: usize| Some(self.rates.len() - OF_CONTACT + what);
+        let of = |what: usize| self.track(place(what)).map_or(&[][..], |track| self.tape.plain(track));
         let area = |deflection: &f64| self.rolling.tyre.area(*deflection);
         [of(0).to_vec(), of(1).to_vec(), of(2).iter().map(area).collect()]
+    }
+
+    fn track(&self, place: Option<usize>) -> Option<usize> {
+        place.and_then(|place| self.recorded.iter().position(|own| *own == place))
+    }
+
+    /// The room of its tape, for another one.
+    pub fn into_room(self) -> Vec<f64> {
+        self.tape.into_room()
+    }
+
+    /// Goes on alone where it has taken over, by at most so many steps, and leaves the state in `x`: to what time, and what that
+    /// cost.
+    pub fn go_on(&mut self, x: &mut [f64], most_steps: usize) -> (f64, Effort) {
+        let mut shortcut = self.shortcut.take().expect("it has taken over");
+        widest(Steps {
+            shortcut: &mut shortcut,
+            recorder: self,
+            most: most_steps,
+        });
+        x.copy_from_slice(shortcut.state());
+        let ended = shortcut.end();
+        self.shortcut = Some(shortcut);
+        ended
+    }
+
+    /// The shortcut by which it goes on where it has taken over, and what rolls.
+    pub fn shortcut(&mut self) -> Option<(&mut Shortcut, &Rolling<'a, M>)> {
+        Some((self.shortcut.as_mut()?, &self.rolling))
     }
 }
 
@@ -139,34 +231,21 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
         self.rolling.next_bend(t, x, dx, from).min(wanted)
     }
 
-    fn shortcut(&mut self, t: f64, x: &mut [f64], most_steps: usize) -> Option<(f64, Effort)> {
-        let mut shortcut = self.shortcut.take()?;
-        let begins = shortcut.begin(t, x);
-        let end = begins.then(|| {
-            widest(Steps {
-                shortcut: &mut shortcut,
-                recorder: self,
-                most: most_steps,
-            });
-            x.copy_from_slice(shortcut.state());
-            shortcut.end()
-        });
-        self.shortcut = Some(shortcut);
-        end
+    fn takes_over(&mut self, t: f64, x: &[f64]) -> bool {
+        self.shortcut.as_mut().is_some_and(|shortcut| shortcut.begin(t, x))
     }
 
     fn accept(&mut self, step: &Step<'_>) {
         self.note(step);
         let smooth = step.has_rates();
         while let Some(t) = self.tape.next(step.end) {
-            let record = &mut self.rates[self.first..];
             if smooth {
-                step.rates_at(t, self.first, record);
+                step.rates_at(t, self.first, &mut self.rates[self.first..]);
             } else {
                 step.at(t, &mut self.state);
                 observe(&self.rolling, t, &self.state, &mut self.rates);
             }
-            self.tape.record(&self.rates[self.first..]);
+            self.record();
         }
     }
 

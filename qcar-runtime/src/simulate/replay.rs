@@ -115,7 +115,7 @@ impl<M: Model + ?Sized> System for Rig<'_, M> {
             step.at(t, x);
             self.recorded.at(t, self.leg, &mut self.inputs);
             self.model.outputs(&self.constants, x, &self.inputs, y);
-            self.tape.record(&self.room);
+            self.tape.record(self.room.iter().copied());
         }
     }
 }

@@ -2,15 +2,15 @@
 
 use super::car::Car;
 use super::failure::{SimulateError, positive};
-use super::recorder::Recorder;
+use super::recorder::{Kept, Recorder};
 use super::rolling::Rolling;
 use super::sampling::{AntiAlias, Grid};
-use super::settings::Settings;
+use super::settings::{Integrator, Settings, judged};
 use super::shortcut::Shortcut;
-use crate::model::Model;
+use crate::model::{About, Model};
 use crate::progress::{self, Told};
 use crate::road::Road;
-use crate::solver::Effort;
+use crate::solver::{Effort, Reason, System};
 use crate::tyre::{Geometry, Tyre};
 
 /// A ride that is to be simulated.
@@ -74,24 +74,10 @@ pub fn ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<Ride, SimulateError> {
-    let mut journey = Journey::new(car, drive, settings, |grid| grid)?;
-    let rolling = journey.recorder.rolling();
-    let (static_deflection, traction) = (rolling.deflection(journey.span.0, &journey.x), rolling.traction);
-    let effort = journey.integrate(car, drive, settings)?;
-    let mut recorder = journey.recorder;
-    recorder.finish();
-    let [vertical, longitudinal, area] = recorder.contact();
-    Ok(Ride {
-        time: (0..drive.samples).map(|i| i as f64 / drive.sample_rate).collect(),
-        outputs: recorder.outputs(),
-        force: [vertical, longitudinal],
-        area,
-        lift_offs: recorder.lift_offs,
-        landings: recorder.landings,
-        static_deflection,
-        traction,
-        effort,
-    })
+    let kept = Kept::all(car.model.about());
+    let mut journey = Journey::new(car, drive, settings, |grid| (grid, Vec::new()), &kept)?;
+    journey.to_end()?;
+    Ok(journey.ride().0)
 }
 
 /// The state in which a ride ends, and what the integration cost. Nothing is recorded on the way.
@@ -103,26 +89,38 @@ pub fn end_of_ride<M: Model + ?Sized>(
     drive: &Drive<'_>,
     settings: &Settings,
 ) -> Result<(Vec<f64>, Effort), SimulateError> {
-    let mut journey = Journey::new(car, drive, settings, Grid::without_points)?;
-    let effort = journey.integrate(car, drive, settings)?;
-    Ok((journey.x, effort))
+    let kept = Kept::all(car.model.about());
+    let unrecorded = |grid: Grid| (grid.without_points(), Vec::new());
+    let mut journey = Journey::new(car, drive, settings, unrecorded, &kept)?;
+    journey.to_end()?;
+    Ok((journey.x, journey.effort))
 }
 
-/// A car at rest on flat ground, about to move.
-struct Journey<'a, M: ?Sized> {
-    recorder: Recorder<'a, M>,
-    x: Vec<f64>,
-    /// When the road begins to move it, and when the record ends, s.
+/// A ride on its way: the general method takes it from where its force bends to where that is smooth, and there its recorder
+/// takes over.
+pub(super) struct Journey<'a, M: ?Sized> {
+    pub recorder: Recorder<'a, M>,
+    pub x: Vec<f64>,
+    about: &'a About,
+    drive: Drive<'a>,
+    integrator: Integrator,
+    most_steps: usize,
+    /// Where it is, at first where the road begins to move it, and when the record ends, s.
     span: (f64, f64),
+    effort: Effort,
+    /// Of the recorder since it took over; none before it does.
+    spent: Option<Effort>,
+    static_deflection: f64,
 }
 
 impl<'a, M: Model + ?Sized> Journey<'a, M> {
-    /// Of the grid of the samples that points are recorded which `recorded` leaves.
-    fn new(
+    /// A car at rest on flat ground, about to move. What of the grid of the samples `recorded` leaves is recorded, in a room.
+    pub fn new(
         car: &Car<'a, M>,
         drive: &Drive<'a>,
         settings: &Settings,
-        recorded: impl Fn(Grid) -> Grid,
+        recorded: impl FnOnce(Grid) -> (Grid, Vec<f64>),
+        kept: &Kept,
     ) -> Result<Self, SimulateError> {
         let (tyre, about) = (car.rolling_tyre(), car.model.about());
         drive.check(&tyre)?;
@@ -131,20 +129,84 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
         let shortcut = Shortcut::new(&rolling, about, settings, &grid);
-        let mut recorder = Recorder::new(rolling, shortcut, recorded(grid), about);
+        let static_deflection = rolling.deflection(span.0, &x);
+        let mut recorder = Recorder::new(rolling, shortcut, recorded(grid), about, kept);
         recorder.rest(span.0, &x);
-        Ok(Self { recorder, x, span })
+        Ok(Self {
+            about,
+            drive: *drive,
+            integrator: settings.integrator(about, drive.longest_step(&tyre), recorder.events()),
+            most_steps: settings.most_steps,
+            recorder,
+            x,
+            span,
+            effort: Effort::default(),
+            spent: None,
+            static_deflection,
+        })
     }
 
-    fn integrate(&mut self, car: &Car<'_, M>, drive: &Drive<'_>, settings: &Settings) -> Result<Effort, SimulateError> {
-        let longest_step = drive.longest_step(&car.rolling_tyre());
-        settings.integrate(
-            car.model.about(),
-            &mut self.recorder,
-            self.span,
-            (longest_step, &[]),
-            &mut self.x,
-        )
+    /// Goes on by the general method, and says whether the recorder has taken over; else it is at the end.
+    ///
+    /// # Errors
+    /// Where the integration stops before.
+    pub fn advance(&mut self) -> Result<bool, SimulateError> {
+        let span = (self.span, &[][..]);
+        let report = self
+            .integrator
+            .go_on(&mut self.recorder, self.spent.take(), span, &mut self.x);
+        (self.span.0, self.effort) = (report.time, report.effort);
+        match report.reason {
+            Reason::TakenOver => Ok(true),
+            _ => judged(self.about, report).map(|_| false),
+        }
+    }
+
+    /// So many steps may still be attempted.
+    pub fn steps_left(&self) -> usize {
+        self.most_steps - self.effort.accepted - self.effort.rejected
+    }
+
+    /// The recorder hands it back at a time, s, with the state in its place, and what it has spent.
+    pub fn hand_back(&mut self, (time, spent): (f64, Effort)) {
+        (self.span.0, self.spent) = (time, Some(spent));
+    }
+
+    /// Goes on alone where the recorder has taken over.
+    pub fn go_on(&mut self) {
+        let most_steps = self.steps_left();
+        let ended = self.recorder.go_on(&mut self.x, most_steps);
+        self.hand_back(ended);
+    }
+
+    /// Goes on alone to the end.
+    ///
+    /// # Errors
+    /// Where the integration stops before.
+    pub fn to_end(&mut self) -> Result<(), SimulateError> {
+        while self.advance()? {
+            self.go_on();
+        }
+        Ok(())
+    }
+
+    /// What was recorded, and the room of its tape for another one.
+    pub fn ride(mut self) -> (Ride, Vec<f64>) {
+        self.recorder.finish();
+        let [vertical, longitudinal, area] = self.recorder.contact();
+        let time = |i: usize| i as f64 / self.drive.sample_rate;
+        let ride = Ride {
+            time: (0..self.drive.samples).map(time).collect(),
+            outputs: self.recorder.outputs(),
+            force: [vertical, longitudinal],
+            area,
+            lift_offs: std::mem::take(&mut self.recorder.lift_offs),
+            landings: std::mem::take(&mut self.recorder.landings),
+            static_deflection: self.static_deflection,
+            traction: self.recorder.rolling().traction,
+            effort: self.effort,
+        };
+        (ride, self.recorder.into_room())
     }
 }
 

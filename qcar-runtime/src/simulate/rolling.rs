@@ -12,25 +12,25 @@ use crate::tyre::{Geometry, Touch, Tyre, Wheel};
 
 /// What rolls, where and how fast.
 pub(super) struct Rolling<'a, M: ?Sized> {
-    model: &'a M,
-    constants: Vec<f64>,
+    pub model: &'a M,
+    pub constants: Vec<f64>,
     /// All zero: the preloads of the links balance gravity, and the road acts through the contact alone.
-    inputs: Vec<f64>,
+    pub inputs: Vec<f64>,
     pub tyre: Tyre,
     /// Static load of the tyre, N.
-    load: f64,
-    road: &'a Road,
+    pub load: f64,
+    pub road: &'a Road,
     /// Height of the wheel's centre in the design position, m.
-    height: f64,
+    pub height: f64,
     /// m/s.
     pub speed: f64,
-    wheel: WheelStates,
+    pub wheel: WheelStates,
     /// Places of states that do not move.
-    locked: Vec<usize>,
+    pub locked: Vec<usize>,
     /// The constant force in x that balances the rolling drag on a flat road, N.
     pub traction: f64,
     /// The piece of road that was last under the tyre.
-    piece: Cell<usize>,
+    pub piece: Cell<usize>,
     /// Up to where the road has no further vertical step, m, for a tyre that feels such a step at once.
     smooth_until: f64,
     /// Where the road turns sharply. The force of a circle bends when its rim comes over one of these points.
@@ -50,9 +50,10 @@ const SMALL_PART: f64 = 1e-3;
 const PROBES: [[f64; 2]; 3] = [[-0.01, 0.1], [-0.02, -1.0], [-0.035, 0.4]];
 
 /// Places of the wheel's position and velocity, in z and, where it moves, in x.
-struct WheelStates {
-    z: [usize; 2],
-    x: Option<[usize; 2]>,
+#[derive(Clone, Copy)]
+pub(super) struct WheelStates {
+    pub z: [usize; 2],
+    pub x: Option<[usize; 2]>,
 }
 
 impl WheelStates {

@@ -185,14 +185,24 @@ pub(super) struct Tape {
 impl Tape {
     /// An empty tape.
     pub fn new(grid: Grid, signals: usize) -> Self {
-        let tracks = signals * grid.filter.oversampling;
+        Self::over(Vec::new(), grid, signals)
+    }
+
+    /// An empty tape in the room of another one.
+    pub fn over(mut room: Vec<f64>, grid: Grid, signals: usize) -> Self {
+        room.resize(signals * grid.filter.oversampling * grid.points_of_phase(), 0.0);
         Self {
             next: 0,
-            tracks: vec![0.0; tracks * grid.points_of_phase()],
+            tracks: room,
             still: 0,
             gaps: Vec::new(),
             grid,
         }
+    }
+
+    /// Its room, for another tape.
+    pub fn into_room(self) -> Vec<f64> {
+        self.tracks
     }
 
     /// The time of the point to be recorded next, where there is one up to `end` (s).
@@ -202,7 +212,7 @@ impl Tape {
     }
 
     /// Records the same value for each signal at all points before `end` (s); there are none yet.
-    pub fn record_rest(&mut self, end: f64, values: &[f64]) {
+    pub fn record_rest(&mut self, end: f64, values: impl Iterator<Item = f64>) {
         while self.next(end.next_down()).is_some() {
             self.next += 1;
         }
@@ -212,7 +222,7 @@ impl Tape {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
         for (track, value) in self.tracks.chunks_exact_mut(every * length).zip(values) {
             for (phase, track) in track.chunks_exact_mut(length).enumerate() {
-                track[..(self.next + every - 1 - phase) / every].fill(*value);
+                track[..(self.next + every - 1 - phase) / every].fill(value);
             }
         }
         self.still = self.next / every;
@@ -220,11 +230,11 @@ impl Tape {
 
     /// Records that point: a value for each signal.
     #[inline]
-    pub fn record(&mut self, values: &[f64]) {
+    pub fn record(&mut self, values: impl Iterator<Item = f64>) {
         let (every, length) = (self.grid.filter.oversampling, self.grid.points_of_phase());
         let first = self.next % every * length + self.next / every;
         for (track, value) in self.tracks.chunks_exact_mut(every * length).zip(values) {
-            track[first] = *value;
+            track[first] = value;
         }
         self.next += 1;
     }

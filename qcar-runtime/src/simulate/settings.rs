@@ -2,7 +2,7 @@
 
 use super::failure::SimulateError;
 use crate::model::{About, StateKind};
-use crate::solver::{self, DormandPrince, Effort, Rk4, System};
+use crate::solver::{self, DormandPrince, Effort, Report, Rk4, System};
 
 /// How exact a simulation is.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,8 +44,14 @@ impl Settings {
         (longest_step, breaks): (f64, &[f64]),
         x: &mut [f64],
     ) -> Result<Effort, SimulateError> {
-        let (most_steps, events) = (self.most_steps, system.events());
-        let report = match self.method {
+        let mut integrator = self.integrator(about, longest_step, system.events());
+        judged(about, integrator.go_on(system, None, (span, breaks), x))
+    }
+
+    /// What integrates a system with so many events; no step is longer than `longest_step` (s).
+    pub(super) fn integrator(&self, about: &About, longest_step: f64, events: usize) -> Integrator {
+        let most_steps = self.most_steps;
+        match self.method {
             Method::Adaptive(relative) => {
                 let absolute = scales(about).map(|scale| relative * scale).collect();
                 let settings = solver::Settings {
@@ -54,20 +60,49 @@ impl Settings {
                     longest_step,
                     most_steps,
                 };
-                DormandPrince::new(settings, events).integrate(system, span, breaks, x)
+                Integrator::Adaptive(DormandPrince::new(settings, events))
             }
             Method::Fixed(step) => {
-                Rk4::new(step.min(longest_step), most_steps, x.len(), events).integrate(system, span, breaks, x)
+                let states = about.states.len();
+                Integrator::Fixed(Rk4::new(step.min(longest_step), most_steps, states, events))
             }
-        };
-        if report.reason.is_success() {
-            Ok(report.effort)
-        } else {
-            Err(SimulateError::Stopped {
-                model: about.name.to_string(),
-                report,
-            })
         }
+    }
+}
+
+/// An integrator by either method.
+pub(super) enum Integrator {
+    Adaptive(DormandPrince),
+    Fixed(Rk4),
+}
+
+impl Integrator {
+    /// Begins, or goes on where the system had taken over, and what that `spent`.
+    pub fn go_on<S: System>(
+        &mut self,
+        system: &mut S,
+        spent: Option<Effort>,
+        (span, breaks): ((f64, f64), &[f64]),
+        x: &mut [f64],
+    ) -> Report {
+        match (self, spent) {
+            (Self::Adaptive(by), None) => by.integrate(system, span, breaks, x),
+            (Self::Adaptive(by), Some(effort)) => by.resume(system, effort, span, breaks, x),
+            (Self::Fixed(by), _) => by.integrate(system, span, breaks, x),
+        }
+    }
+}
+
+/// What an integration cost.
+///
+/// # Errors
+/// Where it has stopped before its end.
+pub(super) fn judged(about: &About, report: Report) -> Result<Effort, SimulateError> {
+    if report.reason.is_success() {
+        Ok(report.effort)
+    } else {
+        let model = about.name.to_string();
+        Err(SimulateError::Stopped { model, report })
     }
 }
 

@@ -114,26 +114,66 @@ impl Shortcut {
     /// A step: when it ends, and under which contact. None where it cannot be made, or there is no more to make.
     #[inline(always)]
     pub fn step<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>) -> Option<(f64, Contact)> {
-        let left = self.times.len() - self.next;
-        if self.stride == 1 && left.is_multiple_of(2) && rolling.is_level(self.centre) && self.adams.lengthen() {
-            self.stride = 2;
+        if self.wants_longer(rolling) {
+            self.lengthen();
         }
-        let end = self.next + self.stride - 1;
-        let &time = self.times.get(end)?;
+        let time = self.ahead()?;
         let mut smooth = Smooth {
             rolling,
             centre: self.centre,
             contact: Contact::default(),
         };
-        self.effort.evaluations += 1;
-        if self.adams.advance(&mut smooth, time, self.relative, &self.absolute) {
-            self.effort.accepted += 1;
-            (self.next, self.centre) = (end + 1, smooth.centre);
-            Some((time, smooth.contact))
-        } else {
-            self.effort.rejected += 1;
-            None
+        let good = self.adams.advance(&mut smooth, time, self.relative, &self.absolute);
+        self.count(good.then_some(smooth.centre));
+        good.then_some((time, smooth.contact))
+    }
+
+    /// True where steps may be twice as long from here on, as soon as enough is known.
+    #[inline(always)]
+    pub fn wants_longer<M: Model + ?Sized>(&self, rolling: &Rolling<'_, M>) -> bool {
+        let left = self.times.len() - self.next;
+        self.stride == 1 && left.is_multiple_of(2) && rolling.is_level(self.centre) && self.adams.may_double()
+    }
+
+    /// Makes them so, if enough is known.
+    pub fn lengthen(&mut self) {
+        if self.adams.lengthen() {
+            self.stride = 2;
         }
+    }
+
+    /// When the next step ends, s; none after the last.
+    #[inline(always)]
+    pub fn ahead(&self) -> Option<f64> {
+        self.times.get(self.next + self.stride - 1).copied()
+    }
+
+    /// Where the wheel's centre is, m.
+    pub fn centre(&self) -> [f64; 2] {
+        self.centre
+    }
+
+    /// Counts a step that was attempted: where the wheel's centre is at its end, m, if it stands.
+    #[inline(always)]
+    pub fn count(&mut self, centre: Option<[f64; 2]>) {
+        self.effort.evaluations += 1;
+        match centre {
+            Some(centre) => {
+                self.effort.accepted += 1;
+                (self.next, self.centre) = (self.next + self.stride, centre);
+            }
+            None => self.effort.rejected += 1,
+        }
+    }
+
+    /// The method that makes the steps.
+    pub fn method(&mut self) -> &mut ExponentialAdams<2> {
+        &mut self.adams
+    }
+
+    /// What it is held to: relative to each state, and absolute.
+    pub fn tolerance(&self) -> (f64, &[f64]) {
+        (self.relative, &self.absolute)
     }
 
     /// The state.

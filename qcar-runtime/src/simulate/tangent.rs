@@ -135,7 +135,7 @@ impl<'a, M: Model + ?Sized> Varied<'a, M> {
     fn rest(&mut self, until: f64, state: &[f64]) {
         let mut rates = std::mem::take(&mut self.rates);
         self.derivative(until, state, &mut rates);
-        self.tape.record_rest(until, &rates[state.len()..]);
+        self.tape.record_rest(until, rates[state.len()..].iter().copied());
         self.rates = rates;
     }
 
@@ -224,7 +224,7 @@ impl<M: Model + ?Sized> System for Varied<'_, M> {
                 self.derivative(t, &state, &mut rates);
                 self.state = state;
             }
-            self.tape.record(&rates[first..]);
+            self.tape.record(rates[first..].iter().copied());
             self.rates = rates;
         }
     }

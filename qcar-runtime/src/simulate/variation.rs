@@ -276,7 +276,9 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         variation.act_beside_contact();
         variation.act_by_contact();
         variation.show();
-        variation.tape.record_rest(time - 0.5 * spacing, &variation.shown);
+        variation
+            .tape
+            .record_rest(time - 0.5 * spacing, variation.shown.iter().copied());
         Some(variation)
     }
 
@@ -285,7 +287,7 @@ impl<'a, M: Model + ?Sized> Variation<'a, M> {
         while self.tape.next(f64::INFINITY).is_some() {
             if self.tape.next(self.time + 0.5 * self.spacing).is_some() {
                 self.show();
-                self.tape.record(&self.shown);
+                self.tape.record(self.shown.iter().copied());
             }
             self.advance();
         }

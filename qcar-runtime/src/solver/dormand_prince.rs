@@ -64,6 +64,22 @@ impl DormandPrince {
     ///
     /// `breaks` are the ascending times at which the right-hand side jumps.
     pub fn integrate<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
+        self.effort = Effort::default();
+        self.control = Control::new(self.settings.longest_step);
+        self.resume(system, Effort::default(), span, breaks, x)
+    }
+
+    /// Goes on where the system had taken over, with steps as long as they were: the system spent `effort` to come to `span.0`
+    /// and `x`. It counts with that of before.
+    pub fn resume<S: System>(
+        &mut self,
+        system: &mut S,
+        effort: Effort,
+        span: (f64, f64),
+        breaks: &[f64],
+        x: &mut [f64],
+    ) -> Report {
+        self.effort += effort;
         widest(Integration {
             by: self,
             system,
@@ -75,8 +91,6 @@ impl DormandPrince {
 
     #[inline(always)]
     fn run<S: System>(&mut self, system: &mut S, span: (f64, f64), breaks: &[f64], x: &mut [f64]) -> Report {
-        self.effort = Effort::default();
-        self.control = Control::new(self.settings.longest_step);
         self.make_room(system.signals());
         self.x.copy_from_slice(x);
         let (mut reason, mut time) = (Reason::End, span.0);
@@ -137,25 +151,11 @@ impl DormandPrince {
                 Some((After::Stop, crossing)) => return (Reason::Event(crossing.index), t),
                 Some(_) if crowd > MOST_AT_ONCE => return (Reason::Crowded, t),
                 Some(_) => fresh = true,
-                None => {
-                    if let Some(end) = self.shortcut(system, t) {
-                        (t, fresh) = (end, true);
-                    }
-                }
+                None if system.takes_over(t, &self.x) => return (Reason::TakenOver, t),
+                None => {}
             }
         }
         (Reason::End, t)
-    }
-
-    /// Leaves the motion to the system, as far as it can do with less: to what time.
-    fn shortcut<S: System>(&mut self, system: &mut S, t: f64) -> Option<f64> {
-        let left = self
-            .settings
-            .most_steps
-            .saturating_sub(self.effort.accepted + self.effort.rejected);
-        let (end, effort) = system.shortcut(t, &mut self.x, left)?;
-        self.effort += effort;
-        Some(end)
     }
 
     /// Enters a leg: its first slope, and a first step where none is known. False where it is not finite.

@@ -5,7 +5,12 @@
 //! corrects the step and judges it. M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19 (2010),
 //! section 2.5, with the correction of the predictor-corrector pairs in Hairer, Nørsett, Wanner, III.1.
 
+// Several of them at once.
+mod abreast;
+
 use std::array;
+
+pub use abreast::ExponentialAbreast;
 
 use super::matrix::{Lanes, Matrix};
 use super::polynomial::{EXTRAPOLATION, LAST_ORDER, PAST, Polynomial, THROUGH, UNFORESEEN, derivatives};
@@ -100,9 +105,14 @@ impl<const F: usize> ExponentialAdams<F> {
         self.prepare();
     }
 
+    /// True where it was planned to double the step.
+    pub fn may_double(&self) -> bool {
+        self.rung + 1 < self.corrections.len()
+    }
+
     /// Doubles the step, and says whether it did: where that was planned, and enough of the past is known.
     pub fn lengthen(&mut self) -> bool {
-        let longer = self.rung + 1 < self.corrections.len() && self.known == KEPT;
+        let longer = self.may_double() && self.known == KEPT;
         if longer {
             (self.rung, self.known) = (self.rung + 1, PAST);
             for known in &mut self.past {

@@ -52,14 +52,17 @@ pub(super) fn overlap(radius: f64, road: &Road, wheel: &Wheel) -> Overlap {
 /// On one straight piece of road the deflection is seen without a detour over the area.
 #[inline(always)]
 fn straight(tyre: &Tyre, wheel: &Wheel, line: &Line) -> Option<Touch> {
-    let clip = line.clip()?;
-    let (from, to) = (line.at(clip.from), line.at(clip.to));
-    let mut sweeps = Sweeps::new(tyre.radius, wheel.velocity);
-    let parts = sweeps.across(from, to).unwrap_or_else(|| {
-        sweeps.add(from, to);
-        sweeps.finish().map(Part::from)
-    });
-    Some(with_rates(tyre, tyre.radius - line.distance, line.frame().1, parts))
+    let (chord, is_inside) = line.chord();
+    let sweeps = Sweeps::new(tyre.radius, wheel.velocity);
+    let (mut parts, is_across) = sweeps.across(line.at(chord.from), line.at(chord.to));
+    if !(is_inside && is_across) {
+        let clip = line.clip()?;
+        let mut sweeps = sweeps;
+        sweeps.add(line.at(clip.from), line.at(clip.to));
+        parts = sweeps.finish().map(Part::from);
+    }
+    let deflection = tyre.radius - line.distance;
+    Some(with_rates(tyre.rate(deflection), deflection, line.frame().1, parts))
 }
 
 #[inline(never)]
@@ -69,12 +72,16 @@ fn general(tyre: &Tyre, overlap: &Overlap) -> Option<Touch> {
     }
     let deflection = tyre.deflection(overlap.area);
     let parts = [overlap.growth, overlap.shrinkage].map(Part::from);
-    Some(with_rates(tyre, deflection, against(overlap.moment), parts))
+    Some(with_rates(
+        tyre.rate(deflection),
+        deflection,
+        against(overlap.moment),
+        parts,
+    ))
 }
 
-#[inline]
-fn with_rates(tyre: &Tyre, deflection: f64, direction: [f64; 2], parts: [Part; 2]) -> Touch {
-    let rate = tyre.rate(deflection);
+#[inline(always)]
+pub(super) fn with_rates(rate: f64, deflection: f64, direction: [f64; 2], parts: [Part; 2]) -> Touch {
     let [growth, shrinkage] = parts.map(|Part { flux, direction }| Change {
         rate: flux * rate,
         direction,

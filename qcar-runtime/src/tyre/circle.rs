@@ -24,19 +24,24 @@ pub(super) fn angles<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> [f64; 
     }
 }
 
-/// The unit vectors along `[θ - sin θ cos θ, sin² θ]`, where all arcs are short.
-#[inline]
-pub(super) fn swept_directions<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> Option<[[f64; 2]; N]> {
-    let y = short_arcs(cosine)?;
-    Some(array::from_fn(|i| {
-        [sine[i] * value(&FORWARD, y[i]), value(&DOWN, y[i])]
-    }))
+/// The unit vectors along `[θ - sin θ cos θ, sin² θ]`, and whether all arcs are short; else they mean nothing.
+#[inline(always)]
+pub(super) fn swept_directions<const N: usize>(sine: [f64; N], cosine: [f64; N]) -> ([[f64; 2]; N], bool) {
+    let y = cosine.map(half_squared_sine);
+    let directions = array::from_fn(|i| [sine[i] * value(&FORWARD, y[i]), value(&DOWN, y[i])]);
+    (directions, y.iter().fold(true, |short, y| short & (*y < SHORT_ARC)))
 }
 
-/// `sin² θ/2`, where it is small for all.
+/// `sin² θ/2`.
+#[inline(always)]
+fn half_squared_sine(cosine: f64) -> f64 {
+    0.5 * (1.0 - cosine)
+}
+
+/// The same of several, where it is small for all.
 #[inline]
 fn short_arcs<const N: usize>(cosine: [f64; N]) -> Option<[f64; N]> {
-    let y = cosine.map(|cosine| 0.5 * (1.0 - cosine));
+    let y = cosine.map(half_squared_sine);
     y.iter().all(|y| *y < SHORT_ARC).then_some(y)
 }
 

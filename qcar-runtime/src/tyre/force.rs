@@ -13,17 +13,31 @@ impl Touch {
     ///   than the spring pushes. So the total never pulls against the direction of the contact.
     #[inline(always)]
     pub fn force(&self, law: impl Fn(f64, f64) -> f64) -> Contact {
+        self.pushing(self.strains().map(|[s, v]| law(s, v)))
+    }
+
+    /// Stretches and rates at which the law is asked: at rest, growing and shrinking.
+    #[inline(always)]
+    pub(crate) fn strains(&self) -> [[f64; 2]; 3] {
         let s = -self.deflection;
-        let at_rest = law(s, 0.0);
+        [[s, 0.0], [s, -self.growth.rate], [s, self.shrinkage.rate]]
+    }
+
+    /// [`Touch::force`] by what the law says of these.
+    #[inline(always)]
+    pub(crate) fn pushing(&self, [at_rest, growing, shrinking]: [f64; 3]) -> Contact {
         let spring = (-at_rest).max(0.0);
-        let growth = (at_rest - law(s, -self.growth.rate)).max(0.0);
-        let shrinkage = (law(s, self.shrinkage.rate) - at_rest).clamp(0.0, spring);
+        let growth = (at_rest - growing).max(0.0);
+        // As `clamp` has it, which would ask at every turn of a loop whether the ends are in order.
+        let less = shrinking - at_rest;
+        let less = if less < 0.0 { 0.0 } else { less };
+        let shrinkage = if less > spring { spring } else { less };
         let along = |axis: usize| {
             spring * self.direction[axis] + growth * self.growth.direction[axis]
                 - shrinkage * self.shrinkage.direction[axis]
         };
         Contact {
-            s,
+            s: -self.deflection,
             v: self.shrinkage.rate - self.growth.rate,
             force: [along(1), along(0)],
         }

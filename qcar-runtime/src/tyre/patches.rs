@@ -105,7 +105,7 @@ impl Patch {
 }
 
 impl Line {
-    #[inline]
+    #[inline(always)]
     pub fn new(segment: &Segment, circle: &Circle) -> Self {
         let [ax, az] = segment.along;
         let origin = [
@@ -146,8 +146,22 @@ impl Line {
         })
     }
 
+    /// The part of the line inside the circle, and whether there is one that is inside the piece.
+    #[inline(always)]
+    pub fn chord(&self) -> (Clip, bool) {
+        let half = self.half_chord_squared.sqrt();
+        let clip = Clip {
+            from: self.foot - half,
+            to: self.foot + half,
+        };
+        let outside = |place: f64| (place - self.foot) * (place - self.foot) >= self.half_chord_squared;
+        let is_between = (self.start < self.foot) & (self.foot < self.end);
+        let is_inside = (self.half_chord_squared > 0.0) & is_between & outside(self.start) & outside(self.end);
+        (clip, is_inside)
+    }
+
     /// A point of the line, relative to the centre.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, place: f64) -> [f64; 2] {
         [
             self.origin[0] + place * self.along[0],
@@ -156,7 +170,7 @@ impl Line {
     }
 
     /// The unit vectors along the line and across it, up from the ground.
-    #[inline]
+    #[inline(always)]
     pub fn frame(&self) -> ([f64; 2], [f64; 2]) {
         (self.along, [-self.along[1], self.along[0]])
     }

@@ -24,7 +24,7 @@ const TILT: Series = tilt();
 /// The value of a series at `x`.
 ///
 /// Four coefficients at a time, so that the processor works on several while the sum waits for the last.
-#[inline]
+#[inline(always)]
 pub(super) fn value(series: &Series, x: f64) -> f64 {
     let (x2, x4) = (x * x, x * x * x * x);
     let four = |c: &[f64]| (c[0] + c[1] * x) + (c[2] + c[3] * x) * x2;

@@ -51,24 +51,31 @@ struct Rim {
 }
 
 impl Sweeps {
-    #[inline]
+    #[inline(always)]
     pub fn new(radius: f64, velocity: [f64; 2]) -> Self {
         let speed = dot(velocity, velocity).sqrt().copysign(velocity[0]);
         // A wheel at rest sweeps nothing, wherever its arcs are split.
-        let along = if speed != 0.0 {
-            [velocity[0] / speed, velocity[1] / speed]
-        } else {
-            [1.0, 0.0]
-        };
-        let per_radius = 1.0 / radius;
+        let direction = |axis: usize, at_rest: f64| if speed != 0.0 { velocity[axis] / speed } else { at_rest };
+        Self::turning(radius, speed, [direction(0, 1.0), direction(1, 0.0)])
+    }
+
+    /// Of a circle that moves along itself at its turning point with a speed in a direction.
+    #[inline(always)]
+    pub fn turning(radius: f64, speed: f64, along: [f64; 2]) -> Self {
         Self {
             radius,
-            per_radius,
+            per_radius: 1.0 / radius,
             speed,
             along,
             ahead: Sweep::default(),
             behind: Sweep::default(),
         }
+    }
+
+    /// Speed and direction along the circle at its turning point.
+    #[inline(always)]
+    pub fn turn(&self) -> (f64, [f64; 2]) {
+        (self.speed, self.along)
     }
 
     /// Adds the lower arc between two points of the circle, from the rear to the front, and says which angle it spans.
@@ -89,20 +96,26 @@ impl Sweeps {
         to.angle - from.angle
     }
 
-    /// Growth and shrinkage of a single short arc that goes across the turning point; none for any other.
+    /// Growth and shrinkage of a single arc, and whether it is short and goes across the turning point; of any other they
+    /// mean nothing.
     #[inline(always)]
-    pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> Option<[Part; 2]> {
-        let (sine, cosine) = self.places([from, to]);
-        if !(sine[0] < 0.0 && 0.0 < sine[1]) {
-            return None;
-        }
+    pub fn across(&self, from: [f64; 2], to: [f64; 2]) -> ([Part; 2], bool) {
+        self.between(self.places([from, to]))
+    }
+
+    /// The same between sines and cosines.
+    #[inline(always)]
+    pub fn between(&self, (sine, cosine): ([f64; 2], [f64; 2])) -> ([Part; 2], bool) {
         let up = [-self.along[1], self.along[0]];
-        let directions = swept_directions(sine, cosine)?;
+        let (directions, are_short) = swept_directions(sine, cosine);
         let [behind, ahead] = array::from_fn(|i| Part {
             flux: self.radius * self.speed.abs() * (1.0 - cosine[i]),
             direction: combined([-directions[i][0], directions[i][1]], self.along, up),
         });
-        Some(self.growth_first(ahead, behind))
+        let is_across = (sine[0] < 0.0) & (0.0 < sine[1]) & are_short;
+        let forward = self.speed > 0.0;
+        let parts = [ahead.or(behind, !forward), behind.or(ahead, !forward)];
+        (parts, is_across)
     }
 
     /// Growth and shrinkage of all arcs.
@@ -118,7 +131,7 @@ impl Sweeps {
     }
 
     /// What is ahead of the turning point grows where the wheel rolls to the front.
-    #[inline]
+    #[inline(always)]
     fn growth_first<T>(&self, ahead: T, behind: T) -> [T; 2] {
         if self.speed > 0.0 {
             [ahead, behind]
@@ -142,8 +155,8 @@ impl Sweeps {
     }
 
     /// Sines and cosines of the angles of two points of the circle.
-    #[inline]
-    fn places(&self, points: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
+    #[inline(always)]
+    pub fn places(&self, points: [[f64; 2]; 2]) -> ([f64; 2], [f64; 2]) {
         let [along, down] = [self.along, [self.along[1], -self.along[0]]].map(|v| v.map(|v| v * self.per_radius));
         (
             points.map(|point| dot(point, along)),
@@ -161,6 +174,18 @@ impl Sweep {
                 self.moment[0] + times * other.moment[0],
                 self.moment[1] + times * other.moment[1],
             ],
+        }
+    }
+}
+
+impl Part {
+    /// This one, or another where that is wanted: number by number, so that lanes may choose apart.
+    #[inline(always)]
+    fn or(self, other: Self, wanted: bool) -> Self {
+        let choose = |own: f64, other: f64| if wanted { other } else { own };
+        Self {
+            flux: choose(self.flux, other.flux),
+            direction: array::from_fn(|axis| choose(self.direction[axis], other.direction[axis])),
         }
     }
 }

@@ -144,7 +144,11 @@ pub(crate) fn gather(
         global: None,
     };
     if let Some((plan, spread)) = asked.global {
-        let relative = |values: &Values| Some(means(&ground.measure(values).ok()?, &local.values, &sizes));
+        let relative = |designs: &[Values]| {
+            let measured = ground.measure_all(designs).into_iter();
+            let own = measured.map(|values| Some(means(&values.ok()?, &local.values, &sizes)));
+            own.collect::<Vec<_>>()
+        };
         let own = drawn(subject, asked, (plan, spread), told, relative);
         add(&mut found, &own, spread);
     }
@@ -237,15 +241,18 @@ fn drawn(
     asked: &Asked<'_>,
     (plan, spread): (Plan, f64),
     told: Told<'_>,
-    relative: impl Fn(&Values) -> Option<Vec<f64>> + Sync + Send,
+    relative: impl Fn(&[Values]) -> Vec<Option<Vec<f64>>> + Sync + Send,
 ) -> Indices {
-    indices(asked.parameters.len(), plan, told, |u| {
+    let design = |u: &Vec<f64>| {
         let mut values = subject.values.clone();
         for (&parameter, u) in asked.parameters.iter().zip(u) {
             let own = subject.values.as_slice()[parameter];
             values.set(parameter, own * (1.0 + spread * (2.0 * u - 1.0)));
         }
-        relative(&values)
+        values
+    };
+    indices(asked.parameters.len(), plan, told, |designs| {
+        relative(&designs.iter().map(design).collect::<Vec<_>>())
     })
 }
 

@@ -31,7 +31,14 @@ pub fn functions(compiled: &Compiled) -> Vec<String> {
 }
 
 /// The functions that are there for several parameter sets at once, too.
-const SETS: [&str; 4] = ["prepare", "derivative", "matrices", "sensitivities"];
+const SETS: [&str; 6] = [
+    "prepare",
+    "derivative",
+    "matrices",
+    "sensitivities",
+    "contact_force",
+    "rolling_derivative",
+];
 
 fn of_sets(function: Function) -> Function {
     Function {
@@ -64,6 +71,8 @@ fn kind(argument: &str, width: Width) -> &'static str {
         ("constants", Width::Sets) => "&[[f64; LINES]; CONSTANTS]",
         ("x", Width::Sets) => "&[[f64; LINES]; STATES]",
         ("u", Width::Sets) => "&[[f64; LINES]; INPUTS]",
+        ("s" | "v", Width::Sets) => "&[f64; LINES]",
+        ("contact", Width::Sets) => "&seam::Contacts",
         ("p", _) => "&[f64; PARAMETERS]",
         ("constants", _) => "&[f64; CONSTANTS]",
         ("x", _) => "&[f64; STATES]",

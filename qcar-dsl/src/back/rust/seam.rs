@@ -103,22 +103,36 @@ impl Block<{rows}> for {name}<'_> {{
         .collect()
 }
 
+const PARAMETERS: &str = "[seam::Lanes; PARAMETERS]";
+const CONSTANTS: &str = "[seam::Lanes; CONSTANTS]";
+const STATES: &str = "[seam::Lanes; STATES]";
+const INPUTS: &str = "[seam::Lanes; INPUTS]";
+
 /// The functions of several parameter sets, of which the runtime compiles each once for each instruction set.
 pub fn sets(about: &About) -> String {
-    let functions: [(&str, &[&str], usize); 4] = [
-        ("prepare", &["PARAMETERS"], about.constants),
-        ("derivative", &["CONSTANTS", "STATES", "INPUTS"], about.states.len()),
-        ("matrices", &["PARAMETERS", "STATES", "INPUTS"], about.matrices.len()),
+    let of_model: [(&str, &[&str], usize); 4] = [
+        ("prepare", &[PARAMETERS], about.constants),
+        ("derivative", &[CONSTANTS, STATES, INPUTS], about.states.len()),
+        ("matrices", &[PARAMETERS, STATES, INPUTS], about.matrices.len()),
         (
             "sensitivities",
-            &["PARAMETERS", "STATES", "INPUTS"],
+            &[PARAMETERS, STATES, INPUTS],
             about.sensitivities.len(),
         ),
     ];
-    let written = functions.iter().map(|(function, sizes, rows)| {
-        let fields = sizes.iter().map(|size| format!("&'a [seam::Lanes; {size}]"));
-        let fields: Vec<String> = fields.collect();
-        let arguments: Vec<String> = (0..sizes.len()).map(|place| format!("self.{place}")).collect();
+    let of_contact: [(&str, &[&str], usize); 2] = [
+        ("contact_force", &[CONSTANTS, STATES, "seam::Lanes", "seam::Lanes"], 1),
+        (
+            "rolling_derivative",
+            &[CONSTANTS, STATES, INPUTS, "seam::Contacts"],
+            about.states.len(),
+        ),
+    ];
+    let rolls = about.contact.is_some();
+    let functions = of_model.iter().chain(of_contact.iter().filter(|_| rolls));
+    let written = functions.map(|(function, types, rows)| {
+        let fields: Vec<String> = types.iter().map(|own| format!("&'a {own}")).collect();
+        let arguments: Vec<String> = (0..types.len()).map(|place| format!("self.{place}")).collect();
         format!(
             "
 struct {name}<'a>({fields});
@@ -171,5 +185,22 @@ const ROLLING: &str = "
 
     fn rolling_outputs(&self, constants: &[f64], x: &[f64], u: &[f64], contact: &seam::Contact, y: &mut [f64]) {
         straight::rolling_outputs(fixed(constants), fixed(x), fixed(u), contact, fixed_mut(y));
+    }
+
+    fn contact_force_sets(&self, constants: &[seam::Lanes], x: &[seam::Lanes], s: &seam::Lanes, v: &seam::Lanes) -> seam::Lanes {
+        let mut force = [[0.0; LINES]];
+        together(&ContactForceSets(fixed(constants), fixed(x), s, v), &mut force);
+        force[0]
+    }
+
+    fn rolling_derivative_sets(
+        &self,
+        constants: &[seam::Lanes],
+        x: &[seam::Lanes],
+        u: &[seam::Lanes],
+        contacts: &seam::Contacts,
+        dx: &mut [seam::Lanes],
+    ) {
+        together(&RollingDerivativeSets(fixed(constants), fixed(x), fixed(u), contacts), dx);
     }
 ";

@@ -1,0 +1,234 @@
+//! Rides abreast: the general method takes each from bend to bend by itself, and wherever their tyres' forces are smooth, several
+//! go on in step. The bits are those of each ride alone, whichever others are beside it.
+
+use std::iter::Enumerate;
+use std::slice;
+
+use super::car::Car;
+use super::failure::SimulateError;
+use super::formation::Formation;
+use super::recorder::Kept;
+use super::ride::{Drive, Journey, Ride};
+use super::settings::Settings;
+use crate::model::{LANES, Model};
+
+/// Parameters of a car, and what it is driven over.
+pub type Ridden<'a> = (&'a [f64], Drive<'a>);
+
+/// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done` hears of each by
+/// its number as soon as it is over. Of a ride all signals are empty but those that are `kept`.
+///
+/// Each ride takes a lane as soon as one is free, so that memory does not grow with their number.
+pub fn rides_abreast<'a, M: Model + ?Sized>(
+    car: &Car<'a, M>,
+    rides: &[Ridden<'a>],
+    settings: &Settings,
+    kept: &Kept,
+    done: impl FnMut(usize, Result<Ride, SimulateError>),
+) {
+    let mut abreast = Abreast {
+        car,
+        settings,
+        kept,
+        done,
+        waiting: rides.iter().enumerate(),
+        rooms: Vec::new(),
+        formation: None,
+        lanes: [const { None }; LANES],
+    };
+    (0..LANES).for_each(|place| abreast.occupy(place, None));
+    while abreast.lanes.iter().any(Option::is_some) {
+        abreast.go_on();
+    }
+}
+
+struct Abreast<'r, 'a, M: ?Sized, D> {
+    car: &'r Car<'a, M>,
+    settings: &'r Settings,
+    kept: &'r Kept,
+    done: D,
+    waiting: Enumerate<slice::Iter<'r, Ridden<'a>>>,
+    /// For the records of rides to come.
+    rooms: Vec<Vec<f64>>,
+    formation: Option<Formation<'a, M>>,
+    lanes: [Option<Lane<'a, M>>; LANES],
+}
+
+/// A ride, by its number.
+type Numbered<'a, M> = (usize, Journey<'a, M>);
+
+/// A ride in the formation.
+struct Lane<'a, M: ?Sized> {
+    ride: Numbered<'a, M>,
+    /// So many steps may still be attempted.
+    left: usize,
+}
+
+/// So few go on alone once no others wait: a step of the formation takes as long for one as for eight.
+const FEW: usize = 1;
+
+impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreast<'_, 'a, M, D> {
+    /// Brings a ride, or else the next that comes so far, to where its tyre's force is smooth, and there into a lane.
+    fn occupy(&mut self, place: usize, mut coming: Option<Numbered<'a, M>>) {
+        while let Some((number, mut journey)) = coming.take().or_else(|| self.next()) {
+            match journey.advance() {
+                Err(error) => (self.done)(number, Err(error)),
+                Ok(false) => {
+                    let (ride, room) = journey.ride();
+                    self.rooms.push(room);
+                    (self.done)(number, Ok(ride));
+                }
+                Ok(true) if self.joins(place, &mut journey) => {
+                    let left = journey.steps_left();
+                    let ride = (number, journey);
+                    self.lanes[place] = Some(Lane { ride, left });
+                    return;
+                }
+                Ok(true) => {
+                    journey.go_on();
+                    coming = Some((number, journey));
+                }
+            }
+        }
+    }
+
+    /// The next ride that can begin.
+    fn next(&mut self) -> Option<Numbered<'a, M>> {
+        loop {
+            let (number, (parameters, drive)) = self.waiting.next()?;
+            let car = Car {
+                parameters,
+                ..*self.car
+            };
+            let room = self.rooms.pop().unwrap_or_default();
+            match Journey::new(&car, drive, self.settings, |grid| (grid, room), self.kept) {
+                Ok(journey) => return Some((number, journey)),
+                Err(error) => (self.done)(number, Err(error)),
+            }
+        }
+    }
+
+    /// Puts a ride into a lane of the formation, if it is like the others there.
+    fn joins(&mut self, place: usize, journey: &mut Journey<'a, M>) -> bool {
+        let Some((shortcut, rolling)) = journey.recorder.shortcut() else {
+            return false;
+        };
+        let formation = self.formation.get_or_insert_with(|| Formation::like(shortcut, rolling));
+        let fits = formation.fits(shortcut, rolling);
+        if fits {
+            formation.take(place, shortcut, rolling);
+        }
+        fits
+    }
+
+    /// Steps until a ride has to leave the formation, and brings others into its place.
+    fn go_on(&mut self) {
+        let formation = self.formation.as_mut().expect("a ride is in it");
+        let leaving = loop {
+            let leaving = step(formation, &mut self.lanes);
+            if leaving.contains(&true) {
+                break leaving;
+            }
+        };
+        for place in (0..LANES).filter(|&place| leaving[place]) {
+            if let Some(ride) = self.leave(place) {
+                self.occupy(place, Some(ride));
+            }
+        }
+        let riding = self.lanes.iter().flatten().count();
+        if self.waiting.len() == 0 && riding <= FEW {
+            self.disband();
+        }
+    }
+
+    /// Takes a ride out of its lane: its recorder hands it back where it is.
+    fn leave(&mut self, place: usize) -> Option<Numbered<'a, M>> {
+        let (number, mut journey) = self.lanes[place].take()?.ride;
+        let (shortcut, _) = journey.recorder.shortcut()?;
+        self.formation.as_mut()?.give(place, shortcut, &mut journey.x);
+        let ended = shortcut.end();
+        journey.hand_back(ended);
+        Some((number, journey))
+    }
+
+    /// Lets all go on alone to the end.
+    fn disband(&mut self) {
+        for place in 0..LANES {
+            let Some(Lane {
+                ride: (number, mut journey),
+                ..
+            }) = self.lanes[place].take()
+            else {
+                continue;
+            };
+            if let (Some(formation), Some((shortcut, _))) = (&mut self.formation, journey.recorder.shortcut()) {
+                formation.give(place, shortcut, &mut journey.x);
+            }
+            journey.go_on();
+            let ended = journey.to_end();
+            (self.done)(number, ended.map(|()| journey.ride().0));
+        }
+    }
+}
+
+/// A step of all rides in a formation: which of them have to leave it.
+fn step<M: Model + ?Sized>(
+    formation: &mut Formation<'_, M>,
+    lanes: &mut [Option<Lane<'_, M>>; LANES],
+) -> [bool; LANES] {
+    let mut leaving = [false; LANES];
+    for (place, lane) in lanes.iter_mut().enumerate() {
+        let Some(Lane {
+            ride: (_, journey),
+            left,
+        }) = lane
+        else {
+            continue;
+        };
+        let (shortcut, rolling) = journey.recorder.shortcut().expect("it has joined by one");
+        formation.lengthen(place, shortcut, rolling);
+        match shortcut.ahead() {
+            Some(time) if *left > 0 => formation.aim(place, time),
+            _ => leaving[place] = true,
+        }
+    }
+    if leaving.contains(&true) {
+        return leaving;
+    }
+    formation.foresee();
+    let mut smooth = [false; LANES];
+    for (place, lane) in lanes.iter_mut().enumerate() {
+        if let Some(Lane { ride: (_, journey), .. }) = lane {
+            let (shortcut, rolling) = journey.recorder.shortcut().expect("it has joined by one");
+            smooth[place] = formation.touch(place, rolling, shortcut.centre());
+        }
+    }
+    let good = formation.advance(smooth);
+    if lanes.iter().flatten().any(|lane| !lane.ride.1.recorder.asks()) {
+        formation.find_rates();
+    }
+    for (place, lane) in lanes.iter_mut().enumerate() {
+        if let Some(lane) = lane {
+            note(formation, place, lane, good[place]);
+            leaving[place] = !good[place];
+        }
+    }
+    leaving
+}
+
+/// Counts and records the step of a lane.
+#[inline]
+fn note<M: Model + ?Sized>(formation: &mut Formation<'_, M>, place: usize, lane: &mut Lane<'_, M>, good: bool) {
+    let recorder = &mut lane.ride.1.recorder;
+    let (shortcut, _) = recorder.shortcut().expect("it has joined by one");
+    shortcut.count(good.then(|| formation.centre(place)));
+    if good {
+        lane.left -= 1;
+        let (time, contact) = (formation.time(place), formation.contact(place));
+        if recorder.asks() {
+            recorder.record_step(time, formation.state(place), contact);
+        } else {
+            recorder.record_lane(time, (formation.rates(), place), contact);
+        }
+    }
+}

@@ -1,0 +1,225 @@
+//! Linear axles on smooth ground in step, a lane each: the exponential method, the contact and the equations of motion run over
+//! the lanes.
+//!
+//! Each lane has the bits of a [`Shortcut`] alone. Where a tyre is on more than one straight piece of road, its contact is found
+//! alone, too.
+
+use super::rolling::{Rolling, WheelStates};
+use super::shortcut::Shortcut;
+use crate::model::{Contact, Contacts, LANES, Lanes, Model};
+use crate::solver::ExponentialAbreast;
+use crate::tyre::{Pieces, Tyre, Wheels};
+use crate::vectors::{Loops, over_lanes};
+
+const NOTHING: Lanes = [0.0; LANES];
+
+/// The motions.
+pub(super) struct Formation<'a, M: ?Sized> {
+    model: &'a M,
+    tyre: Tyre,
+    method: ExponentialAbreast<2>,
+    relative: f64,
+    /// Where a step ends, s.
+    times: Lanes,
+    constants: Vec<Lanes>,
+    inputs: Vec<Lanes>,
+    /// m/s.
+    speeds: Lanes,
+    /// Of the wheels' centres in the design position, m.
+    heights: Lanes,
+    /// What moves the wheels beside the contact, N, in z and x.
+    offsets: [Lanes; 2],
+    wheel: WheelStates,
+    /// Places of states that do not move.
+    locked: Vec<usize>,
+    pieces: Pieces,
+    wheels: Wheels,
+    /// Which contacts are found already.
+    found: [bool; LANES],
+    contacts: Contacts,
+    /// The same with what else moves the wheels.
+    driven: Contacts,
+    rates: Vec<Lanes>,
+    /// Room for the state of one.
+    state: Vec<f64>,
+}
+
+impl<'a, M: Model + ?Sized> Formation<'a, M> {
+    /// With room for motions like this one.
+    pub fn like(shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> Self {
+        let (relative, absolute) = shortcut.tolerance();
+        let absolute = absolute.to_vec();
+        let (states, _) = rolling.sizes();
+        Self {
+            model: rolling.model,
+            tyre: rolling.tyre,
+            method: ExponentialAbreast::like(shortcut.method(), &absolute),
+            relative,
+            times: NOTHING,
+            constants: vec![NOTHING; rolling.constants.len()],
+            inputs: vec![NOTHING; rolling.inputs.len()],
+            speeds: NOTHING,
+            heights: NOTHING,
+            offsets: [NOTHING; 2],
+            wheel: rolling.wheel,
+            locked: rolling.locked.clone(),
+            pieces: Pieces::none(),
+            wheels: Wheels::none(),
+            found: [false; LANES],
+            contacts: Contacts::default(),
+            driven: Contacts::default(),
+            rates: vec![NOTHING; states],
+            state: vec![0.0; states],
+        }
+    }
+
+    /// True where a motion may join.
+    pub fn fits(&self, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> bool {
+        self.tyre == rolling.tyre && self.locked == rolling.locked && self.method.fits(shortcut.method())
+    }
+
+    /// Goes on in a lane where a shortcut has begun.
+    pub fn take(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) {
+        self.method.take(lane, shortcut.method());
+        let constants = self.constants.iter_mut().zip(&rolling.constants);
+        constants.for_each(|(row, constant)| row[lane] = *constant);
+        self.speeds[lane] = rolling.speed;
+        self.heights[lane] = rolling.height;
+        (self.offsets[0][lane], self.offsets[1][lane]) = (-rolling.load, rolling.traction);
+        self.pieces.put(lane, rolling.road, rolling.piece.get());
+    }
+
+    /// Gives a lane back, and its state.
+    pub fn give(&mut self, lane: usize, shortcut: &mut Shortcut, x: &mut [f64]) {
+        self.method.give(lane, shortcut.method());
+        x.copy_from_slice(shortcut.state());
+    }
+
+    /// Doubles the step of a lane where that is wanted and enough is known.
+    #[inline]
+    pub fn lengthen(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'_, M>) {
+        if shortcut.wants_longer(rolling) && self.method.may_lengthen(lane) {
+            self.method.give(lane, shortcut.method());
+            shortcut.lengthen();
+            self.method.take(lane, shortcut.method());
+        }
+    }
+
+    /// Sets when the step of a lane ends, s.
+    pub fn aim(&mut self, lane: usize, time: f64) {
+        self.times[lane] = time;
+    }
+
+    /// When the step of a lane ends, s.
+    pub fn time(&self, lane: usize) -> f64 {
+        self.times[lane]
+    }
+
+    /// Foresees all lanes at the ends of their steps.
+    pub fn foresee(&mut self) {
+        over_lanes(Foresight(self));
+    }
+
+    /// Where the wheel's centre of a lane is foreseen, m.
+    pub fn centre(&self, lane: usize) -> [f64; 2] {
+        self.wheels.position.map(|axis| axis[lane])
+    }
+
+    /// Finds the contact of a lane alone where that has to be, and says whether its force is smooth.
+    #[inline]
+    pub fn touch(&mut self, lane: usize, rolling: &Rolling<'_, M>, from: [f64; 2]) -> bool {
+        let smooth = !rolling.bends_between(from, self.centre(lane));
+        if !smooth || self.found[lane] {
+            return smooth;
+        }
+        let foreseen = self.state.iter_mut().zip(self.method.ahead());
+        foreseen.for_each(|(value, row)| *value = row[lane]);
+        let contact = rolling.contact_at(self.times[lane], &self.state);
+        self.contacts.set(lane, &contact.unwrap_or_default());
+        self.pieces.put(lane, rolling.road, rolling.piece.get());
+        contact.is_some()
+    }
+
+    /// Steps to where all were foreseen, and says which do. Those whose force is not smooth do not.
+    pub fn advance(&mut self, smooth: [bool; LANES]) -> [bool; LANES] {
+        over_lanes(Advance { of: self, smooth })
+    }
+
+    /// The contact of a lane.
+    pub fn contact(&self, lane: usize) -> Contact {
+        self.contacts.get(lane)
+    }
+
+    /// The rates of all states.
+    pub fn find_rates(&mut self) {
+        let (constants, state) = (&self.constants, self.method.state());
+        self.model
+            .rolling_derivative_sets(constants, state, &self.inputs, &self.driven, &mut self.rates);
+        for &place in &self.locked {
+            self.rates[place] = NOTHING;
+        }
+    }
+
+    /// Those that were found.
+    pub fn rates(&self) -> &[Lanes] {
+        &self.rates
+    }
+
+    /// The state of a lane.
+    pub fn state(&mut self, lane: usize) -> &[f64] {
+        let rows = self.state.iter_mut().zip(self.method.state());
+        rows.for_each(|(value, row)| *value = row[lane]);
+        &self.state
+    }
+}
+
+/// What is foreseen: states, wheels, and the contacts of those on one straight piece of road.
+struct Foresight<'f, 'a, M: ?Sized>(&'f mut Formation<'a, M>);
+
+impl<M: Model + ?Sized> Loops for Foresight<'_, '_, M> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(self) {
+        let of = self.0;
+        of.method.foresee();
+        let ahead = of.method.ahead();
+        let still = [NOTHING; 2];
+        let along = of.wheel.x.map_or(still, |places| places.map(|place| ahead[place]));
+        let up = of.wheel.z.map(|place| ahead[place]);
+        for lane in 0..LANES {
+            of.wheels.position[0][lane] = of.speeds[lane] * of.times[lane] + along[0][lane];
+            of.wheels.position[1][lane] = of.heights[lane] + up[0][lane];
+            of.wheels.velocity[0][lane] = of.speeds[lane] + along[1][lane];
+            of.wheels.velocity[1][lane] = up[1][lane];
+        }
+        let touches = of.tyre.touches(&of.pieces, &of.wheels);
+        of.found = touches.holds;
+        let (model, constants) = (of.model, &of.constants);
+        let law = |[s, v]: [Lanes; 2]| model.contact_force_sets(constants, ahead, &s, &v);
+        of.contacts = touches.pushing(&touches.strains().map(law));
+    }
+}
+
+/// A step under the contacts that were found.
+struct Advance<'f, 'a, M: ?Sized> {
+    of: &'f mut Formation<'a, M>,
+    smooth: [bool; LANES],
+}
+
+impl<M: Model + ?Sized> Loops for Advance<'_, '_, M> {
+    type Result = [bool; LANES];
+
+    #[inline(always)]
+    fn run(self) -> [bool; LANES] {
+        let of = self.of;
+        of.driven = of.contacts;
+        for (force, offset) in of.driven.force.iter_mut().zip(&of.offsets) {
+            for lane in 0..LANES {
+                let driven = force[lane] + offset[lane];
+                force[lane] = if self.smooth[lane] { driven } else { f64::NAN };
+            }
+        }
+        of.method.advance(&of.driven.force, of.relative)
+    }
+}

@@ -1,0 +1,223 @@
+//! The method for several systems abreast, a lane each: all loops run over the lanes.
+//!
+//! Each lane has the bits of [`ExponentialAdams`], whatever the others do.
+
+use std::array;
+
+use super::{ExponentialAdams, KEPT};
+use crate::model::{LANES, Lanes};
+use crate::solver::polynomial::{EXTRAPOLATION, PAST};
+
+/// The integrator of systems whose states and forces depend on each other in the same places.
+pub struct ExponentialAbreast<const F: usize> {
+    parts: Vec<Part>,
+    /// For each force how each state is corrected, and how much of that is the error that is judged.
+    whole: [Vec<Lanes>; F],
+    last_order: [Vec<Lanes>; F],
+    state: Vec<Lanes>,
+    /// The states a step before, and whether that step stands.
+    before: Vec<Lanes>,
+    stands: [bool; LANES],
+    ahead: Vec<Lanes>,
+    /// For each state: how much of its error is tolerated whatever its size, by how much the error is more than allowed, and of
+    /// each force how much of it was not foreseen. Loops over all lanes of all states need no others.
+    absolute: Vec<Lanes>,
+    excess: Vec<Lanes>,
+    off: [Vec<Lanes>; F],
+    /// Each force at the points of the past, the last first.
+    past: [[Lanes; KEPT]; F],
+    /// At so many points they are known.
+    known: [usize; LANES],
+}
+
+/// States that do not depend on any others, and the forces that drive them.
+struct Part {
+    states: Vec<usize>,
+    forces: Vec<usize>,
+    /// For each state what its next value is of each entry of `from`.
+    propagator: Vec<Lanes>,
+    from: Vec<Lanes>,
+}
+
+impl<const F: usize> ExponentialAbreast<F> {
+    /// With room for systems like this one, of whose states so much error is tolerated; all lanes are free.
+    pub fn like(one: &ExponentialAdams<F>, absolute: &[f64]) -> Self {
+        const NOTHING: Lanes = [0.0; LANES];
+        let states = || vec![NOTHING; one.state.len()];
+        let part = |part: &super::Part| Part {
+            states: part.states.clone(),
+            forces: part.forces.clone(),
+            propagator: vec![NOTHING; part.states.len() * part.from.len()],
+            from: vec![NOTHING; part.from.len()],
+        };
+        Self {
+            parts: one.parts.iter().map(part).collect(),
+            whole: array::from_fn(|_| states()),
+            last_order: array::from_fn(|_| states()),
+            state: states(),
+            before: states(),
+            stands: [true; LANES],
+            ahead: states(),
+            absolute: absolute.iter().map(|value| [*value; LANES]).collect(),
+            excess: states(),
+            off: array::from_fn(|_| states()),
+            past: [[NOTHING; KEPT]; F],
+            known: [0; LANES],
+        }
+    }
+
+    /// True where a system has its states and forces in the same places.
+    pub fn fits(&self, one: &ExponentialAdams<F>) -> bool {
+        let places = self.parts.iter().map(|part| (&part.states, &part.forces));
+        places.eq(one.parts.iter().map(|part| (&part.states, &part.forces)))
+    }
+
+    /// Goes on in a lane from where a system is.
+    pub fn take(&mut self, lane: usize, one: &ExponentialAdams<F>) {
+        let put = |rows: &mut [Lanes], values: &[f64]| {
+            rows.iter_mut().zip(values).for_each(|(row, value)| row[lane] = *value);
+        };
+        for (part, own) in self.parts.iter_mut().zip(&one.parts) {
+            let (columns, blocks) = (part.from.len(), &own.propagators[one.rung]);
+            put(&mut part.from, &own.from);
+            for (row, entries) in part.propagator.chunks_exact_mut(columns).enumerate() {
+                let block = &blocks[row / 4 * columns..][..columns];
+                let column = entries.iter_mut().zip(block);
+                column.for_each(|(entry, rows)| entry[lane] = rows[row % 4]);
+            }
+        }
+        let corrections = &one.corrections[one.rung];
+        for force in 0..F {
+            put(&mut self.whole[force], &corrections.whole[force]);
+            put(&mut self.last_order[force], &corrections.last_order[force]);
+            put(&mut self.past[force], &one.past[force]);
+        }
+        put(&mut self.state, &one.state);
+        self.stands[lane] = true;
+        self.known[lane] = one.known;
+    }
+
+    /// Gives a lane back to its system: where it is, and what forces were there before. The lane is free.
+    pub fn give(&mut self, lane: usize, one: &mut ExponentialAdams<F>) {
+        let get = |values: &mut [f64], rows: &[Lanes]| {
+            values.iter_mut().zip(rows).for_each(|(value, row)| *value = row[lane]);
+        };
+        get(
+            &mut one.state,
+            if self.stands[lane] { &self.state } else { &self.before },
+        );
+        for (past, own) in one.past.iter_mut().zip(&self.past) {
+            get(past, own);
+        }
+        one.known = self.known[lane];
+        for (part, own) in self.parts.iter_mut().zip(&mut one.parts) {
+            get(&mut own.from, &part.from);
+            // What nobody drives any more would decay to numbers that are slow to compute with.
+            part.from.iter_mut().for_each(|entry| entry[lane] = 0.0);
+        }
+    }
+
+    /// True where enough of the past is known in a lane for a step of twice the length.
+    pub fn may_lengthen(&self, lane: usize) -> bool {
+        self.known[lane] == KEPT
+    }
+
+    /// Foresees the next states.
+    #[inline(always)]
+    pub fn foresee(&mut self) {
+        for part in &self.parts {
+            let factors = part.from.as_chunks::<4>().0;
+            let rows = part.propagator.chunks_exact(part.from.len());
+            for (row, &place) in rows.zip(&part.states) {
+                // Four sums, as in one system alone.
+                let mut sums = [[0.0; LANES]; 4];
+                for (entries, factors) in row.as_chunks::<4>().0.iter().zip(factors) {
+                    for k in 0..4 {
+                        for lane in 0..LANES {
+                            sums[k][lane] += entries[k][lane] * factors[k][lane];
+                        }
+                    }
+                }
+                for lane in 0..LANES {
+                    self.ahead[place][lane] = (sums[0][lane] + sums[1][lane]) + (sums[2][lane] + sums[3][lane]);
+                }
+            }
+        }
+    }
+
+    /// The next states, as they are foreseen.
+    pub fn ahead(&self) -> &[Lanes] {
+        &self.ahead
+    }
+
+    /// The states.
+    pub fn state(&self) -> &[Lanes] {
+        &self.state
+    }
+
+    /// Steps to where the states were foreseen, with the forces as they are there, and says which lanes did: where the error
+    /// is more than `relative` of a state and what is tolerated besides, the lane is to be given back, as it was.
+    #[inline(always)]
+    pub fn advance(&mut self, force: &[Lanes; F], relative: f64) -> [bool; LANES] {
+        for ((rows, force), past) in self.off.iter_mut().zip(force).zip(&self.past) {
+            let mut off = *force;
+            for lane in 0..LANES {
+                let term = |point: usize| EXTRAPOLATION[point] * past[point][lane];
+                off[lane] -= (1..PAST).fold(term(0), |sum, point| sum + term(point));
+            }
+            rows.fill(off);
+        }
+        self.stands = self.are_within(relative);
+        self.go_on(force);
+        self.stands
+    }
+
+    #[inline(always)]
+    fn are_within(&mut self, relative: f64) -> [bool; LANES] {
+        let excess = self.excess.as_flattened_mut();
+        let n = excess.len();
+        let (ahead, absolute) = (&self.ahead.as_flattened()[..n], &self.absolute.as_flattened()[..n]);
+        let errors = self.last_order.each_ref().map(|error| &error.as_flattened()[..n]);
+        let off = self.off.each_ref().map(|off| &off.as_flattened()[..n]);
+        for i in 0..n {
+            let error = (0..F).fold(0.0, |sum, f| sum + errors[f][i] * off[f][i]);
+            excess[i] = error.abs() - (absolute[i] + relative * ahead[i].abs());
+        }
+        let mut within = [0.0; LANES];
+        for excess in &self.excess {
+            for lane in 0..LANES {
+                within[lane] += if excess[lane] <= 0.0 { 1.0 } else { 0.0 };
+            }
+        }
+        within.map(|within| within == self.excess.len() as f64)
+    }
+
+    #[inline(always)]
+    fn go_on(&mut self, force: &[Lanes; F]) {
+        std::mem::swap(&mut self.state, &mut self.before);
+        let state = self.state.as_flattened_mut();
+        let n = state.len();
+        let ahead = &self.ahead.as_flattened()[..n];
+        let corrections = self.whole.each_ref().map(|correction| &correction.as_flattened()[..n]);
+        let off = self.off.each_ref().map(|off| &off.as_flattened()[..n]);
+        for i in 0..n {
+            state[i] = (0..F).fold(ahead[i], |sum, f| sum + corrections[f][i] * off[f][i]);
+        }
+        for (past, force) in self.past.iter_mut().zip(force) {
+            past.copy_within(..KEPT - 1, 1);
+            past[0] = *force;
+        }
+        self.known = self.known.map(|known| KEPT.min(known + 1));
+        for part in &mut self.parts {
+            let (states, forces) = part.from.split_at_mut(part.states.len());
+            for (from, &place) in states.iter_mut().zip(&part.states) {
+                *from = self.ahead[place];
+            }
+            let places = forces.as_chunks_mut::<{ PAST + 1 }>().0;
+            for (places, &force) in places.iter_mut().zip(&part.forces) {
+                places[..PAST].copy_from_slice(&self.past[force][..PAST]);
+                places[PAST] = self.off[force][0];
+            }
+        }
+    }
+}
