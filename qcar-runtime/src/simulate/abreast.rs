@@ -165,7 +165,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
                 formation.give(place, shortcut, &mut journey.x);
             }
             journey.go_on();
-            let ended = journey.to_end();
+            let ended = journey.finish();
             (self.done)(number, ended.map(|()| journey.ride().0));
         }
     }

@@ -76,7 +76,7 @@ pub fn ride<M: Model + ?Sized>(
 ) -> Result<Ride, SimulateError> {
     let kept = Kept::all(car.model.about());
     let mut journey = Journey::new(car, drive, settings, |grid| (grid, Vec::new()), &kept)?;
-    journey.to_end()?;
+    journey.finish()?;
     Ok(journey.ride().0)
 }
 
@@ -92,7 +92,7 @@ pub fn end_of_ride<M: Model + ?Sized>(
     let kept = Kept::all(car.model.about());
     let unrecorded = |grid: Grid| (grid.without_points(), Vec::new());
     let mut journey = Journey::new(car, drive, settings, unrecorded, &kept)?;
-    journey.to_end()?;
+    journey.finish()?;
     Ok((journey.x, journey.effort))
 }
 
@@ -183,7 +183,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
     ///
     /// # Errors
     /// Where the integration stops before.
-    pub fn to_end(&mut self) -> Result<(), SimulateError> {
+    pub fn finish(&mut self) -> Result<(), SimulateError> {
         while self.advance()? {
             self.go_on();
         }

@@ -1,8 +1,6 @@
 //! Contacts by area of several wheels, each on a straight piece of road of its own: loops over the lanes, with the bits that
 //! each wheel has alone.
 
-use std::array;
-
 use super::area::with_rates;
 use super::patches::Line;
 use super::sweep::Sweeps;
@@ -56,10 +54,12 @@ impl Pieces {
     /// Puts piece `k` of a road under a wheel.
     pub fn put(&mut self, lane: usize, road: &Road, k: usize) {
         let (segment, span) = (road.segment(k), road.span(k));
-        for axis in 0..2 {
-            self.origin[axis][lane] = segment.origin[axis];
-            self.along[axis][lane] = segment.along[axis];
-            self.span[axis][lane] = span[axis];
+        for (rows, own) in [
+            (&mut self.origin, segment.origin),
+            (&mut self.along, segment.along),
+            (&mut self.span, span),
+        ] {
+            rows.iter_mut().zip(own).for_each(|(row, own)| row[lane] = own);
         }
         (self.start[lane], self.end[lane]) = (segment.start, segment.end);
     }
@@ -232,7 +232,7 @@ impl Touches {
     pub fn pushing(&self, resisting: &[Lanes; 3]) -> Contacts {
         let mut contacts = Contacts::default();
         for lane in 0..LANES {
-            let own = self.get(lane).pushing(array::from_fn(|strain| resisting[strain][lane]));
+            let own = self.get(lane).pushing(resisting.map(|force| force[lane]));
             contacts.set(lane, &own);
         }
         contacts

@@ -132,14 +132,15 @@ impl<const F: usize> ExponentialAbreast<F> {
                 // Four sums, as in one system alone.
                 let mut sums = [[0.0; LANES]; 4];
                 for (entries, factors) in row.as_chunks::<4>().0.iter().zip(factors) {
-                    for k in 0..4 {
+                    for ((sum, entry), factor) in sums.iter_mut().zip(entries).zip(factors) {
                         for lane in 0..LANES {
-                            sums[k][lane] += entries[k][lane] * factors[k][lane];
+                            sum[lane] += entry[lane] * factor[lane];
                         }
                     }
                 }
-                for lane in 0..LANES {
-                    self.ahead[place][lane] = (sums[0][lane] + sums[1][lane]) + (sums[2][lane] + sums[3][lane]);
+                let [first, second, third, fourth] = sums;
+                for (lane, ahead) in self.ahead[place].iter_mut().enumerate() {
+                    *ahead = (first[lane] + second[lane]) + (third[lane] + fourth[lane]);
                 }
             }
         }
