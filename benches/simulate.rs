@@ -45,7 +45,7 @@ fn twelve_cleat_runs(bencher: Bencher<'_, '_>) {
 fn sets() -> Vec<Vec<f64>> {
     let (own, about) = (parameters(), AxleD.about());
     let changed = |set: usize| {
-        let values = own.as_slice().iter().zip(&about.parameters);
+        let values = own.as_slice().iter().zip(about.parameters.iter());
         let value = |(value, own): (&f64, &qcar_runtime::model::Parameter)| match own.known {
             true => *value,
             false => value * (1.0 + 0.003 * set as f64),

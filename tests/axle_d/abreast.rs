@@ -6,7 +6,7 @@ use qcar_runtime::road::{Class, Random, Road};
 use qcar_runtime::simulate::{Car, Drive, Kept, Ridden, Ride, Settings, SimulateError, Variant, ride, rides_abreast};
 use qcar_runtime::tyre::{Geometry, Rates, Tyre};
 
-use crate::cleat;
+use super::cleat;
 
 /// Of each ride, in the order of their numbers.
 fn abreast(
