@@ -557,7 +557,7 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
     assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
     let words = learned["laws"][0]["words"].as_str().expect("a sentence");
     assert!(
-        words.starts_with("over the travel it goes from 1 at rest to "),
+        words.starts_with("over the travel it changes from 1 at rest to "),
         "{words}"
     );
     // The effect file applies to the model of the campaign as any other does, and the model with it compiles.

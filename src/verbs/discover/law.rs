@@ -44,7 +44,7 @@ fn errors(of: &Finding) -> Errors {
 /// Puts the laws into the model of the bench; `None` where one does not apply there.
 pub(super) fn learned_model(mut bench: Bench, learned: &Learned) -> Option<LearnedModel> {
     let why = format!(
-        "Evidence: no effect of the catalogue explains the residuals; this law explains {:.0} % of it.",
+        "Evidence: no effect of the catalogue explains the residuals; this law explains {:.0} % of them.",
         100.0 * learned.explained
     );
     let mut laws = Vec::new();
