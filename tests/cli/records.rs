@@ -207,7 +207,7 @@ fn an_offset_is_told_and_counted_once() {
     assert!(
         answer["notices"]
             .to_string()
-            .contains("`f_offset` of the model stands for the offset"),
+            .contains("`f_offset` of the model is the offset of this sensor"),
         "{answer}"
     );
 }
@@ -332,7 +332,7 @@ fn bounds_and_spans_of_time_are_told_as_such() {
         succeeds(&["discover", path, "--out", out.to_str().unwrap()])
     };
     let said = bounded(2.99);
-    assert!(said.contains("c_body stands at the upper end of its range"), "{said}");
+    assert!(said.contains("c_body is at the upper end of its range"), "{said}");
     let file = fs::read_to_string(out.join("parameters.toml")).unwrap();
     let told = |line: &str| line.starts_with("c_body = 2.9") && line.ends_with(" # at the upper end of its range");
     assert!(file.lines().any(told), "{file}");

@@ -384,7 +384,7 @@ fn a_metric_or_parameter_that_is_not_there_is_refused() {
                 "--tolerance",
                 "k_wheel_x=5%",
             ],
-            "`k_wheel_x`, which is not looked at",
+            "`k_wheel_x`, which is not among the parameters",
         ),
         (&["sensitivity", "axle_a", "--road", "Z@60km/h"], "C@60km/h"),
         (&["sensitivity", "axle_a", "--road", "C@1e9km/h"], "at most 100 m/s"),

@@ -156,7 +156,7 @@ fn what_cannot_be_unknown_is_refused_with_place_and_remedy() {
         (
             "per_kelvin = { k_body = \"-0.2 %\" }\n",
             "",
-            "no parameter that depends on it",
+            "expected `per_kelvin` for at least one parameter",
         ),
         ("\"-0.2 %\"", "\"0 %\"", "not zero"),
         ("probability = 0.9\n", "probability = 1.2\n", "from 0.5 to 0.999"),
