@@ -84,7 +84,7 @@ const WRONG: &[(&str, &str, &[&str])] = &[
         "'=C20*1000'",
         &[
             "formula `=C20*1000` of `front.k_tire`",
-            "never computed",
+            "no stored result",
             "a number in N/m",
         ],
     ),
