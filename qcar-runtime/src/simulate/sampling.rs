@@ -27,7 +27,8 @@ impl AntiAlias {
 
     const ATTENUATION: f64 = 80.0;
 
-    /// The filter for a grid of `oversampling` points (at least 2) for each sample.
+    /// The filter for a grid of `oversampling` points (at least 1) for each sample. With one point it passes the signal unchanged, with
+    /// all that lies above half of the sample rate.
     pub fn new(oversampling: usize) -> Self {
         let beta = 0.1102 * (Self::ATTENUATION - 8.7);
         let reach = (Self::REACH * oversampling) as i32;

@@ -17,7 +17,7 @@ use crate::roles::{OnRig, state};
 const STEPS: usize = 30;
 const RESTS: f64 = 1e-9;
 const SMALL: f64 = 1e-3;
-/// Relative difference of two steps of time that are meant to be equal and were rounded.
+/// Two time steps that differ by less, relative to their length, differ by rounding alone.
 const EQUAL: f64 = 1e-9;
 
 /// Where the rig holds the wheel.
@@ -188,7 +188,7 @@ struct Drive<'a> {
     u: Vec<f64>,
     dx: Vec<f64>,
     nonzeros: Vec<f64>,
-    /// The last slope, and the step of time that it is of.
+    /// The last factor, and the time step (s) it belongs to.
     last_factor: Option<(f64, Rc<Factor>)>,
 }
 
