@@ -35,6 +35,7 @@ use rayon::iter::Either;
 use rayon::prelude::*;
 
 use assembly::{Assembly, Hypothesis, Place, Placed};
+use bagged::probabilities;
 use exchange::exchanges;
 use first_law::FirstLaw;
 use judging::predictive;
@@ -103,8 +104,11 @@ pub fn discover(
         // Names may make up for a law that the catalogue does not have.
         let law = law.beside(&sets, evidence, progress);
         let law = law.filter(|law| learn::holds(law, alone, evidence));
-        let odds = evidence.numbers.odds_of_certain().ln();
-        let law = law.filter(|law| law.log_posterior() - sets[found].log_posterior() > odds);
+        let is_certain = |law: &Set| {
+            let probability = probabilities(&[&sets[found], law], evidence);
+            probability[1] > evidence.numbers.certain()
+        };
+        let law = law.filter(is_certain);
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
@@ -279,9 +283,9 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     let steady = evidence.less(&refit.unsteady).hurried();
     let fidelity = fidelity(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse)?;
-    // A model that leaves much has poor parameters: what an effect gains there to first order says little.
-    let far_off = is_missing(set, evidence);
-    if far_off {
+    // A model that leaves much has poor parameters: what an effect gains there to first order says little. Beside an effect, the fits that
+    // led to it have begun from the start values already.
+    if set.names().is_empty() && is_missing(set, evidence) {
         let given = Place::given(&fidelity.coarse);
         for prospect in &mut prospects {
             prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);

@@ -2,6 +2,8 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::vectors::{Loops, widest};
+
 /// Rows of the Jacobian that are taken at once: twenty columns of them stay in a first-level cache.
 const BLOCK: usize = 192;
 
@@ -29,33 +31,18 @@ impl NormalEquations {
 
     /// Takes a new linearisation; false where it holds a value that is not finite.
     pub fn assemble(&mut self, jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> bool {
-        self.matrix.fill(0.0);
-        self.gradient.fill(0.0);
-        let rows = residual.len();
-        for from in (0..rows).step_by(BLOCK) {
-            self.add_rows(
-                jacobian.as_slice(),
-                residual.as_slice(),
-                rows,
-                from..rows.min(from + BLOCK),
-            );
-        }
-        self.matrix.fill_upper_triangle_with_lower_triangle();
-        self.rescale();
+        let variables = self.gradient.len();
+        let columns = (0..variables).map(|k| jacobian.column(k).data.into_slice());
+        let columns: Vec<&[f64]> = columns.chain([residual.as_slice()]).collect();
+        let products = products(&columns);
+        self.matrix.copy_from(&products.view((0, 0), (variables, variables)));
+        let gradient = products.view((variables, 0), (1, variables));
         self.gradient
-            .iter()
-            .chain(self.matrix.iter())
-            .all(|value| value.is_finite())
-    }
-
-    fn add_rows(&mut self, jacobian: &[f64], residual: &[f64], rows: usize, range: std::ops::Range<usize>) {
-        let column = |k: usize| &jacobian[k * rows + range.start..k * rows + range.end];
-        for i in 0..self.gradient.len() {
-            self.gradient[i] += dot(column(i), &residual[range.clone()]);
-            for j in 0..=i {
-                self.matrix[(i, j)] += dot(column(i), column(j));
-            }
-        }
+            .iter_mut()
+            .zip(gradient.iter())
+            .for_each(|(own, product)| *own = *product);
+        self.rescale();
+        products.iter().all(|value| value.is_finite())
     }
 
     fn rescale(&mut self) {
@@ -68,7 +55,45 @@ impl NormalEquations {
     }
 }
 
+/// The scalar product of each column with each.
+pub(super) fn products(columns: &[&[f64]]) -> DMatrix<f64> {
+    let mut sums = DMatrix::zeros(columns.len(), columns.len());
+    let rows = columns.first().map_or(0, |column| column.len());
+    for from in (0..rows).step_by(BLOCK) {
+        let range = from..rows.min(from + BLOCK);
+        let blocks = columns.iter().map(|column| &column[range.clone()]).enumerate();
+        // Most unknowns of a sensor or a run are seen in a few rows alone.
+        let seen = blocks.filter(|(_, block)| block.iter().any(|value| *value != 0.0));
+        widest(Products {
+            blocks: &seen.collect::<Vec<_>>(),
+            sums: &mut sums,
+        });
+    }
+    sums.fill_upper_triangle_with_lower_triangle();
+    sums
+}
+
+/// Adds the products of a block of rows to the lower triangle; each column has its place.
+struct Products<'a> {
+    blocks: &'a [(usize, &'a [f64])],
+    sums: &'a mut DMatrix<f64>,
+}
+
+impl Loops for Products<'_> {
+    type Result = ();
+
+    #[inline(always)]
+    fn run(self) {
+        for (count, (i, left)) in self.blocks.iter().enumerate() {
+            for (j, right) in &self.blocks[..=count] {
+                self.sums[(*i, *j)] += dot(left, right);
+            }
+        }
+    }
+}
+
 /// A dot product with eight independent sums, since one sum cannot be vectorised without reordering it.
+#[inline(always)]
 fn dot(a: &[f64], b: &[f64]) -> f64 {
     let (a_chunks, b_chunks) = (a.chunks_exact(8), b.chunks_exact(8));
     let tail: f64 = a_chunks

@@ -75,6 +75,17 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
     /// The tyre's damping has a part along a flat road too, since its front grows and its rear shrinks: a drag. A
     /// constant traction balances it, so that nothing moves before the road does.
     pub fn at_rest(car: &Car<'a, M>, road: &'a Road, speed: f64, t: f64) -> Result<(Self, Vec<f64>), SimulateError> {
+        Self::at_rest_near(&vec![0.0; car.model.about().states.len()], car, road, speed, t)
+    }
+
+    /// The same, the state being near one that is known.
+    pub fn at_rest_near(
+        known: &[f64],
+        car: &Car<'a, M>,
+        road: &'a Road,
+        speed: f64,
+        t: f64,
+    ) -> Result<(Self, Vec<f64>), SimulateError> {
         let (contact, about, tyre) = (car.contact()?, car.model.about(), car.rolling_tyre());
         let level_from = level_from(road) + tyre.radius();
         let mut rolling = Self {
@@ -98,7 +109,7 @@ impl<'a, M: Model + ?Sized> Rolling<'a, M> {
                 Geometry::Point => level_from,
             },
         };
-        let mut x = vec![0.0; about.states.len()];
+        let mut x = known.to_vec();
         let scales: Vec<f64> = scales(about).collect();
         let settled = equilibrium::settle(&scales, |x, dx| rolling.derivative_without_drag(t, x, dx), &mut x);
         settled.map_err(|unbalanced| car.unbalanced(&unbalanced))?;

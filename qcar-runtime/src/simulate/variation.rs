@@ -39,16 +39,16 @@ pub fn variation<M: Model + ?Sized>(
     }
     let grid = Grid::new(drive.sample_rate, drive.samples, points_a_sample);
     let start = drive.start(&tyre).min(grid.start());
-    let at_rest = |parameters| Rolling::at_rest(&Car { parameters, ..*car }, drive.road, drive.speed, start);
-    let (rolling, x) = at_rest(car.parameters)?;
+    let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
     if tyre.geometry() == Geometry::Point || !rolling.is_linear_beside_contact() {
         return Ok(None);
     }
     let axle = Axle::of(&rolling, outputs);
     let mut directions = Vec::with_capacity(moved.len());
     for &(parameters, change) in moved {
+        let moved = Car { parameters, ..*car };
         directions.push(Direction::new(
-            at_rest(parameters)?,
+            Rolling::at_rest_near(&x, &moved, drive.road, drive.speed, start)?,
             change,
             (&rolling, &x),
             (&axle, outputs),

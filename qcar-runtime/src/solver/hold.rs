@@ -10,10 +10,10 @@ use crate::vectors::{Loops, widest};
 
 /// What a step does to states and forces.
 pub struct Hold {
-    /// Of each state.
-    flow: DMatrix<f64>,
-    /// Of each force at the beginning of a step, and at its end.
-    forces: [DMatrix<f64>; 2],
+    /// Row by row, the factors of each state, of each force at the beginning of a step, and of each at its end.
+    factors: Vec<f64>,
+    /// Those of the forces at the end.
+    of_end: DMatrix<f64>,
 }
 
 impl Hold {
@@ -33,58 +33,83 @@ impl Hold {
             *whole.entry_mut(n + place, n + m + place) = 1.0;
         }
         let flow = whole.exponential()?;
-        let at_end = DMatrix::from_fn(n, m, |row, place| flow.entry(row, n + m + place));
-        let of_both = DMatrix::from_fn(n, m, |row, place| flow.entry(row, n + place));
+        let of_end = DMatrix::from_fn(n, m, |row, place| flow.entry(row, n + m + place));
+        let row = |row: usize| {
+            let flow = &flow;
+            let of_state = (0..n).map(move |column| flow.entry(row, column));
+            let of_begin = (0..m).map(move |place| flow.entry(row, n + place) - flow.entry(row, n + m + place));
+            let of_end = (0..m).map(move |place| flow.entry(row, n + m + place));
+            of_state.chain(of_begin).chain(of_end)
+        };
         Some(Self {
-            flow: DMatrix::from_fn(n, n, |row, column| flow.entry(row, column)),
-            forces: [of_both - &at_end, at_end],
+            factors: (0..n).flat_map(row).collect(),
+            of_end,
         })
     }
 
     /// What forces at the end of a step add to the states there: `Γ₁`.
     pub fn of_end(&self) -> &DMatrix<f64> {
-        &self.forces[1]
+        &self.of_end
     }
 
     /// Writes the next states of some systems: of each state, and of each force at both ends of the step, there is a value
     /// for every system, one after the other.
     pub fn step(&self, systems: usize, states: &[f64], forces: [&[f64]; 2], next: &mut [f64]) {
-        next.fill(0.0);
-        let products = [
-            (&self.flow, states),
-            (&self.forces[0], forces[0]),
-            (&self.forces[1], forces[1]),
-        ];
-        for (matrix, by) in products {
-            widest(Added {
-                matrix,
-                by,
-                systems,
-                sum: next,
-            });
-        }
+        widest(Step {
+            factors: &self.factors,
+            systems,
+            acting: [states, forces[0], forces[1]],
+            next,
+        });
     }
 }
 
-/// The product of a matrix with a row of numbers for each of its columns, added to a row for each of its rows.
-struct Added<'a> {
-    matrix: &'a DMatrix<f64>,
-    by: &'a [f64],
+/// The product of the factors with a row of numbers for each state and force: a row for each next state.
+struct Step<'a> {
+    factors: &'a [f64],
     systems: usize,
-    sum: &'a mut [f64],
+    acting: [&'a [f64]; 3],
+    next: &'a mut [f64],
 }
 
-impl Loops for Added<'_> {
+impl Step<'_> {
+    /// Of some neighbouring systems from one on: their sums stay in registers.
+    #[inline(always)]
+    fn sums<const N: usize>(&self, factors: &[f64], from: usize) -> [f64; N] {
+        let mut sums = [0.0; N];
+        let mut factors = factors.iter();
+        for acting in self.acting {
+            for (by, factor) in acting.chunks_exact(self.systems).zip(factors.by_ref()) {
+                let by = &by[from..from + N];
+                (0..N).for_each(|lane| sums[lane] += factor * by[lane]);
+            }
+        }
+        sums
+    }
+}
+
+impl Loops for Step<'_> {
     type Result = ();
 
     #[inline(always)]
     fn run(self) {
-        let columns = self.matrix.as_slice().chunks_exact(self.matrix.nrows());
-        for (column, by) in columns.zip(self.by.chunks_exact(self.systems)) {
-            for (factor, sum) in column.iter().zip(self.sum.chunks_exact_mut(self.systems)) {
-                for (sum, by) in sum.iter_mut().zip(by) {
-                    *sum += factor * by;
-                }
+        let states = self.next.len() / self.systems;
+        for (row, factors) in self.factors.chunks_exact(self.factors.len() / states).enumerate() {
+            let mut from = 0;
+            while from < self.systems {
+                let place = row * self.systems + from;
+                from += if from + 8 <= self.systems {
+                    let sums = self.sums::<8>(factors, from);
+                    self.next[place..place + 8].copy_from_slice(&sums);
+                    8
+                } else if from + 4 <= self.systems {
+                    let sums = self.sums::<4>(factors, from);
+                    self.next[place..place + 4].copy_from_slice(&sums);
+                    4
+                } else {
+                    self.next[place] = self.sums::<1>(factors, from)[0];
+                    1
+                };
             }
         }
     }

@@ -17,7 +17,7 @@ pub struct Answer {
 
 /// The answers, the most probable first: sets of the same names are one.
 pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
-    let probability = probabilities(sets, evidence);
+    let probability = probabilities(&sets.iter().collect::<Vec<_>>(), evidence);
     let left: Vec<usize> = (0..sets.len()).map(|place| predictive(sets, place, evidence)).collect();
     let mut answers: Vec<Answer> = Vec::new();
     for (place, probability) in probability.iter().copied().enumerate() {

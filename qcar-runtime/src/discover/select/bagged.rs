@@ -6,7 +6,7 @@
 //! replacement, a bagged posterior (Huggins and Miller, Bayesian Analysis 18, 2023), which is as uncertain as the data
 //! scatter. It keeps each fit: only the weights of the data are drawn, not the parameters.
 
-use super::set::{Set, leaves_more_than_noise, most_probable};
+use super::set::{Set, leaves_more_than_noise};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
@@ -15,16 +15,16 @@ use crate::random::SplitMix;
 const DRAWS: usize = 1000;
 
 /// The probability of each set.
-pub fn probabilities(sets: &[Set], evidence: &Evidence) -> Vec<f64> {
-    let whole: Vec<f64> = sets.iter().map(Set::log_posterior).collect();
-    let best = most_probable(sets, 0..sets.len());
-    if !best.is_some_and(|best| leaves_more_than_noise(&sets[best], evidence)) {
+pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
+    let whole: Vec<f64> = sets.iter().map(|set| set.log_posterior()).collect();
+    let best = sets
+        .iter()
+        .max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()));
+    if !best.is_some_and(|best| leaves_more_than_noise(best, evidence)) {
         return posterior(&whole);
     }
-    let parts: Vec<Vec<f64>> = sets
-        .iter()
-        .map(|set| set.log_likelihoods(Role::Fit, evidence).unwrap_or_default())
-        .collect();
+    let of_fit = |set: &&Set| set.log_likelihoods(Role::Fit, evidence).unwrap_or_default();
+    let parts: Vec<Vec<f64>> = sets.iter().map(of_fit).collect();
     bagged(&whole, &parts)
 }
 
