@@ -25,7 +25,7 @@ impl Outcome {
     }
 
     /// All that is hidden is named and placed, and nothing beside.
-    fn is_right(&self) -> bool {
+    pub fn is_right(&self) -> bool {
         let named = |truth: &Place| self.named.iter().any(|own| truth.is_named_by(own));
         self.is("found") && self.named.len() == self.truth.len() && self.truth.iter().all(named)
     }

@@ -26,6 +26,9 @@ const USAGE: &str = "matrix [OPTION]... | matrix --table FILE
   --out FILE      adds a line for each case
   --resume        leaves out the cases that FILE has, unless their search failed
   --keep FOLDER   leaves the campaigns there, and takes those that are there
+  --found-is-separable yes
+                  takes an effect that was named right for separable, and computes the limit of the others alone: that takes twice as
+                  long as a search
   --perturb A,B   searches each case again with each of these assumed numbers (discover/numbers.rs) 30 % lower and higher,
                   and counts the answers that change";
 
@@ -54,6 +57,7 @@ struct Asked {
     resume: bool,
     keep: Option<PathBuf>,
     perturb: Vec<String>,
+    found_is_separable: bool,
 }
 
 fn run() -> Result<(), String> {
@@ -92,6 +96,7 @@ fn asked(words: Vec<String>) -> Result<Asked, String> {
         resume: false,
         keep: None,
         perturb: Vec::new(),
+        found_is_separable: false,
     };
     let mut words = words.into_iter();
     while let Some(word) = words.next() {
@@ -108,6 +113,7 @@ fn asked(words: Vec<String>) -> Result<Asked, String> {
             "--part" => asked.part = part(&value)?,
             "--jobs" => asked.jobs = number(&value)?,
             "--keep" => asked.keep = Some(value.into()),
+            "--found-is-separable" => asked.found_is_separable = value == "yes",
             "--perturb" => asked.perturb = value.split(',').map(str::to_owned).collect(),
             "--out" => asked.out = Some(value.into()),
             _ => return Err(format!("what is {word}?")),
@@ -231,7 +237,7 @@ fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, S
     let passing = tempfile::tempdir().map_err(|e| e.to_string())?;
     let keep = asked.keep.as_deref().unwrap_or(passing.path());
     let folder = keep.join(case.name.replace([' ', '/', ':'], "_"));
-    let strength = campaign(case, &folder)?;
+    make_once(case, &folder)?;
     let mut command = Command::new(&asked.qcar);
     command.arg("discover").arg(&folder).args(["--format", "json"]);
     if let Some(assume) = assume {
@@ -245,19 +251,35 @@ fn answer(asked: &Asked, case: &Case, assume: Option<&str>) -> Result<Outcome, S
     if !output.status.success() {
         let words = String::from_utf8_lossy(&output.stderr);
         eprintln!("{}: {}: {words}", case.name, output.status);
-        return Ok(Outcome::failed(case, strength));
+        return Ok(Outcome::failed(case, strength(case, &folder)?));
     }
     let answer = serde_json::from_slice(&output.stdout).map_err(|e| format!("{}: {e}", case.name))?;
-    Ok(Outcome::new(case, &answer, strength))
+    let found = Outcome::new(case, &answer, f64::INFINITY);
+    if asked.found_is_separable && found.is_right() {
+        return Ok(found);
+    }
+    Ok(Outcome::new(case, &answer, strength(case, &folder)?))
 }
 
-/// Makes a campaign, unless it is there, and says how strong what it hides is.
-fn campaign(case: &Case, folder: &Path) -> Result<f64, String> {
+/// Makes a campaign, unless it is there; it is there only as a whole.
+fn make_once(case: &Case, folder: &Path) -> Result<(), String> {
+    if folder.exists() {
+        return Ok(());
+    }
+    let making = folder.with_extension("part");
+    if making.exists() {
+        fs::remove_dir_all(&making).map_err(|e| at(&making, e))?;
+    }
+    qcar_blind::make(case.order.clone(), &making)?;
+    fs::rename(&making, folder).map_err(|e| at(folder, e))
+}
+
+/// How strong what a campaign hides is, over what can be separated from noise.
+fn strength(case: &Case, folder: &Path) -> Result<f64, String> {
     let file = folder.join(STRENGTH);
     if let Ok(text) = fs::read_to_string(&file) {
         return number(&text);
     }
-    qcar_blind::make(case.order.clone(), folder)?;
     let strength = qcar_blind::strength(case.order.clone())?;
     fs::write(&file, strength.to_string()).map_err(|e| at(&file, e))?;
     Ok(strength)
