@@ -266,7 +266,8 @@ fn make_once(case: &Case, folder: &Path) -> Result<(), String> {
     if folder.exists() {
         return Ok(());
     }
-    let making = folder.with_extension("part");
+    // A campaign is called as its folder is.
+    let making = folder.with_file_name("making").join(folder.file_name().unwrap_or_default());
     if making.exists() {
         fs::remove_dir_all(&making).map_err(|e| at(&making, e))?;
     }
