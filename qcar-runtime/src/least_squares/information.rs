@@ -219,6 +219,19 @@ mod tests {
         assert!((information.inverse() - &direct).norm() < 1e-12 * direct.norm());
     }
 
+    /// By Cholesky's factor and by singular values: the inverse of two columns at a small angle is known in closed form.
+    #[test]
+    fn columns_that_are_nearly_parallel_keep_nine_digits() {
+        for angle in [1e-2, 1e-4] {
+            let jacobian = DMatrix::from_row_slice(3, 2, &[1.0, 1.0, 0.0, angle, 0.0, 0.0]);
+            let square = 1.0 / (angle * angle);
+            let direct = DMatrix::from_row_slice(2, 2, &[1.0 + square, -square, -square, square]);
+            let information = Information::new(&jacobian, &[true; 2]);
+            let error = (information.inverse() - &direct).norm() / direct.norm();
+            assert!(error < 1e-9, "{error} at {angle}");
+        }
+    }
+
     #[test]
     fn a_held_variable_takes_no_share_of_the_uncertainty() {
         let jacobian = DMatrix::from_row_slice(3, 2, &[1.0, 0.9, 1.0, 1.1, 1.0, 1.0]);
