@@ -570,6 +570,31 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
     }
 }
 
+/// A stop that damps on the way out alone, behind a check valve: the law of the damper says where it acts, and in which direction.
+#[test]
+fn a_law_of_the_travel_knows_a_check_valve() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let stop = [("gap", 0.006), ("c_per_metre", 600e3)];
+    let order = Order {
+        cleats: false,
+        programme: Programme::fast(),
+        effects: vec![Hidden::new("hydraulic_stop", "damper", &stop)],
+        ..Order::clean("a", 4713)
+    };
+    make(order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "unknown", "{answer}");
+    let learned = &answer["learned"];
+    assert_eq!(learned["laws"][0]["name"], "position_damping_law", "{learned}");
+    assert_eq!(learned["at"], "damper", "{learned}");
+    assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
+    let inward = learned["laws"][0]["parameters"]["inward"].as_f64();
+    assert!(inward < Some(0.2), "{learned}");
+    let words = learned["laws"][0]["words"].as_str().expect("a sentence");
+    assert!(words.contains("inward = "), "{words}");
+}
+
 /// A drag that grows with the square of the speed: the catalogue's linear one is certain and closes little of the gap.
 #[test]
 fn a_law_is_learned_between_a_mass_and_the_ground() {

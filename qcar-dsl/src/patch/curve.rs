@@ -22,6 +22,15 @@ pub enum Ordinate {
     Product(Vec<String>),
 }
 
+impl Curve {
+    /// True of a parameter that is its scale or a factor of a point.
+    pub fn holds(&self, name: &String) -> bool {
+        let is_factor =
+            |(_, ordinate): &(f64, Ordinate)| matches!(ordinate, Ordinate::Product(names) if names.contains(name));
+        self.scale.as_ref() == Some(name) || self.points.iter().any(is_factor)
+    }
+}
+
 /// The curves of an effect in its usual form, in the order of its text; those of a tyre that rolls are left out.
 pub fn curves(effect: &Effect) -> Vec<Curve> {
     let laws = effect.changes().flat_map(|change| match change {
@@ -30,9 +39,12 @@ pub fn curves(effect: &Effect) -> Vec<Curve> {
     });
     let mut found = Vec::new();
     for statement in laws {
-        if let LawStatement::Force(force) | LawStatement::Rate(_, force) = statement {
-            tables(force, &mut |table| found.extend(curve(table)));
-        }
+        let value = match statement {
+            LawStatement::Force(value) | LawStatement::Rate(_, value) => value,
+            LawStatement::Let(own) => &own.value,
+            _ => continue,
+        };
+        tables(value, &mut |table| found.extend(curve(table)));
     }
     found
 }

@@ -99,14 +99,23 @@ impl LearnedModel {
     }
 }
 
-/// What a law is like: each of its curves in a sentence, or which of its coefficients count. The longest run takes `longest` s.
+/// What a law is like: each of its curves in a sentence, and each parameter beside them that is determined; or which of its coefficients
+/// count. The longest run takes `longest` s.
 fn words(patch: &Patch, parameters: &[NewParameter], errors: &Errors, longest: f64) -> String {
     let curves = patch.curves();
     if curves.is_empty() {
         return shares(parameters);
     }
     let sentences = curves.iter().map(|curve| of_curve(curve, parameters, errors, longest));
-    format!("{}; no memory", sentences.collect::<Vec<_>>().join("; "))
+    let is_of_curve = |name: &String| curves.iter().any(|curve| curve.holds(name));
+    let is_told = |own: &&NewParameter| {
+        let is_determined = errors.get(&own.effect_name).is_some_and(|error| *error < DETERMINED);
+        !own.known && is_determined && !is_of_curve(&own.effect_name)
+    };
+    let beside = parameters.iter().filter(is_told);
+    let beside = beside.map(|own| format!("{} = {} ({})", own.effect_name, number(own.start, 3), own.doc));
+    let sentences: Vec<String> = sentences.chain(beside).collect();
+    format!("{}; no memory", sentences.join("; "))
 }
 
 /// A coefficient is mentioned if it has at least this share of their sum.

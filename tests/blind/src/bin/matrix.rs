@@ -267,7 +267,9 @@ fn make_once(case: &Case, folder: &Path) -> Result<(), String> {
         return Ok(());
     }
     // A campaign is called as its folder is.
-    let making = folder.with_file_name("making").join(folder.file_name().unwrap_or_default());
+    let making = folder
+        .with_file_name("making")
+        .join(folder.file_name().unwrap_or_default());
     if making.exists() {
         fs::remove_dir_all(&making).map_err(|e| at(&making, e))?;
     }
