@@ -10,7 +10,6 @@ use crate::transmissibility::{End, Point, points};
 /// A displacement sensor on a link measures its stretch. A sensor at an end of a place stands at the point of that
 /// name, such as `sf_front`, if the model has one. Any other sensor stands at the point with the suffix `_sensor`, such
 /// as `sf_sensor`, if the model has one. Otherwise it stands at the place itself.
-/// the model has one, any other sensor at `sf_sensor`, and at the place itself where it has not.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
     let link = about
         .links

@@ -22,7 +22,7 @@ enum Unknown {
 }
 
 impl Unknowns {
-    /// A candidate, with the sensors as it suspects them.
+    /// The unknowns of a candidate. `nuisance` must already contain the sensor error that the candidate adds.
     pub fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
         let unknowns = match &candidate.change {
             Change::Model { parameters, .. } => {
