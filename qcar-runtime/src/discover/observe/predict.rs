@@ -11,8 +11,8 @@ use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
 
-/// Predicts all series of the runs of one role, with derivatives by the `free` parameters and, if there are any, by the
-/// initial states of the records.
+/// Predicts all series of the runs of one role, with derivatives by the `free` parameters. Unless `free` is empty, it
+/// also gives the derivatives by the initial states of the records.
 ///
 /// # Errors
 /// Fails if the model lacks a measured quantity.
