@@ -1,25 +1,25 @@
-//! Which effect a model lacks: sets of effects compared by their evidence, given what was measured.
+//! Searches for the effects that a model lacks: compares sets of effects by their evidence for the measured data.
 //!
-//! The modules stand in the order of the data. What a campaign holds becomes a data set beside its predictions; sensors are
-//! wrong to the extent of their calibration, and any model misses something; a fit finds what parameters and these can
-//! explain together; the residuals say where something is missing; and sets of effects compete by their evidence.
-//! Nothing here knows an effect, or an axle, by name.
+//! The modules stand in the order of the data. `observe` turns a campaign into a data set and predicts it. `noise`
+//! describes sensor errors within their calibration and the discrepancy of the model. `posterior` fits parameters
+//! together with these nuisance parameters. `locate` shows where something is missing. `select` compares sets of
+//! effects by their evidence. No code here knows an effect or an axle by name.
 
-// The numbers of the search that no data give.
+// Assumptions of the search that no data determine.
 pub mod numbers;
-// What was measured, beside what a model says of it.
+// Measured data and their predictions.
 pub mod observe;
-// What differs between a measurement and a right model: errors of sensors, and the discrepancy.
+// Sensor errors and the model discrepancy.
 pub mod noise;
-// Parameters given the data, the evidence of a model, and what is left.
+// Parameter posterior, model evidence and residuals.
 pub mod posterior;
-// What would have to be added, and at which place.
+// The place and the dynamic stiffness of a missing element.
 pub mod locate;
-// What might be missing.
+// Effects that might be missing.
 pub mod candidate;
-// What a search answers.
+// Results of a search.
 pub mod answer;
-// Which effect is missing.
+// The search itself.
 pub mod select;
 
 pub use locate::{Kappa, Place, Sweeps, kappa_map};

@@ -1,143 +1,145 @@
-//! What a search answers, and what it tells of itself meanwhile.
+//! Results of a search, and its progress messages.
 
 use super::posterior::Explanation;
 
-/// The answer.
+/// Verdict of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
-    /// What is left is noise.
+    /// Only noise is left.
     None,
-    /// The missing effects are named.
+    /// The missing effects are identified.
     Found,
-    /// Several effects explain it alike.
+    /// Several effects explain the data equally well.
     Class,
-    /// Nothing explains it.
+    /// No effect explains the data.
     Unknown,
 }
 
-/// An effect that was found, or one of several that cannot be told apart.
+/// An effect of the answer, or one of several indistinguishable effects.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// Its name.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// Which of its forms fits best; `None` where it has only one.
+    /// Form that fits best; `None` if the effect has only one.
     pub form: Option<String>,
-    /// Its parameters: name, value and standard error, SI. The error is 0 for one that is given.
+    /// Parameters: name, value and standard error, SI. The error is 0 for a fixed parameter.
     pub parameters: Vec<(String, f64, f64)>,
-    /// By how much all that was found raises the logarithm of the evidence.
+    /// Increase of the log evidence by all findings together.
     pub evidence: f64,
-    /// Share of the excess gap of the held-out runs that it closes; of the fitted runs where none is held out.
+    /// Share of the excess residual that the findings explain, on the held-out runs, or on the fitted runs if none is
+    /// held out.
     pub closed: f64,
-    /// The next best explanations, the best first.
+    /// Next best explanations, best first.
     pub rivals: Vec<Rival>,
 }
 
-/// Another explanation.
+/// An alternative explanation.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Rival {
-    /// Its name.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// How much lower its logarithm of the evidence is than that of the best.
+    /// Difference of its log evidence to the best; positive if it is worse.
     pub behind: f64,
-    /// True where it was dropped before the last round: `behind` is of a fit to a part of the lines.
+    /// True if it was dropped before the last round: `behind` then comes from a fit to a part of the lines.
     pub early: bool,
 }
 
-/// An effect that might be missing, and how probable that is.
+/// An effect that may be missing, with its probability.
 #[derive(Clone, Debug, PartialEq, serde::Serialize)]
 pub struct Probable {
-    /// Its name.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// Its form that explains best; `None` where it has only one.
+    /// Form that fits best; `None` if the effect has only one.
     pub form: Option<String>,
-    /// Probability that it is missing, given that one of the sets of effects that were fitted is the truth.
+    /// Probability that the effect is missing, given that one of the fitted sets of effects is true.
     pub probability: f64,
-    /// Share of the excess gap of the runs that judge that it closes.
+    /// Share of the excess residual on the held-out runs that it explains.
     pub explained: f64,
-    /// By how much it raises the logarithm of the evidence.
+    /// Increase of the log evidence.
     pub log_evidence: f64,
 }
 
-/// What was found, and what is left.
+/// Result of a search.
 pub struct Discovery {
-    /// The answer.
+    /// The verdict.
     pub verdict: Verdict,
-    /// How probable it is; `None` of `unknown`.
+    /// Probability of the verdict; `None` if it is `Unknown`.
     pub probability: Option<f64>,
-    /// The most probable effects, the most probable first.
+    /// Most probable effects, most probable first.
     pub candidates: Vec<Probable>,
-    /// What every real car has some of, as far as the runs show it: what was fitted with the base model, and with the
-    /// findings.
+    /// Nuisance effects that the data show: those fitted with the base model, and those fitted with the findings.
     pub nuisances: [Vec<Finding>; 2],
-    /// In the order in which they were found; of a class, what was found before it and then its members, the best first.
+    /// Effects of the answer. For a class, the effects common to all members come first, then the alternatives, best
+    /// first.
     pub findings: Vec<Finding>,
-    /// So many of the last findings stand in each other's place: the members of a class.
+    /// Number of alternatives at the end of `findings`; 0 if the verdict is not `Class`.
     pub alike: usize,
-    /// The base model's explanation.
+    /// Explanation by the base model.
     pub before: Explanation,
-    /// The explanation with all findings, with the best of a class; the same as `before` without any.
+    /// Explanation with all findings, or with the best of a class; equal to `before` without findings.
     pub after: Explanation,
-    /// Where nothing is missing: which effects would have been seen.
+    /// Detection limits of the effects if the verdict is `None`; empty otherwise.
     pub visible: Vec<Visible>,
-    /// Where no effect of the catalogue explains the gap: what the law would be that does.
+    /// Learned law if no effect of the catalogue explains the data; `None` otherwise.
     pub learned: Option<Learned>,
 }
 
-/// Laws that name no cause, fitted to what the model leaves.
+/// Laws without a named cause, fitted to the residual of the model.
 pub struct Learned {
-    /// Each with its place and coefficients.
+    /// The laws with their places and coefficients.
     pub laws: Vec<Finding>,
-    /// Share of the excess gap of the runs that judge that they close.
+    /// Share of the excess residual on the held-out runs that they explain.
     pub explained: f64,
-    /// The longest run, s: later than that no law over time is determined.
+    /// Longest run, s; a law over time is not determined beyond it.
     pub longest: f64,
-    /// The explanation with them.
+    /// Explanation with the laws.
     pub explanation: Explanation,
 }
 
-/// An effect that was not found, and whether it would have been.
+/// Detection limit of an effect that was not found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visible {
-    /// Its name.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// Its usual size: parameters and values, SI.
+    /// Default size: parameter names and values, SI.
     pub usual: Vec<(String, f64)>,
-    /// Its trace at this size over the least that earns a name (RMS): below 1 it would not have been seen.
+    /// RMS signal of the effect at this size, relative to the smallest that makes it certain. Below 1 it would not have
+    /// been seen.
     pub times: f64,
 }
 
 impl Discovery {
-    /// What was found, and the members of a class beside it; none where there is no class.
+    /// Splits the findings into those that are certain and the alternatives of a class.
     pub fn told_apart(&self) -> (&[Finding], &[Finding]) {
         self.findings.split_at(self.findings.len() - self.alike)
     }
 }
 
-/// What a search tells of itself meanwhile.
+/// Progress message of a search.
 #[derive(Clone, Copy, Debug)]
 pub enum News<'a> {
-    /// What is being done.
+    /// The current step.
     Doing(&'a str),
-    /// How much of that is done, and of how much.
+    /// Completed and total parts of the current step.
     Far(usize, usize),
-    /// What is known by now, and stays so if the search is stopped: in words, the effects that were taken, and the
-    /// explanation with them. The first is that of the base model.
+    /// An intermediate result, valid even if the search is stopped: a description, the current effects and their
+    /// explanation. The first one is that of the base model.
     Known(&'a str, &'a [Finding], &'a Explanation),
 }
 
-/// Told how the search goes, from any thread.
+/// Receives progress messages, from any thread.
 pub type Progress<'a> = &'a (dyn Fn(News<'_>) + Sync);
 
-/// The gap of the runs that judge, in words.
+/// RMS of the normalised residual as text: held-out runs, or fitted runs if none is held out.
 pub(super) fn told(of: &Explanation) -> String {
     let gap = if of.gap.held_out.is_finite() {
         of.gap.held_out

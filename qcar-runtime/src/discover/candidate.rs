@@ -1,71 +1,71 @@
-//! What might be missing: a changed model, or a sensor that is wrong. Where candidates come from, the engine does not
-//! know: a [`Workshop`] makes them from files.
+//! Candidates for what is missing: a changed model or a sensor error. A [`Workshop`] makes them from files, so the
+//! search does not depend on their origin.
 
 use super::noise::Form;
 use crate::campaign::Axis;
 use crate::model::Model;
 pub use crate::model::ParameterRole;
 
-/// Something that might be missing, at a place.
+/// Something that may be missing, at one place.
 pub struct Candidate {
-    /// The name of the effect.
+    /// Name of the effect.
     pub effect: String,
-    /// The link, mass or sensor location.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// Which of several ways in which the effect may act there; `None` where there is only one.
+    /// Variant of the effect at that place; `None` if there is only one.
     pub form: Option<String>,
-    /// What every real car has some of: it is fitted, and is no answer.
+    /// True for a nuisance effect: every real car has some of it, so it is fitted but is no answer.
     pub nuisance: bool,
-    /// What it would change.
+    /// The change that it makes.
     pub change: Change,
 }
 
-/// What a candidate changes.
+/// Change that a candidate makes.
 pub enum Change {
-    /// The equations: another model with parameters of its own.
+    /// Changes the equations: another model with additional parameters.
     Model {
         /// The changed model.
         model: Box<dyn Model>,
-        /// What it brings along beside the parameters of the base model.
+        /// Parameters in addition to those of the base model.
         parameters: Vec<Added>,
     },
-    /// What a sensor shows.
+    /// Changes what a sensor shows.
     Sensor {
-        /// Its location.
+        /// Location of the sensor.
         location: String,
-        /// Its axis; `None` for all sensors of the location alike.
+        /// Axis of the sensor; `None` for all sensors of the location together.
         axis: Option<Axis>,
-        /// How it is wrong.
+        /// Form of the error.
         form: Form,
-        /// The number that says by how much.
+        /// Magnitude of the error.
         parameter: Added,
     },
 }
 
-/// A parameter that an effect brings along.
+/// A parameter of an effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Added {
-    /// Its name in the changed model.
+    /// Name in the changed model.
     pub name: String,
-    /// Its name in the effect.
+    /// Name in the effect.
     pub effect_name: String,
-    /// Where a search begins, SI.
+    /// Start value of a search, SI.
     pub start: f64,
-    /// What is plausible, SI, lower below upper.
+    /// Plausible range, SI; lower bound first.
     pub range: (f64, f64),
-    /// Given, not to be found: it stays at its start, or at what the vehicle says.
+    /// True if the parameter is fixed at its start value or at a vehicle value.
     pub known: bool,
-    /// What it is to its effect.
+    /// Role of the parameter in its effect.
     pub role: ParameterRole,
 }
 
 impl Candidate {
-    /// True where it changes no model.
+    /// True if it changes only a sensor.
     pub fn is_sensor(&self) -> bool {
         matches!(self.change, Change::Sensor { .. })
     }
 
-    /// The parameters that it brings along.
+    /// The parameters of the candidate.
     pub fn parameters(&self) -> &[Added] {
         match &self.change {
             Change::Model { parameters, .. } => parameters,
@@ -73,13 +73,13 @@ impl Candidate {
         }
     }
 
-    /// How many of them are to be found.
+    /// Number of its free parameters.
     pub fn unknowns(&self) -> usize {
         self.parameters().iter().filter(|parameter| !parameter.known).count()
     }
 }
 
-/// A model and what might be missing in it.
+/// A model and the candidates for what it lacks.
 pub trait Workshop: Send + Sync {
     /// The model.
     fn model(&self) -> &dyn Model;
@@ -87,13 +87,13 @@ pub trait Workshop: Send + Sync {
     /// Every effect at every place where it applies, in each form.
     fn candidates(&self) -> Vec<Candidate>;
 
-    /// Those of one effect or law.
+    /// The candidates of one effect or law.
     fn candidates_of(&self, effect: &str) -> Vec<Candidate>;
 
-    /// Every law that names no cause, a curve of travel, speed or frequency whose coefficients are free, at every place
-    /// where it applies.
+    /// Every law without a named cause at every place where it applies: a curve of travel, speed or frequency with free
+    /// coefficients.
     fn laws(&self) -> Vec<Candidate>;
 
-    /// The same with an effect or such a law in the model; `None` for one of a sensor, which changes no model.
+    /// The workshop with an effect or such a law in its model; `None` for a sensor error, which changes no model.
     fn with(&self, effect: &str, at: &str, form: Option<&str>) -> Option<Box<dyn Workshop>>;
 }

@@ -1,22 +1,22 @@
-//! Which dynamic stiffness, added at one place, would explain every channel at once by a rank-one update.
+//! Finds the dynamic stiffness that, added at one place, explains all channels at once by a rank-one update.
 //!
-//! A dynamic stiffness κ(ω) added across a link with stretch s and force pair F changes every response by
-//! `H' - H = -κ / (1 + κ H(s,F)) · H(y,F) H(s,u)`. All channels share the scalar in front, and what follows it is, up
-//! to the unit, the derivative of the response by a parameter of that link, which every model gives. So the parameters
-//! of a model are its places, the best scalar of a line is linear least squares, and no refit is needed. `H(s,F)`
-//! comes from one finite change of the parameter, by the same formula.
+//! A dynamic stiffness κ(ω) added across a link with stretch s and force pair F changes every response by `H' - H = -κ
+//! / (1 + κ H(s,F)) · H(y,F) H(s,u)`. All channels share the first factor, a scalar. Up to the unit, the rest is the
+//! derivative of the response by a parameter of that link, which every model provides. So the parameters of a model are
+//! its places. The best scalar of a line follows by linear least squares, without a refit. `H(s,F)` follows from one
+//! finite change of the parameter by the same formula.
 
-// What would have to be there.
+// Missing dynamic stiffness, run by run.
 mod kappa;
-// A straight line through a few complex values.
+// Local straight line through complex values.
 mod straight;
-// The responses of all sensors line by line, and what explains them.
+// Best change of all responses at one place, line by line.
 mod lines;
-// All places of a model.
+// Dynamic stiffness at all places of a model.
 mod map;
-// Those that explain the sweeps.
+// Places that explain the residual of the sweeps.
 mod sweeps;
-// Which kind of law that is.
+// Kind of law of a dynamic stiffness.
 mod shape;
 
 pub use kappa::{Kappa, KappaRun, Place};

@@ -1,15 +1,15 @@
-//! What differs between a measurement and a model that is right, beside noise: errors of sensors, which data sheets limit,
-//! and what any model of this kind misses.
+//! Systematic differences between a measurement and a right model: sensor errors within their data sheets, and the
+//! model discrepancy.
 
-// How a sensor may be wrong, and by how much.
+// Forms and priors of sensor errors.
 mod calibration;
-// The errors of all sensors as unknowns.
+// Nuisance parameters of all sensors.
 mod nuisance;
-// What they change in a prediction itself.
+// Effect of sensor errors on the prediction itself.
 mod misread;
-// What they change in what is shown of it.
+// Effect of sensor errors on the displayed values.
 mod shown;
-// What any model of this kind misses.
+// Gaussian process discrepancy of the model.
 mod discrepancy;
 
 pub use calibration::{Form, SENSOR, STRAINED, Shape};

@@ -1,52 +1,52 @@
-//! Every number of discovery that is not a fact of the data, each with its source, or said to be a choice.
+//! Assumptions of discovery that the data do not determine, each with its source or marked as a choice.
 
-/// What a search assumes. The default is what `qcar discover` uses.
+/// Assumptions of a search. The defaults are those of `qcar discover`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Numbers {
-    /// Standard deviation that is expected of a discrepancy before any measurement, in parts of the signal. A choice that no
-    /// source gives. The prior is exponential, so that zero is allowed; it is also the limit beyond which a model is `unknown`.
+    /// Prior mean of the discrepancy's standard deviation, relative to the signal. A choice without a source. The prior
+    /// is exponential, so zero is allowed. It is also the limit beyond which a model without findings is `unknown`.
     pub expected_discrepancy: f64,
 
-    /// Correlation of the discrepancy of one sensor between two runs of one kind: what a model misses is in part a function of
-    /// frequency alone, such as a missing mode, and in part of level, such as a law. Without more knowledge, half and half.
+    /// Correlation of the discrepancy of one sensor between two runs of one kind. Part of a model error depends on
+    /// frequency alone, such as a missing mode, and part depends on level, such as a wrong law. Without more knowledge
+    /// each part is one half.
     pub common_to_levels: f64,
 
-    /// Distance at which discrepancies of two frequencies have nothing in common, octaves: the half-power bandwidth of a mode
-    /// with a damping ratio of a quarter. That ratio is a choice.
+    /// Correlation length of the discrepancy over frequency, octaves: the half-power bandwidth of a mode with a damping
+    /// ratio of one quarter. That ratio is a choice.
     pub correlation_octaves: f64,
 
-    /// Rate of false alarms: the threshold of the screening is where one clean campaign in a hundred has a candidate above it.
-    /// Of `m` candidates the largest gain in the logarithm of the likelihood exceeds `ln(m / rate)` by chance in at most this
-    /// share of draws (Chernoff's bound of the χ² distribution with one degree of freedom, summed over the candidates).
+    /// False-alarm rate of the screening: at most this share of clean campaigns has a candidate above the threshold. By
+    /// chance, the largest log likelihood gain of `m` candidates exceeds `ln(m / rate)` in at most this share of draws
+    /// (Chernoff bound of the χ² distribution with one degree of freedom, summed over the candidates).
     pub false_alarms: f64,
 
-    /// Odds of a further effect beside one that is there, before any measurement: ten single causes for each pair.
-    /// A choice, not a measurement: it counts 2.3 in the logarithm of the evidence.
+    /// Prior odds of a further effect beside one that is present: ten single causes for each pair. A choice; it costs
+    /// 2.3 in log evidence.
     pub further: f64,
 
-    /// Probability that an answer may be wrong: the usual level of significance.
+    /// Accepted probability of a wrong answer: the usual significance level.
     pub doubt: f64,
 
-    /// Share of the excess of the squared gap that may be left on the runs that judge where it counts as closed: by a learned
-    /// law, and by a further effect, of what the others leave. A choice: beside a first effect most of what hardware leaves
-    /// is its own, and an effect that bends to half of that is easily found.
+    /// Share of the excess residual that a learned law may leave on the held-out runs if it counts as an explanation. A
+    /// further effect may leave the same share of what the other effects leave. A choice: beside a first effect, most
+    /// of the residual of hardware is its own, and an effect that adapts to half of that is easily found.
     pub left: f64,
 }
 
-/// Effects of a set. A choice: the time of a search grows with each.
+/// Largest number of effects in a set. A choice: the search time grows with each effect.
 pub const MOST_EFFECTS: usize = 3;
 
-/// Share of the excess of the squared gap that an answer explains at least on the runs that judge: the greater part. What
-/// explains less is a candidate. What an answer leaves is held against a learned law, which takes its place where it is
-/// more probable.
+/// Share of the excess residual on the held-out runs that an answer must explain. An effect that explains less is only
+/// a candidate. A learned law replaces the answer if it is more probable.
 pub const GREATER_PART: f64 = 0.5;
 
-/// Standard deviations by which a mean square exceeds that of noise where it is more than noise: the normal distribution exceeds
-/// them once in twenty draws, the usual level of significance.
+/// Standard deviations by which a mean square must exceed its expected value under noise: the one-sided 5 % quantile of
+/// the normal distribution.
 pub const ONE_SIDED: f64 = 1.645;
 
-/// Probability of the base model below which a law is learned though no effect is certain: something is missing more probably
-/// than not.
+/// Probability of the base model below which a law is learned even if no effect is certain: something is then probably
+/// missing.
 pub const EVEN: f64 = 0.5;
 
 impl Default for Numbers {
@@ -64,7 +64,7 @@ impl Default for Numbers {
 }
 
 impl Numbers {
-    /// Their names.
+    /// Names of the assumptions.
     pub const NAMES: [&str; 7] = [
         "expected_discrepancy",
         "common_to_levels",
@@ -75,7 +75,7 @@ impl Numbers {
         "left",
     ];
 
-    /// The same with one of them multiplied, to see what an answer owes to it; `None` where none has that name.
+    /// Multiplies one assumption, to show its influence on an answer; `None` if no assumption has that name.
     pub fn with(mut self, name: &str, factor: f64) -> Option<Self> {
         let own = match name {
             "expected_discrepancy" => &mut self.expected_discrepancy,
@@ -91,17 +91,17 @@ impl Numbers {
         Some(self)
     }
 
-    /// The least probability of an answer that is given as one.
+    /// Smallest probability of a certain answer.
     pub fn certain(&self) -> f64 {
         1.0 - self.doubt
     }
 
-    /// The odds at which an alternative is certain.
+    /// Odds of a certain answer.
     pub fn odds_of_certain(&self) -> f64 {
         self.certain() / self.doubt
     }
 
-    /// The share of the excess from which on it counts as closed.
+    /// Share of the excess residual that a learned law or a further effect must explain.
     pub fn explained(&self) -> f64 {
         1.0 - self.left
     }

@@ -1,39 +1,39 @@
-//! What was measured, beside what a model says of it.
+//! Measured data and their predictions by a model.
 //!
-//! A data set is made of series. Every series knows its run, its sensor and what its values are; every run its role, its
-//! level and what drove it. Uncertainty is the noise of a value, independent from line to line. What is common to all lines
-//! of a sensor, such as its calibration, is not in it: see [`noise`](super::noise). Each kind of run has a module of
-//! its own, which reads what was measured and predicts the same of a model.
+//! A data set consists of series. Every series knows its run, its sensor and the kind of its values. Every run knows
+//! its role, its level and its excitation. The uncertainty of a value is noise that is independent from line to line.
+//! Errors that all lines of a sensor share, such as its calibration, are not included: see [`noise`](super::noise).
+//! Each kind of run has its own module, which reads the measurement and predicts it.
 
-// Sensors in the words of a model.
+// Sensors as signals of a model.
 mod sensor;
-// Runs, and what drove them.
+// Runs and their excitation.
 mod run;
 // Values of one sensor in one run.
 mod series;
-// All of them: the data set.
+// The data set.
 mod dataset;
-// The same in part.
+// Parts of a data set.
 mod views;
-// What a model says of a series.
+// Prediction of one series.
 mod prediction;
-// A model driven by what was recorded.
+// Replay of recorded inputs through a model.
 mod replay;
-// Swept sines: the first harmonics at each frequency.
+// Swept sines: harmonics over frequency.
 mod sweep;
-// Rides over an obstacle: their impact and after-shake.
+// Cleat runs: impact and after-shake.
 mod cleat;
-// Any other excitation: the responses themselves.
+// Time histories of any other excitation.
 mod time_history;
-// The K&C rig: slow cycles and sines.
+// K&C tests: slow cycles and sines.
 mod kc;
-// A link alone: forces over its speed.
+// Dynamometer tests of a single link.
 mod dynamometer;
-// Runs through which a parameter changes.
+// Runs with a slowly changing parameter.
 mod drift;
-// From a campaign to a data set.
+// Reading of a campaign.
 mod read;
-// From a model to predictions.
+// Prediction of a data set.
 mod predict;
 
 pub use dataset::Evidence;

@@ -1,42 +1,43 @@
-//! Parameters and sensor errors that explain the evidence best: maximum a posteriori by least squares.
+//! Maximum a posteriori fit of model parameters and sensor errors by least squares.
 //!
-//! The residuals are those of all fitted runs over their noise, and the coefficients of the sensors' errors over their
-//! prior. Held-out runs are never seen.
+//! The residuals are those of all fitted runs over their noise, and the nuisance coefficients over their prior standard
+//! deviations. Held-out runs are never used.
 //!
 //! A rig shakes both sides of a car and its sensors are averaged over them, while a cleat run records one side. The two
-//! corners of an axle differ by a percent or two, which shifts the modes of the after-shake by more than its noise: so
-//! each free parameter has a factor of its own on the recorded side, held by a prior. A ratio is of the design, and both
-//! sides share it: were one that stands at 1 for no effect free to differ, an effect could act on one side alone.
+//! corners of an axle differ by one or two percent, which shifts the modes of the after-shake by more than its noise.
+//! So each free parameter with a unit has a factor of its own on the recorded side, held by a prior. A ratio belongs to
+//! the design, and both sides share it. If a ratio that is 1 without an effect could differ, an effect could act on one
+//! side alone.
 
-// What is known before any measurement.
+// Priors of parameters and sides.
 mod prior;
-// Residuals in units of their uncertainty.
+// Normalised real residuals.
 mod residual;
-// What a fit gives.
+// Result of a fit.
 mod refit;
-// The least-squares problem.
+// Least-squares problem.
 mod problem;
-// What its maximum says: covariance and evidence.
+// Laplace approximation: covariance and evidence.
 mod laplace;
-// The way to the maximum.
+// Search for the maximum.
 mod search;
-// The residuals there, and how they change.
+// Residuals and Jacobian at a fit.
 mod linearised;
-// No offset twice.
+// Offsets that are confounded with a parameter.
 mod offset;
-// All of that in one call.
+// A complete fit in one call.
 mod fit;
-// How far its parameters may be off.
+// Profile intervals of parameters.
 mod profile;
-// What further measurements would say of them.
+// Optimal design of further measurements.
 mod prospect;
-// With what sweeps show beyond their steady harmonics.
+// Non-steady part of sweep responses.
 mod settle;
-// Where records begin that only judge.
+// Initial states of held-out records.
 mod beginning;
-// What is left, in units of uncertainty: how much, and where.
+// Residuals over all runs, and where they are large.
 mod gap;
-// How well a model explains the evidence.
+// Explanation of the evidence by a model.
 mod explain;
 
 pub use beginning::beginnings;

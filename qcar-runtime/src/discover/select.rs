@@ -1,32 +1,32 @@
-//! Which effect is missing: sets of effects compared by their evidence, judged on runs that no fit has seen.
+//! Searches for missing effects: compares sets of effects by their evidence and checks them on held-out runs.
 
-// The order of the data: an effect in a model,
+// Unknowns of an effect in a model.
 mod unknowns;
-// what can be fitted,
+// Models with effects, ready to be fitted.
 pub mod assembly;
-// what each candidate would gain without a fit,
+// Score test of every candidate without a fit.
 mod screen;
-// which of them explain best,
+// Successive halving of the candidates.
 mod race;
-// where a model alone explains best,
+// Multi-start fit of a model without effects.
 mod alone;
-// a set of effects with its fit,
+// A set of effects with its fit.
 mod set;
-// how probable each is,
+// Bagged posterior probabilities of the sets.
 mod bagged;
-// what the runs that judge leave of it,
+// Checks on held-out runs.
 mod judging;
-// which names are the answer,
+// Names in the answer.
 mod answers;
-// and what is said of them,
+// Verdict and most probable candidates.
 mod verdict;
-// which rivals explain better beside effects that were added later,
+// Rivals fitted again beside the later effects.
 mod exchange;
-// what law is missing where the catalogue has none,
+// Learned laws for effects that the catalogue lacks.
 mod learn;
-// the first such law, before names are tried in twos and threes,
+// The first learned law, before pairs and triples of effects are tried.
 mod first_law;
-// and which effects would have been seen.
+// Detection limits of effects that were not found.
 mod visible;
 
 use std::sync::Arc;
@@ -54,10 +54,11 @@ use super::observe::{Evidence, PredictError, Stimulus};
 use super::posterior::{Explanation, Refit, Setting};
 use crate::campaign::Role;
 
-/// Searches for what is missing. `progress` is told how it goes.
+/// Searches for the effects that the model lacks. Calls `progress` with each step and each intermediate result.
 ///
 /// # Errors
-/// Where the model lacks what was measured, or a parameter has no value.
+/// Fails if no run may be fitted, if the model lacks a measured quantity, if a parameter has no value, or if the base
+/// model cannot be predicted.
 pub fn discover(
     workshop: Box<dyn Workshop>,
     setting: &Setting,
@@ -81,7 +82,7 @@ pub fn discover(
         sets.extend(more);
         tell(&sets[best(&sets)], progress);
     }
-    // What is not missed was only a step on the way.
+    // Remove effects that the evidence does not need: they only helped the search to get here.
     while let Some(place) = unreduced(&sets) {
         sets[place].reduced = true;
         let less = reductions(&sets[place], &sets[0], evidence, progress);
@@ -101,7 +102,7 @@ pub fn discover(
         let learned = learned.map(|learned| learn::told(alone, learned, evidence));
         discovery.take(learned, &evidence.numbers);
     } else if discovery.verdict != Verdict::None && is_doubtful(&sets[found], alone, evidence) {
-        // Names may make up for a law that the catalogue does not have.
+        // Several effects together can imitate a law that the catalogue lacks.
         let law = law.beside(&sets, evidence, progress);
         let law = law.filter(|law| learn::holds(law, alone, evidence));
         let is_certain = |law: &Set| {
@@ -119,15 +120,17 @@ pub fn discover(
     Ok(discovery)
 }
 
-/// True where a part of the set is an answer, and what the set has beyond that would be withdrawn.
+/// True if the held-out runs support only a part of the set and this part explains most of the excess residual. Then
+/// the set needs no further effect.
 fn is_settled(sets: &[Set], set: usize, evidence: &Evidence) -> bool {
     let answer = predictive(sets, set, evidence);
     let closes = closed(&sets[nameless(sets)].explanation, &sets[answer].explanation, evidence);
     answer != set && closes >= GREATER_PART
 }
 
-/// True where something is missing, more probably than not, that no effect of the catalogue explains, be it less than models
-/// of this kind leave; and where the model leaves more than noise.
+/// True if something is probably missing that no effect of the catalogue explains. That is the case if the verdict is
+/// `Unknown`, or if the verdict is `None` while its probability is below one half or the base model leaves more than
+/// noise.
 fn is_unexplained(discovery: &Discovery, alone: &Set, evidence: &Evidence) -> bool {
     let is_improbable = |probability: f64| probability < EVEN;
     match discovery.verdict {
@@ -138,7 +141,8 @@ fn is_unexplained(discovery: &Discovery, alone: &Set, evidence: &Evidence) -> bo
 }
 
 impl Discovery {
-    /// Takes a law up: one that closes most of a gap tells that something is missing, however little that is.
+    /// Stores a learned law if the verdict is `Unknown`. A law that explains enough of the excess residual turns the
+    /// verdict `None` into `Unknown`: something is missing, however small.
     fn take(&mut self, learned: Option<Learned>, numbers: &Numbers) {
         let closes = learned.as_ref().is_some_and(|own| own.explained >= numbers.explained());
         if closes && self.verdict == Verdict::None {
@@ -148,7 +152,7 @@ impl Discovery {
         self.learned = learned.filter(|_| self.verdict == Verdict::Unknown);
     }
 
-    /// Withdraws what was found for a law that is more probable.
+    /// Replaces the findings with a law that is more probable; does nothing if `law` is `None`.
     fn prefer(&mut self, law: Option<Learned>) {
         if law.is_some() {
             self.verdict = Verdict::Unknown;
@@ -162,12 +166,13 @@ impl Discovery {
     }
 }
 
-/// Sets of one effect that are extended where the most probable one leaves much: of two effects the one that explains
-/// more alone need not be among them (a beam of two).
+/// Beam width: the number of one-effect sets that are extended while much remains unexplained. The best pair need not
+/// contain the best single effect.
 const BEAM: usize = 2;
 
-/// Which set is extended next: the most probable one, until nothing that could be added to it is worth it. A third effect is one
-/// beside two that explain the greater part of the gap; where these do not, the catalogue has no answer.
+/// The set to extend next; `None` if no extension is worth trying. This is the most probable set; if something is still
+/// missing after that, it is the next one-effect set of the beam. A third effect is tried only if the first two explain
+/// most of the excess residual; if they do not, the catalogue has no answer.
 fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let best = best(sets);
     let closes = || closed(&sets[nameless(sets)].explanation, &sets[best].explanation, evidence);
@@ -178,35 +183,34 @@ fn next(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     first.or_else(|| second(sets).filter(|_| is_missing(&sets[best], evidence)))
 }
 
-/// The next of the sets of one effect that the beam holds.
+/// The next one-effect set to extend; `None` if the beam is full or no such set is left.
 fn second(sets: &[Set]) -> Option<usize> {
     let single = |place: &usize| sets[*place].names().len() == 1;
     let (extended, open): (Vec<usize>, Vec<usize>) = (0..sets.len()).filter(single).partition(|&k| sets[k].extended);
     most_probable(sets, open).filter(|_| extended.len() < BEAM)
 }
 
-/// The most probable set, or the part of it that the runs that judge leave, as long as it has several effects that were not
-/// replaced by their rivals.
+/// The most probable set, or the part of it that the held-out runs support, if it has several effects and its rivals
+/// have not been tried yet.
 fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
     let open = |place: &usize| !sets[*place].exchanged && sets[*place].assembly.effects().len() > 1;
     let best = best(sets);
     [best, predictive(sets, best, evidence)].into_iter().find(open)
 }
 
-/// The most probable set, as long as it has several effects that were not tried without one of them.
+/// The most probable set, if it has several effects and has not been fitted without each of them yet.
 fn unreduced(sets: &[Set]) -> Option<usize> {
     let best = best(sets);
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
 }
 
-/// True where the set that was found has several effects, leaves more of the gap than chance would, or is judged by runs that
-/// show no gap to close.
+/// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
+/// the excess residual, or the base model has no excess residual to explain.
 fn is_doubtful(found: &Set, alone: &Set, evidence: &Evidence) -> bool {
     let closes = closed(&alone.explanation, &found.explanation, evidence);
     found.names().len() > 1 || closes < evidence.numbers.certain() || excess(&alone.explanation, evidence) <= 0.0
 }
 
-/// The most probable set.
 fn best(sets: &[Set]) -> usize {
     most_probable(sets, 0..sets.len()).unwrap_or(0)
 }
@@ -220,11 +224,12 @@ fn tell(set: &Set, progress: Progress<'_>) {
     }
 }
 
-/// Searches for the base model: from the campaign's values, and from values spread over the ranges.
+/// Start points of the base model, as in [`setting_spread`].
 const SPREAD: [f64; 3] = [0.0, 0.35, -0.35];
+/// Rounds and evaluations of the base fit on coarse, medium and fine data.
 const BASE: [(usize, usize); 3] = [(2, 10), (2, 10), (2, 20)];
 
-/// The base model, fitted.
+/// The fitted base model. Searches from several start points on coarse data and refines the best on finer data.
 fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     let fidelity = fidelity(evidence);
     let hypothesis = assembly.hypothesis();
@@ -241,7 +246,7 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     });
     let is_number = |refit: &Refit| refit.log_evidence.is_finite();
     let order = |a: &Refit, b: &Refit| a.log_evidence.total_cmp(&b.log_evidence);
-    // What cannot be predicted at all is an error here, where among many it only drops out.
+    // A failed prediction is an error for the base model; a candidate that fails only drops out.
     let refusal = refused.into_iter().next().unwrap_or(PredictError::NoNumber);
     let best = fitted.into_iter().filter(is_number).max_by(order).ok_or(refusal)?;
     let medium = hypothesis.fit(&hypothesis.place(&best), &fidelity.medium, BASE[1])?;
@@ -253,7 +258,8 @@ fn base(assembly: Assembly, evidence: &Evidence) -> Result<Set, PredictError> {
     Ok(Set::new(assembly, explanation, 0.0))
 }
 
-/// The given values, every other one moved this way towards the end of its range, and the others the other way.
+/// Start values for the base model: moves each given value by the share `|spread|` towards a bound of its range. Even
+/// places move in the direction of the sign of `spread`, odd places against it.
 fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMap<String, f64> {
     let moved = |(k, given): (usize, &super::posterior::Given)| {
         let (low, high) = given.range?;
@@ -270,8 +276,8 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
     assembly.given().iter().enumerate().filter_map(moved).collect()
 }
 
-/// A set with one effect more each, those that are worth it.
-/// What one effect would gain must be worth it, and more than the `lead` of a learned law.
+/// Fitted sets with one more effect. Empty if no candidate passes the screening: its gain must exceed the false-alarm
+/// threshold and the `lead` of a learned law.
 fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
     let candidates = set.assembly.candidates();
     progress(News::Doing(&format!(
@@ -279,12 +285,12 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
         candidates.len()
     )));
     let refit = &set.explanation.refit;
-    // What sweeps show beyond steady harmonics changes little with one effect more.
+    // The non-steady part of a sweep response changes little when one effect is added, so it is subtracted once.
     let steady = evidence.less(&refit.unsteady).hurried();
     let fidelity = fidelity(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse)?;
-    // A model that leaves much has poor parameters: what an effect gains there to first order says little. Beside an effect, the fits that
-    // led to it have begun from the start values already.
+    // A model that leaves a large residual has poor parameters, so a first-order gain there is unreliable: also start
+    // from the given values. Fits with effects have already tried those values.
     if set.names().is_empty() && is_missing(set, evidence) {
         let given = Place::given(&fidelity.coarse);
         for prospect in &mut prospects {
@@ -292,7 +298,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
         }
     }
     let least = (candidates.len() as f64 / evidence.numbers.false_alarms).ln();
-    // The screening sees every so many-th line, the lead is that of all of them.
+    // The screening sees only a part of the lines; the lead counts all of them.
     let least = least.max(lead / THINNED[0] as f64);
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !prospects.iter().any(worth) {
@@ -304,7 +310,8 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
         let candidate = &candidates[finalist.candidate];
         let hypothesis = set.assembly.hypothesis_with(candidate)?;
         let explanation = explained(&hypothesis, finalist.refit, evidence)?;
-        // No odds are laid against a nuisance: every real car has some of it, and the evidence alone says whether it is seen.
+        // A nuisance effect has no prior odds against it: every real car has some of it, and the evidence alone decides
+        // whether the data show it.
         let prior = if candidate.nuisance {
             set.log_prior
         } else {
@@ -320,16 +327,16 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     Ok(sets)
 }
 
-/// What a fit says of all runs; `None` where that, or its evidence, is no number.
+/// Explanation of all runs by a fit; `None` if the prediction fails or the evidence is not finite.
 fn explained(hypothesis: &Hypothesis<'_>, refit: Refit, evidence: &Evidence) -> Option<Explanation> {
     let explanation = hypothesis.explanation(refit, evidence).ok()?;
     explanation.refit.log_evidence.is_finite().then_some(explanation)
 }
 
-/// Dropped candidates that are told of.
+/// Number of dropped candidates in the report.
 const RIVALS: usize = 3;
 
-/// The best of those that were dropped, each name once: its forms are no rivals of one another.
+/// The best dropped candidates. Each effect and place appears once: forms of one effect are not rivals of each other.
 fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
     let mut rivals: Vec<Rival> = Vec::new();
     for left in dropped {
@@ -343,7 +350,6 @@ fn rivals(candidates: &[Candidate], dropped: &[Dropped]) -> Vec<Rival> {
     rivals
 }
 
-/// A candidate as a rival.
 fn rival(candidate: &Candidate, behind: f64) -> Rival {
     Rival {
         effect: candidate.effect.clone(),
@@ -353,8 +359,8 @@ fn rival(candidate: &Candidate, behind: f64) -> Rival {
     }
 }
 
-/// Logarithm of the odds of a candidate before any measurement: even odds that something is missing, equal ones for all
-/// effects, shared among the places and forms of one.
+/// Log prior odds of a candidate: even odds that something is missing, shared equally among effects, and within an
+/// effect among its places and forms.
 fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     let of_effect = all.iter().filter(|other| other.effect == candidate.effect).count();
     let mut effects: Vec<&str> = all.iter().map(|other| other.effect.as_str()).collect();
@@ -363,8 +369,8 @@ fn log_prior(candidate: &Candidate, all: &[Candidate]) -> f64 {
     -((effects.len() * of_effect) as f64).ln()
 }
 
-/// The set less one of its effects each, of the last too: from here the others may come to a better place than that from
-/// which the set was extended.
+/// Refits the set without each of its effects in turn, the last one included. Starting from here, the other effects may
+/// reach a better optimum than the one from which the set was extended.
 fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     progress(News::Doing("fitting with one effect less"));
     let without = |left_out| without(left_out, set, base, evidence);
@@ -374,7 +380,7 @@ fn reductions(set: &Set, base: &Set, evidence: &Evidence, progress: Progress<'_>
         .collect()
 }
 
-/// The set less one of its effects, by its place; `None` where that cannot be fitted.
+/// The set without one of its effects, by position; `None` if it cannot be assembled or fitted.
 fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Option<Set> {
     let effects = set.assembly.effects();
     let others: Vec<&Placed> = effects[..left_out].iter().chain(&effects[left_out + 1..]).collect();
@@ -389,10 +395,11 @@ fn without(left_out: usize, set: &Set, base: &Set, evidence: &Evidence) -> Optio
     Some(Set::new(assembly, explanation, share))
 }
 
-/// Every so many-th line of a sweep in the coarse and the medium data.
+/// Line decimation of sweeps in the coarse and the medium data.
 const THINNED: [usize; 2] = [6, 3];
 
-/// The data of each fidelity: rides take the time of many sweeps, and all of them only count in the end.
+/// The data at each fidelity. Only the hardest cleat run is kept in the coarse and medium data: each such run takes as
+/// long as many sweeps.
 fn fidelity(evidence: &Evidence) -> Fidelity {
     let mut rides: Vec<usize> = (0..evidence.runs.len())
         .filter(|&run| evidence.runs[run].role == Role::Fit && is_ride(&evidence.runs[run].stimulus))

@@ -1,8 +1,8 @@
-//! The responses of all sensors line by line, and the change at one place that explains them best.
+//! Finds the change at one place that explains the responses of all sensors best, line by line.
 //!
-//! A change q of a parameter (complex here) changes all responses along their derivative by that parameter, times
-//! `q / (1 + q h)` with a compliance h of the place. The scalar is found first, line by line; q follows, and is smooth
-//! where the scalar is not, next to a mode.
+//! A complex change q of a parameter changes all responses along their derivative by that parameter, times `q / (1 + q
+//! h)` with the compliance h of the place. The scalar is fitted first, line by line. q follows from it, and is smooth
+//! even near a mode, where the scalar is not.
 
 use nalgebra::Complex;
 
@@ -12,19 +12,19 @@ use crate::discover::observe::{Evidence, Kind, Prediction, Series};
 use crate::discover::posterior::Refit;
 use crate::transmissibility::Point;
 
-/// Lines on each side over which a change is taken as straight: a smooth law hardly curves over them, chance does not
-/// care.
+/// Lines on each side over which a change is taken as straight. A smooth law hardly curves over them, while chance
+/// errors average out.
 const SMOOTH: usize = 2;
 
-/// Along what the responses of all sensors are changed.
+/// Direction of the response change.
 pub enum Direction {
-    /// The derivative by the parameter of this column.
+    /// Derivative by the parameter of this column.
     Slope(usize),
-    /// The signal of one sensor.
+    /// Signal of one sensor.
     Sensor(Point),
 }
 
-/// The first harmonics of all runs, in each all sensors on one grid of frequencies.
+/// First harmonics of all runs. Within a run, all sensors share one frequency grid.
 pub struct Lines {
     runs: Vec<RunLines>,
 }
@@ -44,11 +44,11 @@ struct SensorLines {
     slopes: Vec<Vec<Complex<f64>>>,
 }
 
-/// A value with its standard deviation.
+/// A value and its standard deviation.
 type Estimate = (Complex<f64>, f64);
 
 impl Lines {
-    /// What is left of the first harmonics after a refit, of which `predictions` are.
+    /// Residuals of the first harmonics after a refit; `predictions` are those of the refit.
     pub fn new(refit: &Refit, evidence: &Evidence, predictions: &[Prediction]) -> Self {
         let mut runs: Vec<RunLines> = Vec::new();
         for prediction in predictions {
@@ -70,7 +70,7 @@ impl Lines {
         Self { runs }
     }
 
-    /// Sum of the squared gap.
+    /// Sum of the squared normalised residuals.
     pub fn left(&self) -> f64 {
         let of_sensor = |sensor: &SensorLines| {
             let lines = sensor.residual.iter().zip(&sensor.sigma);
@@ -81,7 +81,7 @@ impl Lines {
         self.runs.iter().flat_map(|run| &run.sensors).map(of_sensor).sum()
     }
 
-    /// Every sensor once.
+    /// All sensors, without duplicates.
     pub fn sensors(&self) -> Vec<Point> {
         let all = self.runs.iter().flat_map(|run| &run.sensors);
         let mut sensors: Vec<Point> = all.map(|sensor| sensor.sensor.clone()).collect();
@@ -90,7 +90,7 @@ impl Lines {
         sensors
     }
 
-    /// The compliance h of a place for each run and line, from what a finite change of its parameter does.
+    /// Compliance h of a place for each run and line, from a finite `change` of its parameter.
     pub fn compliance(&self, column: usize, changed: &Lines, change: f64) -> Vec<Vec<Complex<f64>>> {
         let pairs = self.runs.iter().zip(&changed.runs);
         pairs
@@ -98,7 +98,7 @@ impl Lines {
             .collect()
     }
 
-    /// The compliance of what nothing can yield to.
+    /// Zero compliance for each run and line.
     pub fn rigid(&self) -> Vec<Vec<Complex<f64>>> {
         self.runs
             .iter()
@@ -106,7 +106,7 @@ impl Lines {
             .collect()
     }
 
-    /// What a place explains; `unit` makes a change of the parameter a dynamic stiffness.
+    /// Missing dynamic stiffness at a place; `unit` converts a parameter change to a dynamic stiffness.
     pub fn kappa(
         &self,
         place: Place,
@@ -131,7 +131,7 @@ impl Lines {
         }
     }
 
-    /// Share of the squared gap that changes explain.
+    /// Share of the squared residual that the changes explain.
     fn explained(&self, direction: &Direction, compliance: &[Vec<Complex<f64>>], changes: &[Vec<Estimate>]) -> f64 {
         let (mut left, mut all) = (0.0, 0.0);
         for ((run, h), changes) in self.runs.iter().zip(compliance).zip(changes) {
@@ -150,7 +150,7 @@ impl Lines {
     }
 }
 
-/// The weighted mean of what each run says of a line; runs are on one grid as far as they go.
+/// Weighted mean of the runs for each line. Runs share one grid as far as they reach.
 fn mean(each: &[Vec<Estimate>]) -> Vec<Estimate> {
     let longest = each.iter().map(Vec::len).max().unwrap_or(0);
     let of_line = |line: usize| {
@@ -193,7 +193,7 @@ impl SensorLines {
 }
 
 impl RunLines {
-    /// For each line the change that explains all sensors best, straight over its neighbours.
+    /// The change at each line that explains all sensors best, smoothed by a straight line through its neighbours.
     fn changes(&self, direction: &Direction, compliance: &[Complex<f64>]) -> Vec<Estimate> {
         let single: Vec<Estimate> = (0..self.frequency.len())
             .map(|line| {
@@ -222,7 +222,7 @@ impl RunLines {
         sums.solve()
     }
 
-    /// A finite change q makes the scalar `1 / (1/q + h)`.
+    /// Compliance of each line: a finite change q makes the scalar `1 / (1/q + h)`.
     fn compliance(&self, column: usize, changed: &RunLines, change: f64) -> Vec<Complex<f64>> {
         let of_line = |line: usize| {
             let mut sums = Straight::default();

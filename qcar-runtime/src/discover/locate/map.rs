@@ -12,16 +12,16 @@ use crate::discover::posterior::Refit;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// The finite change of a parameter that shows `H(s,F)`, relative to its value.
+/// Finite change of a parameter that determines `H(s,F)`, relative to its value.
 const FINITE: f64 = 0.3;
 
 /// κ at every place of the model, the best explanation first.
 ///
-/// Held-out runs are left out. The base model is best refitted with some tolerance
-/// ([`Evidence::tolerant`]), since a wrong model that is pressed to fit hides its fault in all its parameters.
+/// Held-out runs are left out. Refit the base model with some tolerance first ([`Evidence::tolerant`]): a wrong model
+/// that is fitted closely hides its error in all its parameters.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn kappa_map(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Vec<Kappa>, PredictError> {
     let places = places(model, &refit.values);
     let base = predict(model, &refit.values, &places, evidence, Role::Fit)?;
@@ -42,13 +42,13 @@ pub fn kappa_map(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Resul
         let direction = Direction::Sensor(sensor.clone());
         map.push(lines.kappa(Place::Sensor(sensor), &direction, &lines.rigid(), |_| Complex::ONE));
     }
-    // What no channel sees explains nothing.
+    // A place that no channel sees explains nothing.
     map.retain(|kappa| kappa.ceiling > 0.0);
     map.sort_by(|a, b| b.ceiling.total_cmp(&a.ceiling));
     Ok(map)
 }
 
-/// The parameters with the unit of a stiffness, a damping or a mass, that are not zero and lead their ties.
+/// Nonzero parameters with the unit of a stiffness, a damping or a mass. Of tied parameters only the leader counts.
 fn places(model: &dyn Model, values: &Values) -> Vec<Free> {
     let about = model.about();
     let wanted = |&k: &usize| {
@@ -62,7 +62,7 @@ fn places(model: &dyn Model, values: &Values) -> Vec<Free> {
     (0..about.parameters.len()).filter(wanted).map(free).collect()
 }
 
-/// How a parameter becomes a dynamic stiffness.
+/// Conversion of a parameter to a dynamic stiffness.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Unit {
     Stiffness,

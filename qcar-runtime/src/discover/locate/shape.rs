@@ -1,4 +1,4 @@
-//! Which kind of law a κ belongs to.
+//! Classifies κ by its kind of law.
 
 use std::f64::consts::TAU;
 
@@ -6,28 +6,28 @@ use nalgebra::{Complex, DMatrix, DVector};
 
 use super::kappa::{Kappa, KappaRun, Place};
 
-/// The kind of law that a κ belongs to.
+/// Kind of law of a κ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Shape {
-    /// `k + jωc`
+    /// `k + jωc`.
     SpringDamper,
-    /// `-ω²m`, rigidly or on a spring and damper.
+    /// `-ω²m`, rigid or on a spring and damper.
     Mass,
-    /// A spring-damper, and beside it one in series.
+    /// A spring-damper in parallel with a spring and damper in series.
     Relaxation,
-    /// Stiffer or more damped for small amplitudes than for large ones.
+    /// Stiffness or damping that decreases with amplitude.
     FrictionLike,
-    /// Of a sensor: one factor at all frequencies.
+    /// Sensor: one factor at all frequencies.
     Gain,
-    /// Of a sensor: a phase that grows with frequency.
+    /// Sensor: a phase proportional to frequency.
     Delay,
     /// None of these.
     Other,
 }
 
 impl Shape {
-    /// In words.
+    /// Plain-text name.
     pub fn name(self) -> &'static str {
         match self {
             Shape::SpringDamper => "a spring and damper",
@@ -41,19 +41,20 @@ impl Shape {
     }
 }
 
-/// A law is of a kind if that accounts for so much of κ,
+/// Smallest share of κ that a kind of law must explain.
 const ENOUGH: f64 = 0.8;
-/// and leaves no more than so many times what the best leaves.
+/// Largest ratio of its remaining residual to that of the best kind.
 const AS_GOOD: f64 = 1.5;
-/// κ depends on the level where the difference between levels is more than this share of it.
+/// Relative difference between levels beyond which κ counts as level-dependent.
 const DIFFERS: f64 = 0.5;
-/// Least relative uncertainty of κ: a coarse classification.
+/// Smallest relative uncertainty of κ, since the classification is coarse.
 const COARSE: f64 = 0.05;
-/// Natural frequencies (Hz), damping ratios and relaxation frequencies (Hz) that are tried.
+/// Natural and relaxation frequencies that are tried, Hz.
 const FREQUENCIES: [f64; 13] = [1.0, 1.5, 2.2, 3.3, 4.7, 6.8, 10.0, 12.0, 15.0, 22.0, 33.0, 47.0, 100.0];
+/// Damping ratios that are tried.
 const RATIOS: [f64; 3] = [0.05, 0.15, 0.4];
 
-/// The kind of law of a κ.
+/// Classifies a κ.
 pub fn shape(kappa: &Kappa) -> Shape {
     if let Some(shape) = over_level(&kappa.runs) {
         return shape;
@@ -78,7 +79,7 @@ pub fn shape(kappa: &Kappa) -> Shape {
     shares.iter().find(like).map_or(Shape::Other, |(shape, _)| *shape)
 }
 
-/// The kind of law of a κ that depends on the level; `None` where it does not.
+/// Kind of law of a level-dependent κ; `None` if κ does not depend on the level.
 fn over_level(runs: &[KappaRun]) -> Option<Shape> {
     let by_level = |a: &&KappaRun, b: &&KappaRun| a.level.total_cmp(&b.level);
     let (small, large) = (runs.iter().min_by(by_level)?, runs.iter().max_by(by_level)?);
@@ -103,7 +104,7 @@ fn weight(value: f64, sigma: f64) -> f64 {
     sigma.hypot(COARSE * value).powi(-2)
 }
 
-/// κ at the lines of all runs: angular frequency, value, weight.
+/// κ at the lines of all runs: angular frequency in rad/s, value and weight.
 struct Lines(Vec<(f64, Complex<f64>, f64)>);
 
 impl Lines {
@@ -121,7 +122,7 @@ impl Lines {
         )
     }
 
-    /// The share of κ for which the best real combination of some laws accounts.
+    /// Share of κ that the best real combination of some laws explains.
     fn share(&self, laws: &[&dyn Fn(f64) -> Complex<f64>]) -> f64 {
         let rows = 2 * self.0.len();
         let part = |value: Complex<f64>, row: usize| if row.is_multiple_of(2) { value.re } else { value.im };
@@ -138,7 +139,7 @@ impl Lines {
         1.0 - (&kappa - columns * parts).norm_squared() / kappa.norm_squared()
     }
 
-    /// The same of a mass, on the best of some springs and dampers or on none.
+    /// The same share for a mass, on the best of several springs and dampers or rigid.
     fn mass(&self) -> f64 {
         let rigid = self.share(&[&|w| Complex::from(-w * w)]);
         let hung = FREQUENCIES.iter().flat_map(|f| RATIOS.map(|ratio| (TAU * f, ratio)));
@@ -149,7 +150,7 @@ impl Lines {
         hung.fold(rigid, f64::max)
     }
 
-    /// The same of a spring-damper beside a branch that relaxes.
+    /// The same share for a spring-damper in parallel with a relaxing branch.
     fn relaxation(&self) -> f64 {
         let of = |f: &f64| {
             let rate = TAU * f;

@@ -1,18 +1,18 @@
-//! A straight line through a few complex values, of which the value in the middle is wanted.
+//! Weighted least-squares line through a few complex values, evaluated at its centre.
 
 use nalgebra::Complex;
 
-/// Sums of weighted least squares.
+/// Sums of the least-squares problem.
 #[derive(Default)]
 pub struct Straight {
-    /// Of `|d|² t^n / σ²`.
+    /// Sums of `|d|² t^n / σ²`.
     weight: [f64; 3],
-    /// Of `conj(d) r t^n / σ²`.
+    /// Sums of `conj(d) r t^n / σ²`.
     moment: [Complex<f64>; 2],
 }
 
 impl Straight {
-    /// Adds `r ≈ (a + b t) d` with an error of standard deviation `sigma`.
+    /// Adds `r ≈ (a + b t) d` with standard deviation `sigma`.
     pub fn add(&mut self, t: f64, direction: Complex<f64>, residual: Complex<f64>, sigma: f64) {
         let scale = 1.0 / (sigma * sigma);
         let (weight, moment) = (direction.norm_sqr() * scale, direction.conj() * residual * scale);
@@ -20,7 +20,7 @@ impl Straight {
         (0..2).for_each(|n| self.moment[n] += moment * t.powi(n as i32));
     }
 
-    /// `a` and its standard deviation; zero and infinite where nothing tells of it.
+    /// `a` and its standard deviation; zero and infinity without data.
     pub fn solve(&self) -> (Complex<f64>, f64) {
         const ONE_PLACE: f64 = 1e-12;
         let [w0, w1, w2] = self.weight;

@@ -1,4 +1,4 @@
-//! The places that explain what a model leaves of the sweeps.
+//! Finds the places that explain the residual of the sweeps.
 
 use super::kappa::Kappa;
 use super::lines::Lines;
@@ -8,24 +8,24 @@ use crate::discover::observe::{Evidence, Kind, PredictError, Stimulus, predict};
 use crate::discover::posterior::{Gap, Refit, refit};
 use crate::model::Model;
 
-/// What the sweeps say of where something is missing.
+/// What the sweeps show about the place of a missing effect.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sweeps {
-    /// The places of the model, the best explanation first; none without sweeps.
+    /// Places of the model, best explanation first; empty without sweeps.
     pub places: Vec<Kappa>,
-    /// Sum of the squared first harmonics, over their uncertainty, that the model leaves without any of it.
+    /// Sum of squared, normalised first harmonics that the base model leaves.
     pub left: f64,
 }
 
-/// Uncertainty added to every value before κ is asked for, as its share: a wrong model that is pressed to fit hides its
-/// fault in all its parameters.
+/// Relative uncertainty added to every value before κ is computed: a wrong model that is fitted closely hides its error
+/// in all its parameters.
 const TOLERANCE: f64 = 0.1;
 
 impl Sweeps {
-    /// Finds the places that explain what a fitted model leaves of the sweeps.
+    /// Finds the places that explain the residual of a fitted model in the sweeps.
     ///
     /// # Errors
-    /// Where the model lacks what was measured.
+    /// Fails if the model lacks a measured quantity.
     pub fn new(model: &dyn Model, before: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let sweeps = evidence.only(|run| matches!(evidence.runs[run].stimulus, Stimulus::Sweep { .. }));
         if sweeps.of_role(Role::Fit).next().is_none() {
@@ -39,7 +39,7 @@ impl Sweeps {
         })
     }
 
-    /// The share of what is left for which a model accounts that leaves this gap; `None` where nothing is left.
+    /// Share of `left` that another model explains, from its residual `gap`; `None` if nothing was left.
     pub fn explained_by(&self, gap: &Gap, evidence: &Evidence) -> Option<f64> {
         let first = evidence
             .of_role(Role::Fit)
@@ -47,7 +47,7 @@ impl Sweeps {
         let squares = first
             .flat_map(|(place, _)| &gap.residuals[place])
             .map(|residual| residual * residual);
-        // Each part of a complex residual is in units of its own standard deviation.
+        // Each part of a complex residual is in units of its own standard deviation, hence the factor 2.
         (self.left > 0.0).then(|| 1.0 - squares.sum::<f64>() / 2.0 / self.left)
     }
 }

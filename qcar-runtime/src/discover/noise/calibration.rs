@@ -1,31 +1,31 @@
-//! How a calibrated sensor may be wrong, and by how much.
+//! Forms and priors of the errors of a calibrated sensor.
 
-/// A way in which a sensor may be wrong.
+/// One form of sensor error with its prior.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shape {
-    /// What it is.
+    /// Form of the error.
     pub form: Form,
-    /// Standard deviation of its coefficient before any measurement.
+    /// Prior standard deviation of its coefficient.
     pub sigma: f64,
 }
 
-/// The form of an error over frequency.
+/// Form of a sensor error over frequency.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
-    /// Gain: the Chebyshev polynomial of this degree in the logarithm of frequency, 1 being its amplitude.
+    /// Log gain: the Chebyshev polynomial of this degree in log frequency, with amplitude 1.
     Gain(usize),
     /// Phase, rad, in the same polynomials.
     Phase(usize),
-    /// A delay, s.
+    /// Delay, s.
     Delay,
-    /// What the sensor of a time history reads at zero, relative to the RMS value of what it reads.
+    /// Zero offset of a sensor in a time history, relative to the RMS of its readings.
     Offset,
 }
 
-/// Prior of a sensor: 0.7 % of gain in all, its half in what varies with frequency; 0.2° of phase and 50 µs of delay; a
-/// tenth of what is read for the offset of a history.
+/// Priors of a sensor: about 0.7 % of gain, half of it varying with frequency; 0.2° of phase; 50 µs of delay; an offset
+/// in time histories of a tenth of the reading.
 ///
-/// Thesis section 3.4 has capacitive accelerometers; their data sheets give 0.5 to 1 % of gain and the phase of a
+/// Thesis section 3.4 uses capacitive accelerometers. Their data sheets give 0.5 to 1 % of gain and the phase of a
 /// first-order filter at several hundred hertz.
 pub const SENSOR: [Shape; 7] = [
     Shape {
@@ -58,8 +58,8 @@ pub const SENSOR: [Shape; 7] = [
     },
 ];
 
-/// The most that a calibration is wrong by, in standard deviations of its prior. What is beyond is a fault of the sensor:
-/// a gap, which has to be explained.
+/// Largest calibration error in prior standard deviations. A larger error is a sensor fault, which must be explained as
+/// a residual.
 ///
-/// Two sensors that are compared may both be wrong, so that a ratio of them is allowed twice as much.
+/// Both sensors of a ratio may be wrong, so a ratio may be wrong by twice as much.
 pub const STRAINED: f64 = 2.0;

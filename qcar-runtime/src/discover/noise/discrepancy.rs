@@ -1,21 +1,20 @@
-//! What any model of this kind misses: an error of the model that is smooth in frequency, in time or in travel.
+//! Gaussian process discrepancy: an error of the model that is smooth in frequency, in time or in travel.
 //!
-//! A measured value is `y = f(θ) + J_b b + J_s s + δ + ε`. Sensor noise `ε` is independent from value to value, the errors
-//! `b` of sensors and the differences `s` of the sides are nuisance parameters of the fit, and `δ` is the discrepancy: a
-//! Gaussian process for each group of series (one sensor in one kind of run), with a standard deviation `τ` in parts of
+//! A measured value is `y = f(θ) + J_b b + J_s s + δ + ε`. Sensor noise `ε` is independent from value to value. The
+//! sensor errors `b` and the differences `s` of the sides are nuisance parameters of the fit. The discrepancy `δ` is a
+//! Gaussian process for each group of series (one sensor in one kind of run), with a standard deviation `τ` relative to
 //! the signal (Kennedy and O'Hagan, Bayesian calibration of computer models, J. R. Stat. Soc. B 63, 2001). The fit
-//! whitens its residuals by the Cholesky factor of the covariance `diag σ² + τ² K`. Correlation ends at a distance
-//! (Wendland, Advances in Computational Mathematics 4, 1995), so that the factor is banded and costs
-//! little.
+//! whitens its residuals by the Cholesky factor of the covariance `diag σ² + τ² K`. The correlation is zero beyond a
+//! finite distance (Wendland, Advances in Computational Mathematics 4, 1995), so the factor is banded and cheap.
 //!
-//! On a clean simulated campaign every `τ` goes to zero and residuals count in units of noise; on hardware `τ` is what
-//! the model leaves, and one formula judges both.
+//! On a clean simulated campaign every `τ` goes to zero and residuals are in units of noise. On hardware `τ` measures
+//! the error of the model. The same formula applies to both.
 
-// A symmetric matrix whose rows begin late, and its Cholesky factor.
+// Banded symmetric matrix with its Cholesky factor.
 mod banded;
-// Where values stand, and the signal there.
+// Position and signal of each value.
 mod value;
-// The values that have a discrepancy in common.
+// Values that share a discrepancy.
 mod group;
 
 use std::mem::discriminant;
@@ -27,25 +26,25 @@ use crate::transmissibility::Point;
 use group::{Group, Key};
 use value::{Value, values};
 
-/// What every group of series may miss, and how much of that is assumed.
+/// The discrepancy of every group of series.
 #[derive(Clone, Debug, Default)]
 pub struct Discrepancy {
     groups: Vec<Group>,
 }
 
-/// What a group was found to miss.
+/// Estimated discrepancy of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Missed {
-    /// The sensor.
+    /// Sensor of the group.
     pub sensor: Point,
-    /// What its values are.
+    /// Kind of its values.
     pub kind: Kind,
-    /// Standard deviation of the discrepancy in parts of the signal.
+    /// Standard deviation of the discrepancy, relative to the signal.
     pub tau: f64,
 }
 
 impl Discrepancy {
-    /// The groups of the runs of one role, all with the least discrepancy.
+    /// The groups of the runs of one role, each with its smallest discrepancy.
     pub fn of(evidence: &Evidence, role: Role) -> Self {
         let mut rows = 0;
         let mut groups: Vec<(Key, f64, Vec<Value>)> = Vec::new();
@@ -75,7 +74,7 @@ impl Discrepancy {
         }
     }
 
-    /// The same groups of other evidence, or of other runs, with as much discrepancy as here.
+    /// The groups of other evidence or another role, with the `τ` of the same groups here.
     pub fn carried_to(&self, evidence: &Evidence, role: Role) -> Self {
         let mut carried = Self::of(evidence, role);
         for group in &mut carried.groups {
@@ -86,7 +85,7 @@ impl Discrepancy {
         carried
     }
 
-    /// The same with groups that are new here: of each as much as of the sensors beside it, on average.
+    /// Like [`Self::carried_to`], but a group that is new gets the mean `τ` of the groups of the same axis and kind.
     pub fn expected_of(&self, evidence: &Evidence, role: Role) -> Self {
         let mut expected = self.carried_to(evidence, role);
         for group in &mut expected.groups {
@@ -98,14 +97,14 @@ impl Discrepancy {
         expected
     }
 
-    /// Turns residuals of the data, in units of their noise, into independent ones of unit variance.
+    /// Whitens data residuals in units of their noise: the result is independent with unit variance.
     pub fn whiten(&self, column: &mut [f64]) {
         for group in &self.groups {
             group.whiten(column);
         }
     }
 
-    /// Half the logarithm of the determinant of the covariance, less the logarithm of the prior of every `τ`.
+    /// Half the log determinant of the covariance minus the log prior of every `τ`.
     pub fn cost(&self) -> f64 {
         self.groups
             .iter()
@@ -113,8 +112,8 @@ impl Discrepancy {
             .sum()
     }
 
-    /// Logarithm of the likelihood of residuals of the data (in units of their noise), but for a constant: a part for each sensor
-    /// in one kind of run and each distance at which correlation ends, in an order that is the evidence's.
+    /// Log likelihood of data residuals in units of their noise, up to a constant. It has one part for each group and
+    /// each correlation length, in the order of the evidence.
     pub fn log_likelihoods(&self, mut residual: Vec<f64>) -> Vec<f64> {
         self.whiten(&mut residual);
         self.groups
@@ -123,14 +122,14 @@ impl Discrepancy {
             .collect()
     }
 
-    /// Sets every `τ` to what explains these residuals of the data (in units of their noise) best.
+    /// Sets every `τ` to its most probable value for these data residuals in units of their noise.
     pub fn learn(&mut self, residual: &[f64]) {
         for group in &mut self.groups {
             group.learn(residual);
         }
     }
 
-    /// What each group was found to miss.
+    /// Estimated discrepancy of each group.
     pub fn missed(&self) -> impl Iterator<Item = Missed> {
         self.groups.iter().map(|group| Missed {
             sensor: group.key.sensor.clone(),

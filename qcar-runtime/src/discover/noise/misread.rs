@@ -1,5 +1,5 @@
-//! What errors of sensors change in a prediction itself: when a record begins and with which states, and how hard a run was
-//! driven.
+//! Sensor errors that change the prediction itself: the time at which a record begins, its initial states, and the
+//! level of a run.
 
 use std::collections::BTreeMap;
 
@@ -10,8 +10,9 @@ use super::nuisance::{Beginning, Nuisance};
 use crate::discover::observe::{Evidence, Kind, Misread, Prediction, Run, Series, Stimulus};
 
 impl Nuisance {
-    /// How late the sensor of each series is against what drove its run, where that is no phase, and how much harder each
-    /// run was driven than its reference shows: a linear model is not changed by that, a nonlinear one is.
+    /// Delays of each series in s against the excitation, excitation factors of each run, and initial states of each
+    /// record, from the nuisance coefficients. Delays that are phases of a harmonic are not included. The excitation
+    /// factor is the inverse gain of the reference; it changes only a nonlinear model.
     pub fn misread(&self, evidence: &Evidence, coefficients: &[f64]) -> Misread {
         let late = |series: &Series| {
             let delays = self.late_by(evidence, series).into_iter();
@@ -32,7 +33,8 @@ impl Nuisance {
         }
     }
 
-    /// The derivatives of a prediction along the coefficients by which it is misread, by place.
+    /// Derivatives of a prediction along the coefficients of [`Self::misread`], each with the position of its
+    /// coefficient.
     pub fn misread_slopes(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
         let mut slopes = self.delays(evidence, prediction);
         let run = &evidence.runs[evidence.series[prediction.series].run];
@@ -47,7 +49,7 @@ impl Nuisance {
         slopes
     }
 
-    /// The coefficients of the states with which a run begins.
+    /// Initial states of a run, each with the position of its coefficient.
     fn beginnings_of(&self, run: &Run) -> impl Iterator<Item = (usize, &Beginning)> {
         let first = self.of_sensors();
         let all = self.beginnings.iter().enumerate();
@@ -55,7 +57,7 @@ impl Nuisance {
             .map(move |(k, own)| (first + k, own))
     }
 
-    /// The coefficients of the mean gain of a run's reference.
+    /// Positions of the mean gain coefficients of a run's reference.
     fn reference_gains(&self, run: &Run) -> impl Iterator<Item = usize> {
         let of = |sensor| {
             let own = self.coefficient(sensor, Form::Gain(0));
@@ -64,7 +66,7 @@ impl Nuisance {
         run.stimulus.reference().into_iter().flat_map(of)
     }
 
-    /// The derivatives of a prediction along the coefficients that make its series late, by place.
+    /// Derivatives of a prediction along the delay coefficients, each with the position of its coefficient.
     fn delays(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<(usize, Vec<Complex<f64>>)> {
         let Some(delay) = &prediction.delay else {
             return Vec::new();
@@ -80,13 +82,13 @@ impl Nuisance {
         times.into_iter().map(along).collect()
     }
 
-    /// The coefficients that make a series late over time, and how many times.
+    /// Positions of the coefficients that delay a series in time, with their factors.
     fn late_by(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, f64)> {
         let prior = || self.coefficient(&series.sensor, Form::Delay).map(|k| (k, 1.0));
         let suspects = |sensor, times| self.suspected(sensor, Form::Delay).map(move |k| (k, times));
         match (series.kind, &evidence.runs[series.run].stimulus) {
             (Kind::Passage, _) => prior().into_iter().chain(suspects(&series.sensor, 1.0)).collect(),
-            // Of several inputs each would have to be shifted for itself.
+            // Several inputs would need a shift each, so only a single input is shifted.
             (Kind::Time, Stimulus::History { inputs, .. }) if inputs.signals.len() == 1 => {
                 let input = suspects(&inputs.signals[0].0, -1.0);
                 suspects(&series.sensor, 1.0).chain(input).collect()

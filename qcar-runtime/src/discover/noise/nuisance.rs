@@ -1,10 +1,10 @@
-//! What sensors may be wrong by, in all runs alike: unknowns of their own, held by a prior.
+//! Systematic sensor errors as nuisance parameters with a prior. They are equal in all runs.
 //!
-//! A calibrated accelerometer is off by 0.5 to 1 % in gain and by a few tenths of a degree in phase, smoothly in
-//! frequency. Taken as noise, such an error would look like a hundred independent proofs of some small effect; taken as
-//! an unknown of the sensor, it is estimated along with the parameters, and only what no calibration can explain is a
-//! gap. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
-//! in a time history there is an offset too.
+//! A calibrated accelerometer is wrong by 0.5 to 1 % in gain and by a few tenths of a degree in phase, smoothly in
+//! frequency. Treated as noise, such an error would look like a hundred independent proofs of a small effect. As a
+//! nuisance parameter, it is estimated together with the model parameters, and only what no calibration explains
+//! remains as a residual. The error of a sensor is `exp(Σ_k c_k φ_k(f))` with real coefficients `c_k ~ N(0, σ_k²)`;
+//! time histories also have an offset.
 
 use nalgebra::Complex;
 
@@ -15,47 +15,47 @@ use crate::mean::mean;
 use crate::model::{About, State};
 use crate::transmissibility::Point;
 
-/// The systematic errors of all sensors of the evidence.
+/// Nuisance parameters of all sensors of the evidence, and the initial states of its records.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Nuisance {
-    /// The sensors, references among them.
+    /// The sensors, including references.
     pub sensors: Vec<Point>,
-    /// The lowest and highest frequency of the polynomials, Hz.
+    /// Lowest and highest frequency of the polynomials, Hz.
     pub band: (f64, f64),
-    /// What is suspected beside their calibration.
+    /// Suspected errors beyond the calibration.
     pub suspects: Vec<Suspect>,
-    /// The RMS value of what each sensor reads in all records; zero without any.
+    /// RMS reading of each sensor over all records; zero without any.
     pub reads: Vec<f64>,
-    /// Sensors of records that are given no offset, and what of the model stands for it: a parameter or a state.
+    /// Sensors whose records have no offset, each with the parameter or state of the model that acts as one.
     pub without_offset: Vec<(Point, String)>,
-    /// The states of a model with which records begin.
+    /// Unknown initial states of the records.
     pub beginnings: Vec<Beginning>,
 }
 
-/// A state of a model when a record begins: how far it is from where a sensor saw it, or from rest.
+/// Initial state of a record: its deviation from what a sensor shows at the first sample, or from rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Beginning {
-    /// The run's file.
+    /// The run, by its file.
     pub run: String,
-    /// The state's name in the model.
+    /// Name of the state in the model.
     pub state: String,
-    /// Standard deviation before any measurement, in the unit of the state.
+    /// Prior standard deviation, in the unit of the state.
     pub sigma: f64,
 }
 
-/// An error that some sensors have in common: they are one device, or are read through one.
+/// An error that several sensors share because they are one device or one acquisition channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Suspect {
-    /// Places of the sensors in [`Nuisance::sensors`].
+    /// Positions of the sensors in [`Nuisance::sensors`].
     pub sensors: Vec<usize>,
-    /// How they are wrong.
+    /// Form of the error.
     pub form: Form,
-    /// Standard deviation of its coefficient before any measurement.
+    /// Prior standard deviation of its coefficient.
     pub sigma: f64,
 }
 
 impl Nuisance {
-    /// One set of errors for each sensor of the evidence.
+    /// The calibration errors of each sensor of the evidence.
     pub fn of(evidence: &Evidence) -> Self {
         let references = evidence.runs.iter().filter_map(|run| run.stimulus.reference());
         let mut sensors: Vec<Point> = references
@@ -83,8 +83,8 @@ impl Nuisance {
         }
     }
 
-    /// The same with the sensors of a location under suspicion, those of one axis or of all: an error of this form that
-    /// they have in common may be of the size `sigma`. `None` where the evidence has no such sensor, or no other axis.
+    /// Adds a suspected error that the sensors of a location share, along one axis or along all. `sigma` is its prior
+    /// standard deviation. `None` if the evidence has no such sensor, or if all axes are wanted and there is only one.
     pub fn suspecting(mut self, location: &str, axis: Option<Axis>, form: Form, sigma: f64) -> Option<Self> {
         let is_it = |sensor: &Point| sensor.location == location && axis.is_none_or(|axis| sensor.axis == axis);
         let sensors: Vec<usize> = (0..self.sensors.len()).filter(|&k| is_it(&self.sensors[k])).collect();
@@ -96,7 +96,7 @@ impl Nuisance {
         Some(self)
     }
 
-    /// The same with the states with which this model begins the records that are fitted, in place of those of another.
+    /// Replaces the initial states by those that `about` has in the fitted records.
     pub fn beginning(mut self, about: &About, evidence: &Evidence) -> Self {
         let fitted = evidence.runs.iter().filter(|run| run.role == Role::Fit);
         let of_run = |run: &Run| {
@@ -117,12 +117,13 @@ impl Nuisance {
         self
     }
 
-    /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each beginning.
+    /// Number of coefficients: [`SENSOR`] for each sensor in turn, one for each suspect, and one for each initial
+    /// state.
     pub fn len(&self) -> usize {
         self.of_sensors() + self.beginnings.len()
     }
 
-    /// Number of coefficients before those of the beginnings.
+    /// Number of coefficients before those of the initial states.
     pub fn of_sensors(&self) -> usize {
         self.of_calibration() + self.suspects.len()
     }
@@ -132,12 +133,12 @@ impl Nuisance {
         self.sensors.len() * SENSOR.len()
     }
 
-    /// True without any sensor.
+    /// True if there are no sensors.
     pub fn is_empty(&self) -> bool {
         self.sensors.is_empty()
     }
 
-    /// The standard deviation of each coefficient before any measurement.
+    /// Prior standard deviation of each coefficient.
     pub fn sigmas(&self) -> Vec<f64> {
         let priors = self.sensors.iter().flat_map(|_| SENSOR.map(|shape| shape.sigma));
         priors
@@ -146,14 +147,14 @@ impl Nuisance {
             .collect()
     }
 
-    /// The place of a sensor's coefficient.
+    /// Position of a sensor's coefficient; `None` if the sensor is unknown.
     pub(super) fn coefficient(&self, sensor: &Point, form: Form) -> Option<usize> {
         let place = self.sensors.iter().position(|s| s == sensor)?;
         let shape = SENSOR.iter().position(|shape| shape.form == form)?;
         Some(place * SENSOR.len() + shape)
     }
 
-    /// The places of the suspects' coefficients of a form in which a sensor is.
+    /// Positions of the coefficients of suspects of this form that contain the sensor.
     pub(super) fn suspected(&self, sensor: &Point, form: Form) -> impl Iterator<Item = usize> {
         let place = self.sensors.iter().position(|s| s == sensor);
         let is_it =
@@ -165,7 +166,7 @@ impl Nuisance {
     }
 }
 
-/// The RMS value of what a sensor reads in all records.
+/// RMS of all records of a sensor.
 fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
     let is_it = |series: &&Series| {
         let holds_rest = evidence.runs[series.run].stimulus.holds_rest();
@@ -175,7 +176,7 @@ fn reads(evidence: &Evidence, sensor: &Point) -> f64 {
     rms(records.flat_map(|series| &series.value))
 }
 
-/// Root of the mean square; zero of nothing.
+/// Root mean square; zero without values.
 pub(super) fn rms<'a>(values: impl Iterator<Item = &'a Complex<f64>>) -> f64 {
     mean(values.map(Complex::norm_sqr)).sqrt()
 }

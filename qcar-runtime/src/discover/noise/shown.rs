@@ -1,4 +1,4 @@
-//! What sensors with errors show of a prediction.
+//! Predictions as sensors with errors show them.
 
 use std::f64::consts::TAU;
 
@@ -12,16 +12,16 @@ use crate::transmissibility::Point;
 /// A predicted series as a sensor with errors shows it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Shown {
-    /// The values.
+    /// Shown values.
     pub value: Vec<Complex<f64>>,
-    /// By how much the prediction counts in each of them.
+    /// Factor of the sensors on each predicted value.
     pub factor: Vec<Complex<f64>>,
-    /// Their derivatives along the coefficients, by place.
+    /// Derivatives of the shown values along the coefficients, each with the position of its coefficient.
     pub slopes: Vec<(usize, Vec<Complex<f64>>)>,
 }
 
 impl Nuisance {
-    /// What a sensor with errors of these coefficients shows of a predicted series.
+    /// Applies the sensor errors with these coefficients to a predicted series.
     pub fn show(&self, evidence: &Evidence, series: &Series, value: &[Complex<f64>], coefficients: &[f64]) -> Shown {
         let logarithmic = self.slopes(evidence, series);
         let mut exponent = vec![Complex::ZERO; value.len()];
@@ -49,7 +49,8 @@ impl Nuisance {
         }
     }
 
-    /// The coefficient of an offset, and what one of it adds: a record has it of its sensor, a K&C curve one of its own size.
+    /// Position of the offset coefficient of a series and the offset for a coefficient of 1. `None` if the series has
+    /// no offset. The unit is the RMS of all records of the sensor, or of the K&C curve.
     fn offset(&self, evidence: &Evidence, series: &Series) -> Option<(usize, f64)> {
         if !evidence.runs[series.run].stimulus.holds_rest() {
             return None;
@@ -64,8 +65,8 @@ impl Nuisance {
         Some((place, unit))
     }
 
-    /// What the sensors of records read at zero, with standard errors (NaN where nothing tells it), by coefficients and
-    /// theirs; SI.
+    /// Zero offset of each sensor with records and its standard error, SI. The error is NaN if the data do not
+    /// determine it.
     pub fn offsets(&self, coefficients: &[f64], stderr: &[f64]) -> Vec<(Point, f64, f64)> {
         let records = self.sensors.iter().zip(&self.reads);
         let records = records.filter(|(sensor, reads)| {
@@ -79,9 +80,9 @@ impl Nuisance {
         records.filter_map(offset).collect()
     }
 
-    /// For each value of a series, what each of the coefficients adds to its logarithm.
+    /// For each coefficient, its derivative of the logarithm of each value of a series.
     ///
-    /// Response and reference are read at their own frequencies: `order` times that of the excitation, and that.
+    /// The reference is read at the excitation frequency, the response at `order` times that frequency.
     fn slopes(&self, evidence: &Evidence, series: &Series) -> Vec<(usize, Vec<Complex<f64>>)> {
         let constant = |k: usize| (k, vec![Complex::ONE; series.at.len()]);
         match series.kind {
@@ -91,7 +92,7 @@ impl Nuisance {
                 slopes.extend(reference.map_or_else(Vec::new, |point| self.of_sensor(point, series, -1.0, 1.0)));
                 slopes
             }
-            // Over a wide band the mean gain is what counts.
+            // Over a wide band only the mean gain matters.
             Kind::Passage | Kind::Travel | Kind::Width | Kind::Speed | Kind::Cycle(_) => {
                 let own = self.coefficient(&series.sensor, Form::Gain(0));
                 own.into_iter()
@@ -99,13 +100,13 @@ impl Nuisance {
                     .map(constant)
                     .collect()
             }
-            // Driven by what was recorded, a gain is what parameters are too: that of a calibration stays with the
-            // uncertainty of the values.
+            // A recorded input drives the model, so a calibration gain is equivalent to a parameter change; it stays in
+            // the uncertainty of the values.
             Kind::Time => self.suspected(&series.sensor, Form::Gain(0)).map(constant).collect(),
         }
     }
 
-    /// Of the errors of one sensor, read at so many times the frequency of the series.
+    /// Log derivatives along the errors of one sensor, read at `times` the frequency of the series.
     fn of_sensor(&self, sensor: &Point, series: &Series, sign: f64, times: f64) -> Vec<(usize, Vec<Complex<f64>>)> {
         let factors = SENSOR
             .iter()

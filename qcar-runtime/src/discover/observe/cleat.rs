@@ -1,8 +1,8 @@
-//! Rides over an obstacle: their impact and after-shake.
+//! Cleat runs: impact and after-shake.
 
-// What was measured.
+// Measured accelerations.
 mod measured;
-// What a model says.
+// Simulated accelerations.
 mod predicted;
 
 pub use predicted::passage;

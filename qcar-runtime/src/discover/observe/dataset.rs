@@ -1,4 +1,4 @@
-//! What a campaign holds, as series of measured values with their uncertainty.
+//! The data set: series of measured values with their uncertainty.
 
 use super::run::Run;
 use super::sensor::is_known;
@@ -8,29 +8,29 @@ use crate::discover::numbers::Numbers;
 use crate::model::About;
 use crate::transmissibility::Point;
 
-/// What a campaign holds.
+/// The measured data of a campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Evidence {
-    /// In the order of the campaign, without those that add nothing.
+    /// Runs in the order of the campaign, without runs that contribute nothing.
     pub runs: Vec<Run>,
-    /// The series of all runs, run after run.
+    /// Series of all runs, run by run.
     pub series: Vec<Series>,
-    /// Whether the two sides of a car are measured, and taken for one.
+    /// True if both sides of a car are measured and averaged.
     pub two_sided: bool,
-    /// What was left out, and why, as sentences for the engineer.
+    /// Omitted data and the reasons, as sentences for the engineer.
     pub notices: Vec<String>,
-    /// What a search assumes of it.
+    /// Assumptions of a search on this data set.
     pub numbers: Numbers,
 }
 
 impl Evidence {
-    /// The series of the runs of one role, with their places.
+    /// Series of the runs of one role, with their positions.
     pub fn of_role(&self, role: Role) -> impl Iterator<Item = (usize, &Series)> {
         let series = self.series.iter().enumerate();
         series.filter(move |(_, series)| self.runs[series.run].role == role)
     }
 
-    /// The sensors of a run, each once.
+    /// Sensors of a run, without duplicates.
     pub fn sensors(&self, run: usize) -> Vec<&Point> {
         let mut sensors: Vec<&Point> = Vec::new();
         for series in self.series.iter().filter(|series| series.run == run) {
@@ -41,7 +41,7 @@ impl Evidence {
         sensors
     }
 
-    /// Of the sensors of a run, those at places that the model has.
+    /// Keeps the sensors at places that the model has, and adds a notice for each of the others.
     pub(super) fn known(&mut self, about: &About, run: &str, points: Vec<Point>) -> Vec<Point> {
         let (known, unknown): (Vec<_>, Vec<_>) = points.into_iter().partition(|point| is_known(about, point));
         for point in unknown {

@@ -1,20 +1,20 @@
-//! Runs through which a parameter changes slowly, such as a damper that fades: the model is asked at several times, as though
-//! it had always been as it is then, and each value is read between the two times next to its own. What changes within one
+//! Runs with a slowly changing parameter, such as a fading damper. The model is evaluated at several times with the
+//! parameter fixed at its value then, and each value is interpolated between the two nearest times. A change within one
 //! oscillation needs a state in the model instead.
 
 use nalgebra::Complex;
 
 use super::{Delay, Evidence, Kind, PredictError, Prediction, Run, Series, Stimulus};
 
-/// Times at which a run is looked at lie no closer than this, s: slow against every mode of an axle.
+/// Smallest distance between these times, s: slow against every mode of an axle.
 const APART: f64 = 3.0;
-/// And there are no more of them than this: between two of them a change counts as a straight line.
+/// Largest number of these times. Between two of them the change counts as linear.
 const MOST: usize = 6;
 
-/// What is said of a run, by what is said of it `at` a part of it, which takes so long (s).
+/// Prediction of a run, interpolated from predictions `at` a part of the run (0 to 1) and the length of the run (s).
 ///
 /// # Errors
-/// As `at`.
+/// Fails where `at` fails.
 pub fn through(
     evidence: &Evidence,
     run: usize,
@@ -37,14 +37,14 @@ pub fn through(
 }
 
 impl Evidence {
-    /// The longest run, s.
+    /// Longest run, s.
     pub fn longest(&self) -> f64 {
         let runs = self.runs.iter();
         runs.map(|run| length(&run.stimulus)).fold(0.0, f64::max)
     }
 }
 
-/// How long something moved, s.
+/// Duration of the motion, s.
 fn length(stimulus: &Stimulus) -> f64 {
     match stimulus {
         Stimulus::Sweep { time, .. } => time.iter().copied().fold(0.0, f64::max),
@@ -54,7 +54,7 @@ fn length(stimulus: &Stimulus) -> f64 {
     }
 }
 
-/// When each value of a series was measured, s since the run began.
+/// Time of each value of a series, s after the beginning of the run.
 fn moments(series: &Series, run: &Run) -> Vec<f64> {
     let swept = |at: &f64| match &run.stimulus {
         Stimulus::Sweep { frequency, time, .. } => {
@@ -74,7 +74,8 @@ fn moments(series: &Series, run: &Run) -> Vec<f64> {
     }
 }
 
-/// Of `last` steps through a run, the one in which a part of it lies, and how far it has gone there.
+/// For a part of a run (0 to 1) divided into `last` steps: the step that contains it, and the position in this step (0
+/// to 1).
 fn between(last: usize, part: f64) -> (usize, f64) {
     if last == 0 {
         return (0, 0.0);
@@ -84,7 +85,7 @@ fn between(last: usize, part: f64) -> (usize, f64) {
     (earlier, place - earlier as f64)
 }
 
-/// One prediction of several at successive times.
+/// Linear interpolation of predictions at successive times.
 fn blended(of_times: &[&Prediction], weights: &[(usize, f64)]) -> Prediction {
     let blend = |part: &dyn Fn(&Prediction) -> Vec<Complex<f64>>| -> Vec<Complex<f64>> {
         let parts: Vec<Vec<Complex<f64>>> = of_times.iter().map(|own| part(own)).collect();

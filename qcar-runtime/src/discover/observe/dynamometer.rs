@@ -1,8 +1,8 @@
-//! A dynamometer: one link alone, without the masses and links around it.
+//! Dynamometer tests of a single link, without the masses and links around it.
 
-// Forces as they were measured.
+// Measured forces.
 mod measured;
-// What a model says of them.
+// Predicted forces.
 mod predicted;
 
 pub use predicted::forces;

@@ -1,12 +1,12 @@
-//! The K&C rig: slow cycles and sines.
+//! K&C tests: slow cycles and sines.
 
-// A slow cycle as it was measured.
+// Measured slow cycle.
 mod travel;
-// A sine as it was measured.
+// Measured sine.
 mod sine;
-// What the rig moves in a model, and what follows.
+// Model on a K&C rig.
 mod bench;
-// What a model says of both.
+// Prediction of both tests.
 mod predicted;
 
 pub use predicted::travel;

@@ -1,4 +1,4 @@
-//! What a model says of the data set, with its parameter Jacobian.
+//! Prediction of a data set with its parameter Jacobian.
 
 use rayon::prelude::*;
 
@@ -11,11 +11,11 @@ use crate::model::Model;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
 
-/// Predicts all series of the runs of one role; differentiated along `free` and, where there is any, along the states with
-/// which records begin.
+/// Predicts all series of the runs of one role, with derivatives by the `free` parameters. Unless `free` is empty, it
+/// also gives the derivatives by the initial states of the records.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn predict(
     model: &dyn Model,
     values: &Values,
@@ -29,11 +29,11 @@ pub fn predict(
     })
 }
 
-/// The same of the runs that are `wanted`, of a car whose recorded side has parameters of its own (the second set): cleat
-/// runs see these. Sensors are `misread`.
+/// Predicts the `wanted` runs of a car whose recorded side has its own parameters, the second set; cleat runs use
+/// these. `misread` holds the sensor errors.
 ///
 /// # Errors
-/// As [`predict`].
+/// Fails as [`predict`] does.
 pub fn predict_sides(
     model: &dyn Model,
     [values, side]: [&Values; 2],
@@ -51,10 +51,10 @@ pub fn predict_sides(
     Ok(of_runs.collect::<Result<Vec<_>, _>>()?.into_iter().flatten().collect())
 }
 
-/// What the sensors of a run show, differentiated along the states of the model when its record begins alone.
+/// Predicts a run with derivatives by its initial states alone.
 ///
 /// # Errors
-/// As [`predict`].
+/// Fails as [`predict`] does.
 pub fn predict_begun(
     model: &dyn Model,
     values: &Values,
@@ -65,10 +65,10 @@ pub fn predict_begun(
     time_history::history(model, values, misread, (&[], true), evidence, run)
 }
 
-/// What the sensors of a sweep or a time history would have recorded, sample by sample; nothing of any other run.
+/// Sample-by-sample signals of the sensors of a sweep or a time history; empty for any other run.
 ///
 /// # Errors
-/// As [`predict`].
+/// Fails as [`predict`] does.
 pub fn replayed(
     model: &dyn Model,
     values: &Values,
@@ -100,7 +100,7 @@ fn of_run(
     })
 }
 
-/// Of a run through which no parameter changes.
+/// Predicts a run with constant parameters.
 fn of_unchanging(
     model: &dyn Model,
     [values, side]: [&Values; 2],

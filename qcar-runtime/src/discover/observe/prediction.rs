@@ -1,4 +1,4 @@
-//! What a model says of one series, and why it may say nothing.
+//! Prediction of one series, and the errors of a prediction.
 
 use nalgebra::Complex;
 use thiserror::Error;
@@ -9,45 +9,44 @@ use crate::response::parameters::ParameterError;
 use crate::response::signal::SignalError;
 use crate::simulate::SimulateError;
 
-/// A parameter that may move.
+/// A free parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Free {
-    /// Its place among the parameters of the model; one that leads its ties.
+    /// Its position among the parameters of the model; it leads its ties.
     pub parameter: usize,
-    /// Lowest value.
+    /// Lower bound, SI.
     pub lower: f64,
-    /// Highest value.
+    /// Upper bound, SI.
     pub upper: f64,
 }
 
-/// What a model says of one series.
+/// Prediction of one series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prediction {
-    /// Place in [`Evidence::series`](super::Evidence::series).
+    /// Position in [`Evidence::series`](super::Evidence::series).
     pub series: usize,
-    /// A value for each of the series.
+    /// Predicted values, one for each value of the series.
     pub value: Vec<Complex<f64>>,
-    /// For each free parameter the derivatives of the values.
+    /// Derivatives of the values by each free parameter.
     pub slopes: Vec<Vec<Complex<f64>>>,
-    /// What a delay of sensors does to values over time; `None` where it only turns their phase, or nothing.
+    /// Effect of sensor delays on values over time; `None` if a delay only turns their phase or has no effect.
     pub delay: Option<Delay>,
-    /// The derivatives of the values by the logarithm of the amplitude that drove the run; `None` where they do not
-    /// depend on it.
+    /// Derivatives of the values by the log amplitude of the excitation; `None` if the values do not depend on it.
     pub louder: Option<Vec<Complex<f64>>>,
-    /// The derivatives of the values by the states of the model when the record begins, by their names; none where the
-    /// prediction was not differentiated, or does not begin with a record.
+    /// Derivatives of the values by the initial states of the record, by name. Empty without derivatives or if the
+    /// prediction does not start with a record.
     pub begun: Vec<(String, Vec<Complex<f64>>)>,
 }
 
-/// What errors of sensors change in a prediction itself, not only in what they show of it.
+/// Sensor errors that change the prediction itself, not only the displayed values.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Misread {
-    /// How late the sensor of each series is, s; without entries none is.
+    /// Delay of the sensor of each series, s; missing entries are zero.
     pub late: Vec<f64>,
-    /// By what factor each run was driven harder than its reference shows; without entries none was.
+    /// Factor of the true excitation of each run on that of its reference; missing entries are 1.
     pub louder: Vec<f64>,
-    /// For each run, which states began elsewhere than sensors saw them (or than at rest), and by how much, SI; without
-    /// entries none did.
+    /// For each run, states with their deviations from what sensors show at the first sample, or from rest, SI; missing
+    /// entries are zero.
     pub begun: Vec<Vec<(String, f64)>>,
 }
 
@@ -61,17 +60,17 @@ impl Misread {
     }
 }
 
-/// What delays do to a series over time.
+/// Effect of sensor delays on a series over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Delay {
-    /// The derivatives of the values by a delay (s) of their own sensor.
+    /// Derivatives of the values by a delay (s) of their own sensor.
     pub slope: Vec<Complex<f64>>,
-    /// Series of the same run, and which share of a delay of their sensors shifts the clock of the whole run.
+    /// Series of the same run, each with the share by which a delay of its sensor shifts the clock of the whole run.
     pub shares: Vec<(usize, f64)>,
 }
 
 impl Prediction {
-    /// Adds what was found to be missing; nothing where nothing was.
+    /// Adds the non-steady part to the values; an empty slice adds nothing.
     pub fn add(&mut self, missing: &[Complex<f64>]) {
         self.value
             .iter_mut()
@@ -80,60 +79,60 @@ impl Prediction {
     }
 }
 
-/// Why a model says nothing of the evidence.
+/// Reason why a model cannot predict the evidence.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum PredictError {
-    /// A sensor measures what the model cannot give.
+    /// A sensor measures a quantity that the model lacks.
     #[error(transparent)]
     Signal(#[from] SignalError),
     /// No run may be fitted.
     #[error("no run may be fitted; give at least one with sensors at places of the model `role = \"fit\"`")]
     NothingToFit,
-    /// The model gives no number anywhere near its start values.
+    /// The model gives no finite response near its start values.
     #[error("the model gives no finite response near its start values; give it other start values")]
     NoNumber,
     /// A parameter has no value.
     #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "))]
     Parameters(Vec<ParameterError>),
-    /// What drove a run is no input of the model.
+    /// The excitation of a run is no input of the model.
     #[error(
         "model `{model}` has no input `{location}`, which drives {run}; choose a model that has it, or leave the run out"
     )]
     NoInput {
-        /// The model's name.
+        /// Name of the model.
         model: String,
-        /// What drives.
+        /// Location of the excitation.
         location: String,
-        /// The run's file.
+        /// File of the run.
         run: String,
     },
-    /// A link that was measured alone is none of the model, or cannot stand alone.
+    /// A link of a dynamometer test is not in the model, or cannot be simulated alone.
     #[error(
         "model `{model}` has no link `{link}` along {axis} that could stand on a dynamometer by itself; choose a model that has it, or \
          leave {run} out"
     )]
     NoLink {
-        /// The model's name.
+        /// Name of the model.
         model: String,
-        /// The link.
+        /// Name of the link.
         link: String,
-        /// Its axis.
+        /// Axis of the link.
         axis: &'static str,
-        /// The run's file.
+        /// File of the run.
         run: String,
     },
-    /// The model cannot roll over the road.
+    /// The passage over the road cannot be simulated.
     #[error("{run}: {reason}")]
     Ride {
-        /// The run's file.
+        /// File of the run.
         run: String,
-        /// Why.
+        /// Reason of the simulation.
         reason: SimulateError,
     },
 }
 
 impl PredictError {
-    /// Of a run that something drives which is no input of the model.
+    /// Error for a run whose excitation is no input of the model.
     pub(super) fn no_input(about: &About, run: &Run, location: &str) -> Self {
         PredictError::NoInput {
             model: about.name.to_string(),

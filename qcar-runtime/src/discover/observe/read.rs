@@ -1,4 +1,4 @@
-//! A campaign as a data set.
+//! Reads a campaign as a data set.
 
 use super::dataset::Evidence;
 use crate::campaign::{Axis, Campaign, Run, Side, Test};
@@ -7,13 +7,13 @@ use crate::error::{InputError, Place, Problem};
 use crate::model::About;
 
 impl Evidence {
-    /// Reads what the runs of a campaign say of a model.
+    /// Reads the runs of a campaign for a model.
     ///
-    /// Sensors at places that the model does not have are left out with a notice, so that all variants of this model
-    /// are held against the same evidence.
+    /// Sensors at places that the model lacks are left out with a notice, so that all variants of this model are
+    /// compared on the same evidence.
     ///
     /// # Errors
-    /// Where a file cannot be read, a sweep has no pad, or no run says anything.
+    /// Fails if a file cannot be read, a sweep has no reference sensor, or no run has a sensor at a place of the model.
     pub fn from_campaign(campaign: &Campaign, about: &About) -> Result<Self, InputError> {
         let mut evidence = Evidence {
             runs: Vec::new(),

@@ -1,13 +1,13 @@
-//! A model driven by what was recorded: what its sensors would have recorded.
+//! Replays recorded inputs through a model and gives what its sensors would have recorded.
 //!
-//! Inputs are known at nodes that are half a step apart, so that the classical Runge-Kutta method never has to guess
-//! between them; a step is halved where a law is too stiff for it.
+//! Inputs are known at nodes half a step apart, so the classical Runge-Kutta method never interpolates. A step is
+//! halved where a law is too stiff for it.
 
-// Recorded inputs at the nodes of an integration.
+// Recorded inputs at the integration nodes.
 mod input;
-// A model with one set of parameters, or with several.
+// A model with one or several parameter sets.
 mod sets;
-// From one node to the next.
+// Runge-Kutta steps with error control.
 mod stepper;
 
 pub use input::{Between, Recorded};
@@ -23,59 +23,60 @@ use input::rows;
 use sets::{Alone, Sets, Several};
 use stepper::Stepper;
 
-/// Where a sensor's signal is found while time goes on.
+/// Source of a sensor's signal in the simulation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Reading {
-    /// An output.
+    /// Output of the model, by position.
     Output(usize),
-    /// A state.
+    /// State of the model, by position.
     State(usize),
 }
 
-/// A replay of one record, whatever the parameters.
+/// Replay of one record, for any parameters.
 pub struct Replay<'a> {
     model: &'a dyn Model,
     recorded: Vec<Recorded<'a>>,
     how: Between,
-    /// At some samples, in their order: states and what they are then. All others go on, from zero at first.
+    /// States and values set at some samples, in order of the samples. All states start at zero, and states that are
+    /// not set continue.
     restarts: Vec<(usize, Vec<(usize, f64)>)>,
     readings: Vec<Reading>,
-    /// The inputs at each node.
+    /// Inputs at each node.
     nodes: OnceLock<Vec<Vec<f64>>>,
 }
 
-/// What a replay gives: a row for each set of parameters that took part.
+/// Result of a replay, with one row for each parameter set.
 pub struct Replayed {
-    /// For each reading its samples; not finite from where the model runs away even with the shortest steps.
+    /// Samples of each reading; not finite once the model diverges even with the shortest steps.
     pub signals: Vec<Vec<f64>>,
     /// All states at each sample.
     states: Vec<Vec<f64>>,
-    /// They one sample later than the last.
+    /// All states one sample after the last.
     end: Vec<f64>,
-    /// How often each step was halved.
+    /// Number of halvings of each step.
     halvings: Vec<u8>,
-    /// How often the record was replayed until the motion repeated.
+    /// Number of replays of the record until the motion repeated.
     periods: usize,
 }
 
-/// How long the steps of a replay are.
+/// Step lengths of a replay.
 #[derive(Clone, Copy)]
 enum Steps<'r> {
-    /// As the laws need it.
+    /// As error control requires.
     Found,
-    /// As those of another replay.
+    /// As in another replay.
     Like(&'r Replayed),
-    /// As those of another replay, until the states of the one set agree with its own.
+    /// As in another replay, until its states agree with the own states.
     Beside(&'r Replayed),
 }
 
-/// Periods until a motion is taken for one that repeats, whether it does or not,
+/// Number of periods after which a motion counts as periodic even if it does not repeat.
 const PERIODS: usize = 60;
-/// and by what share of their largest value states may still differ from a period to the next.
+/// Largest change of a state from period to period that counts as a repetition, relative to its largest value.
 const REPEATED: f64 = 1e-9;
 
 impl<'a> Replay<'a> {
-    /// Prepares a replay; the nodes of `how` are overruled.
+    /// Prepares a replay. `how.nodes` is ignored.
     pub fn new(
         model: &'a dyn Model,
         recorded: Vec<Recorded<'a>>,
@@ -93,7 +94,7 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// What follows from the parameters, and where states `begin` elsewhere than they were seen: by so much.
+    /// Replays with the parameters `p`. `begin` adds values to initial states, by position.
     pub fn run(&self, p: &[f64], begin: &[(usize, f64)]) -> Replayed {
         let mut alone = Alone::new(self.model, p);
         let mut replayed = self.advance(&mut alone, (self.rest::<Alone<'_>>(), begin), Steps::Found);
@@ -106,8 +107,8 @@ impl<'a> Replay<'a> {
         replayed
     }
 
-    /// The signals of each of several parameter sets, in the steps of a replay and for as many periods: what has not settled is
-    /// the same in both, so that their difference is that of the parameters alone.
+    /// Signals for several parameter sets, with the steps and the number of periods of another replay. Transients are
+    /// then equal in both, so the difference is due to the parameters alone.
     pub fn like(&self, other: &Replayed, p: &[Vec<f64>], begin: &[(usize, f64)]) -> Vec<Vec<Vec<f64>>> {
         let some = |p: &[Vec<f64>]| match p {
             [one] => vec![self.again(&mut Alone::new(self.model, one), begin, other).signals],
@@ -119,14 +120,14 @@ impl<'a> Replay<'a> {
         p.par_chunks(LANES).flat_map_iter(some).collect()
     }
 
-    /// The signals of other initial states. Once all states agree with those of the replay, its samples are copied.
+    /// Signals for other initial states. Once all states agree with those of the other replay, its samples are copied.
     pub fn beside(&self, other: &Replayed, p: &[f64], begin: &[(usize, f64)]) -> Vec<Vec<f64>> {
         let mut alone = Alone::new(self.model, p);
         let from = (self.rest::<Alone<'_>>(), begin);
         self.advance(&mut alone, from, Steps::Beside(other)).signals
     }
 
-    /// In the steps of another replay.
+    /// Replays with the steps of another replay.
     fn again<S: Sets>(&self, sets: &mut S, begin: &[(usize, f64)], other: &Replayed) -> Replayed {
         let mut replayed = self.advance(sets, (self.rest::<S>(), begin), Steps::Like(other));
         for _ in 1..other.periods {
@@ -139,7 +140,7 @@ impl<'a> Replay<'a> {
         vec![0.0; self.model.about().states.len() * S::LANES]
     }
 
-    /// For each node the inputs of the model.
+    /// Inputs of the model at each node.
     fn inputs(&self, steps: usize) -> Vec<Vec<f64>> {
         let how = Between {
             nodes: 2 * steps,
@@ -150,7 +151,7 @@ impl<'a> Replay<'a> {
         (0..nodes).map(|k| rows.iter().map(|row| row[k]).collect()).collect()
     }
 
-    /// From a state with some of it elsewhere.
+    /// Replays the record once from the states `x`, to which `begin` is added.
     fn advance<S: Sets>(
         &self,
         side: &mut S,
@@ -223,7 +224,7 @@ impl<'a> Replay<'a> {
         }
     }
 
-    /// The node at which a step ends; what is held stays until the next sample replaces it.
+    /// Node at which a step ends. Held inputs keep their value until the next sample replaces it.
     fn end(&self, node: usize, count: usize) -> usize {
         if self.how.band_limited && self.how.periodic {
             (node + 2) % count
@@ -236,7 +237,7 @@ impl<'a> Replay<'a> {
 }
 
 impl Replayed {
-    /// True where it ends as it began, or has no number.
+    /// True if the record ends in its initial states, or is not finite.
     fn repeats(&self) -> bool {
         let most = |state: usize| self.states.iter().map(|x| x[state].abs()).fold(0.0, f64::max);
         let first = self.states.first().unwrap_or(&self.end);
@@ -247,7 +248,8 @@ impl Replayed {
     }
 }
 
-/// True where no state is apart from another replay's by more than a trace of the farthest it ever was, which is kept.
+/// True if every state differs from that of another replay by no more than a trace of its largest difference so far,
+/// which `apart` holds.
 fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     const TRACE: f64 = 1e-4;
     let mut joined = true;
@@ -259,22 +261,22 @@ fn has_joined(x: &[f64], other: &[f64], apart: &mut [f64]) -> bool {
     joined
 }
 
-/// The values of one state or output of all sets.
+/// Values of one state or output in all sets.
 fn lanes_of<S: Sets>(of: &mut [f64], place: usize) -> &mut [f64] {
     &mut of[place * S::LANES..][..S::LANES]
 }
 
-/// Steps of at most a millisecond, and at least two a sample, whose band may reach up to half its rate: they are halved where
-/// that is too long.
+/// Steps of a sample: each at most a millisecond, and at least two, since the band may reach half the sample rate.
+/// Error control halves them where needed.
 fn steps(rate: f64) -> usize {
     const LONGEST: f64 = 1e-3;
     ((1.0 / (rate * LONGEST)).ceil() as usize).max(2)
 }
 
-/// Where a sensor's signal is found.
+/// Finds the source of a sensor's signal.
 ///
 /// # Errors
-/// Where the model neither outputs it nor has it as a state.
+/// Fails if the model has neither an output nor a state for it.
 pub fn reading(about: &About, signal: &crate::model::Signal) -> Result<Reading, SignalError> {
     let state_kind = match signal.kind {
         SignalKind::Motion(Quantity::Position) => Some(StateKind::Position),

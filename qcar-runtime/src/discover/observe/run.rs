@@ -1,12 +1,12 @@
-//! The runs of a campaign, and what drove them.
+//! Runs of a campaign and their excitation.
 
-// Which frequencies of a record are compared.
+// Frequency band of a record.
 mod band;
-// From where a model sets out, and where one that drifts is set right.
+// Initial states and restarts of a record.
 mod restart;
-// A record as weighted means.
+// Weighted means of a record.
 mod means;
-// A ride over an obstacle.
+// A passage over an obstacle.
 mod passage;
 
 pub use band::Band;
@@ -25,84 +25,83 @@ use crate::transmissibility::harmonics::Swept;
 /// A run of the campaign.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Run {
-    /// Its file, as the campaign calls it.
+    /// Its file, as named in the campaign.
     pub name: String,
-    /// What it may be used for.
+    /// Its role: fitted or held out.
     pub role: Role,
-    /// How strongly it was driven, in the unit of its test: peak velocity (m/s) of a sweep, RMS of a
-    /// history's input, height (m) of an obstacle, largest travel (m) of a K&C cycle,
-    /// highest speed (m/s) of a dynamometer.
+    /// Level of its excitation, in the unit of the test: peak velocity (m/s) of a sweep, RMS of a history's input,
+    /// height (m) of an obstacle, largest travel (m) of a K&C cycle, highest speed (m/s) of a dynamometer.
     pub level: f64,
-    /// What drove it.
+    /// Its excitation.
     pub stimulus: Stimulus,
 }
 
-/// What drove a run.
+/// Excitation of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Stimulus {
     /// A swept sine.
     Sweep {
-        /// The sensor that the responses are related to.
+        /// Reference sensor of the responses.
         reference: Point,
-        /// Its mean signal over the sides.
+        /// Samples of the reference, averaged over the sides.
         signal: Vec<f64>,
-        /// Reads responses to it; `None` where its record is not at hand.
+        /// Estimator of responses to the reference; `None` if its record is not available.
         swept: Option<Arc<Swept>>,
-        /// Hz.
+        /// Sample rate, Hz.
         rate: f64,
-        /// Hz, increasing: where responses were asked for.
+        /// Frequencies of the responses, Hz, increasing.
         frequency: Vec<f64>,
-        /// Amplitude of the reference there, in its unit.
+        /// Amplitude of the reference at these frequencies, in its unit.
         amplitude: Vec<f64>,
-        /// When the sweep passed there, s from its first sample.
+        /// Time at which the sweep passes these frequencies, s after the first sample.
         time: Vec<f64>,
         /// First and last frequency of the sweep, Hz.
         band: (f64, f64),
     },
-    /// Anything else, as it was recorded.
+    /// Any other excitation, as recorded.
     History {
-        /// What drove the model.
+        /// Inputs of the model.
         inputs: Recordings,
-        /// Hz.
+        /// Sample rate, Hz.
         rate: f64,
-        /// True where the inputs hold nothing above half the sample rate, false where they are held between samples.
+        /// True if the inputs contain nothing above half the sample rate; false if they are held between samples.
         band_limited: bool,
-        /// From where the model sets out, and where it is set right; the first is at the first sample.
+        /// Initial states and later restarts of the model; the first is at the first sample.
         restarts: Vec<Restart>,
-        /// How far from there it may have been when the record began.
+        /// Standard deviations of the initial states.
         spread: Spread,
-        /// Which frequencies are compared; all without one.
+        /// Frequency band that is compared; `None` for all frequencies.
         band: Option<Band>,
-        /// True where the record is made of whole periods of a motion that repeats.
+        /// True if the record consists of whole periods of a periodic motion.
         periodic: bool,
     },
     /// A road under a rolling tyre.
     Cleat(Passage),
-    /// A K&C rig that moved the wheel slowly against the body.
+    /// A K&C test: the rig moves the wheel slowly against the body.
     Travel {
-        /// What these are in the model.
+        /// Wheel and body in the model.
         on: OnRig,
-        /// Along which it moved.
+        /// Axis of the motion.
         axis: Axis,
-        /// m.
+        /// Lowest and highest travel, m.
         ends: [f64; 2],
     },
-    /// The same as a sine.
+    /// A K&C test with a sine.
     Sine {
-        /// What these are in the model.
+        /// Wheel and body in the model.
         on: OnRig,
-        /// Along which it moved.
+        /// Axis of the motion.
         axis: Axis,
-        /// Hz.
+        /// Frequency of the sine, Hz.
         frequency: f64,
     },
-    /// A dynamometer that moved a link alone, as sines of several peak velocities.
+    /// A dynamometer test: a single link is moved by sines of several peak velocities.
     Dynamometer {
-        /// Its name in the model.
+        /// Name of the link in the model.
         link: String,
-        /// The axis of the model along which it stands.
+        /// Axis of the link in the model.
         axis: Axis,
-        /// m.
+        /// Amplitude of the sines, m.
         amplitude: f64,
     },
 }
@@ -114,12 +113,12 @@ pub struct Recordings {
     pub start: f64,
     /// Number of samples.
     pub samples: usize,
-    /// The sensors with their samples.
+    /// Sensors with their samples.
     pub signals: Vec<(Point, Vec<f64>)>,
 }
 
 impl Stimulus {
-    /// What is compared of a signal that was recorded in the run, sample by sample.
+    /// The compared part of a recorded signal: filtered by the band, if there is one.
     pub fn of_band(&self, signal: &[f64]) -> Vec<f64> {
         match self {
             Stimulus::History {
@@ -131,7 +130,8 @@ impl Stimulus {
         }
     }
 
-    /// Samples at either end of a record that are not compared, since a band reaches beyond them.
+    /// Number of samples at either end of a record that are not compared because the band filter reaches beyond the
+    /// record.
     pub fn cut(&self) -> usize {
         match self {
             Stimulus::History {
@@ -143,7 +143,7 @@ impl Stimulus {
         }
     }
 
-    /// True where what never changes is compared too.
+    /// True if the mean of a signal is compared too.
     pub fn holds_rest(&self) -> bool {
         match self {
             Stimulus::History { band: Some(band), .. } => band.holds_rest(),
@@ -151,7 +151,7 @@ impl Stimulus {
         }
     }
 
-    /// The sensor of what drove the run; none measures a road, and a mass that swings out is driven by nothing.
+    /// Reference sensor of the run; `None` for a road, a K&C or dynamometer test, and a free decay.
     pub fn reference(&self) -> Option<&Point> {
         match self {
             Stimulus::Sweep { reference, .. } => Some(reference),

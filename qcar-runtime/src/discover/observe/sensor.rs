@@ -1,14 +1,15 @@
-//! Sensors in the words of a model.
+//! Sensors as signals of a model.
 
 use crate::campaign::{History, Quantity};
 use crate::model::{About, Signal, SignalKind};
 use crate::response::signal::output_of;
 use crate::transmissibility::{End, Point, points};
 
-/// What a sensor measures, in the model's words.
+/// The signal of the model that a sensor measures.
 ///
-/// On a link a displacement is its stretch. A sensor at an end of a place stands at the point of this name, `sf_front`, where
-/// the model has one, any other sensor at `sf_sensor`, and at the place itself where it has not.
+/// A displacement sensor on a link measures its stretch. A sensor at an end of a place stands at the point of that
+/// name, such as `sf_front`, if the model has one. Any other sensor stands at the point with the suffix `_sensor`, such
+/// as `sf_sensor`, if the model has one. Otherwise it stands at the place itself.
 pub fn signal_of(about: &About, point: &Point) -> Signal {
     let link = about
         .links
@@ -38,7 +39,8 @@ fn location_of(about: &About, point: &Point) -> String {
     }
 }
 
-/// The sensors of a run: what drives a model as the mean of all sensors of a place, and what answers by the ends of the place.
+/// Sensors of a run. An excitation is the mean of all sensors of a place; responses are separate for each end of a
+/// place.
 pub fn sensors(about: &About, history: &History) -> Vec<Point> {
     let ends = |point: Point| match excitation_of(about, &point) {
         Some(_) => vec![point],
@@ -47,7 +49,7 @@ pub fn sensors(about: &About, history: &History) -> Vec<Point> {
     points(history).into_iter().flat_map(ends).collect()
 }
 
-/// How many times a motion has been differentiated where a sensor measures it.
+/// Order of the time derivative of a motion that a sensor measures; 0 for a force.
 pub fn order_of(point: &Point) -> i32 {
     match point.quantity {
         Quantity::Acceleration => 2,
@@ -56,7 +58,7 @@ pub fn order_of(point: &Point) -> i32 {
     }
 }
 
-/// The excitation of the model that a sensor measures, if it measures one.
+/// Position of the excitation that a sensor measures; `None` if it measures a response.
 pub fn excitation_of(about: &About, point: &Point) -> Option<usize> {
     about.excitations.iter().position(|excitation| {
         let force = point.quantity == Quantity::Force;
@@ -64,12 +66,12 @@ pub fn excitation_of(about: &About, point: &Point) -> Option<usize> {
     })
 }
 
-/// True of a sensor at a place that the model has.
+/// True if the model has the place of the sensor.
 pub fn is_known(about: &About, point: &Point) -> bool {
     excitation_of(about, point).is_some() || output_of(about, &signal_of(about, point)).is_ok()
 }
 
-/// True of a sensor at a motion that drives the model.
+/// True if the sensor measures a motion that drives the model.
 pub fn is_motion(about: &About, point: &Point) -> bool {
     excitation_of(about, point).is_some_and(|place| !about.excitations[place].force)
 }

@@ -4,51 +4,54 @@ use nalgebra::Complex;
 
 use crate::transmissibility::Point;
 
-/// The least noise of a value, in parts of the signal: that of a converter of twelve bits.
+/// Smallest noise of a value relative to the signal: that of a 12-bit converter.
 pub(super) const LEAST_NOISE: f64 = 2.4e-4;
 
-/// Values of one kind that one sensor gave in one run.
+/// Values of one kind from one sensor in one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Series {
-    /// Place in [`Evidence::runs`](super::Evidence::runs).
+    /// Position in [`Evidence::runs`](super::Evidence::runs).
     pub run: usize,
-    /// The sensor: the mean of all sides of a location, or an end of it.
+    /// The sensor: the mean of all sides of a location, or one end of it.
     pub sensor: Point,
-    /// What the values are.
+    /// Kind of the values.
     pub kind: Kind,
-    /// Where each value belongs; see [`Kind`].
+    /// Abscissa of each value; see [`Kind`] for its unit.
     pub at: Vec<f64>,
-    /// The values; the imaginary part is zero where they are real.
+    /// The values; real values have a zero imaginary part.
     pub value: Vec<Complex<f64>>,
-    /// Standard deviation of the noise of each value: `E|error|²` is its square.
+    /// Standard deviation of each value: its square is `E|error|²`.
     pub sigma: Vec<f64>,
-    /// The part of it that is independent from value to value.
+    /// The part of `sigma` that is independent from value to value.
     pub noise: Vec<f64>,
-    /// What no calibration and no model gets right, in parts of the signal: the other part, which neighbours have in common.
+    /// The other part of `sigma`, which neighbouring values share, relative to the signal: the smallest error of any
+    /// calibration and any model.
     pub least_discrepancy: f64,
 }
 
-/// What the values of a series are.
+/// Kind of the values of a series.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Kind {
-    /// Responses at `order` times the frequency (Hz) of the excitation at which they stand, over its amplitude there.
+    /// Response at `order` times the excitation frequency, over the excitation amplitude; the abscissa is the
+    /// excitation frequency (Hz).
     Harmonic(usize),
-    /// Samples at a time (s).
+    /// Sample at a time (s).
     Time,
-    /// Means around a time (s) of a passage, as [`Means`](super::Means) takes them.
+    /// Weighted mean at a time (s) of a passage: see [`Means`](super::Means).
     Passage,
-    /// Forces at a travel (m), both positive in compression, or forwards.
+    /// Force (N) at a travel (m), both positive in compression or forwards.
     Travel,
-    /// Half of what the force is larger at that travel while it grows than while it falls.
+    /// Half the force difference (N) between increasing and decreasing travel, at a travel (m).
     Width,
-    /// Forces at a speed (m/s) of a link alone, both positive as it gets longer.
+    /// Force (N) of a single link at a speed (m/s), both positive in extension.
     Speed,
-    /// Forces at `order` times the frequency (Hz) of a sine of travel at which they stand, over its amplitude.
+    /// Force at `order` times the frequency of a travel sine, over its amplitude; the abscissa is the frequency (Hz) of
+    /// the sine.
     Cycle(usize),
 }
 
 impl Kind {
-    /// Which harmonic the values are; `None` for other than harmonics.
+    /// Order of the harmonic; `None` if the values are no harmonics.
     pub fn order(self) -> Option<usize> {
         match self {
             Kind::Harmonic(order) | Kind::Cycle(order) => Some(order),
@@ -56,7 +59,7 @@ impl Kind {
         }
     }
 
-    /// True where values have an imaginary part.
+    /// True if the values are complex.
     pub fn complex(self) -> bool {
         match self {
             Kind::Harmonic(_) | Kind::Cycle(_) => true,
@@ -64,7 +67,7 @@ impl Kind {
         }
     }
 
-    /// The frequency (Hz) at which a sensor of motion reads a value at `at`, where it has one.
+    /// Frequency (Hz) at which a motion sensor reads the value at `at`; `None` if it has none.
     pub fn frequency(self, at: f64) -> Option<f64> {
         match self {
             Kind::Harmonic(order) => Some(order as f64 * at),
@@ -74,8 +77,8 @@ impl Kind {
 }
 
 impl Series {
-    /// Half a period of the mean frequency of a record, s: of the root of the ratio of the mean squares of its slope and
-    /// itself (Rice's formula for a Gaussian process).
+    /// Half the mean period of a record, s, from the mean squares of the signal and its derivative (Rice's formula for
+    /// a Gaussian process).
     pub fn half_a_period(&self) -> f64 {
         let count = self.at.len() as f64;
         let mean = self.value.iter().map(|value| value.re).sum::<f64>() / count;
@@ -87,7 +90,7 @@ impl Series {
         std::f64::consts::PI * (power / slope.max(f64::MIN_POSITIVE)).sqrt()
     }
 
-    /// Keeps every so many-th value.
+    /// Keeps every `step`-th value.
     pub fn thin(&mut self, step: usize) {
         self.keep((0..self.at.len()).step_by(step));
     }

@@ -1,12 +1,12 @@
-//! Swept sines: the first harmonics at each frequency.
+//! Swept sines: harmonics over frequency.
 
-// What was measured.
+// Measured harmonics.
 mod measured;
-// What a linear model says.
+// Prediction by a linear model.
 mod linear;
-// What a nonlinear model says.
+// Prediction by a nonlinear model, by harmonic balance.
 mod nonlinear;
-// What a sweep shows beyond its steady harmonics, since it never settles.
+// Non-steady part of a sweep response.
 mod unsteady;
 
 pub use linear::sweep as linear;
@@ -19,7 +19,7 @@ use super::sensor::excitation_of;
 use crate::model::Model;
 use crate::transmissibility::Point;
 
-/// The excitation of the model that a sensor measured in a run.
+/// Position of the excitation of the model that the reference sensor of a run measures.
 fn excitation(model: &dyn Model, evidence: &Evidence, run: usize, reference: &Point) -> Result<usize, PredictError> {
     excitation_of(model.about(), reference)
         .ok_or_else(|| PredictError::no_input(model.about(), &evidence.runs[run], &reference.location))

@@ -1,12 +1,12 @@
-//! Any other excitation: the responses themselves.
+//! Time histories: sample-by-sample responses to any other excitation.
 
-// What a sensor shows beside the motion.
+// Sensor noise of a record.
 mod noise;
-// From where a model sets out, and how well that is known.
+// Initial states and restarts of a record.
 mod restarts;
-// What was measured.
+// Measured records.
 mod measured;
-// What a model says.
+// Predicted records.
 mod predicted;
 
 pub use predicted::{history, replayed};

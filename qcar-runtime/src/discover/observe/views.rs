@@ -1,4 +1,4 @@
-//! A data set in part, or with other uncertainty: what the stages of a search are fitted to.
+//! Parts of a data set, or a data set with other uncertainty, for the stages of a search.
 
 use nalgebra::Complex;
 
@@ -6,11 +6,11 @@ use super::dataset::Evidence;
 use super::run::{Band, COARSE_POINTS, HURRIED, Run, Stimulus};
 use super::series::Series;
 
-/// A record keeps at least this part of its length: what it begins with need not tell what comes later.
+/// Largest factor by which a record is shortened: its beginning need not represent the rest.
 const MOST_SHORTENED: usize = 2;
 
 impl Evidence {
-    /// The same with this share of every value added to its uncertainty: for a model that is known to lack something.
+    /// Adds the share of every value to its uncertainty, for a model that is known to lack something.
     pub fn tolerant(&self, share: f64) -> Self {
         let mut tolerant = self.clone();
         for series in &mut tolerant.series {
@@ -20,7 +20,8 @@ impl Evidence {
         tolerant
     }
 
-    /// The same for a search among many, in which a ride that takes far longer than others is refused.
+    /// Limits the integration steps of cleat runs, so that a search over many candidates rejects a passage that takes
+    /// far longer than others.
     pub fn hurried(&self) -> Self {
         let mut hurried = self.clone();
         for run in &mut hurried.runs {
@@ -31,8 +32,8 @@ impl Evidence {
         hurried
     }
 
-    /// The same with every so many-th value of each series, for a coarse fit; of a history and a ride their beginning,
-    /// since a model has to be driven through whatever it is held against.
+    /// Keeps every `step`-th value of each series for a coarse fit. Histories and cleat runs keep their beginning
+    /// instead, because a model must be simulated through all values that are compared.
     pub fn thinned(&self, step: usize) -> Self {
         let mut thinned = self.clone();
         let shorten = |(run, of): (usize, &mut Run)| {
@@ -48,7 +49,7 @@ impl Evidence {
         thinned
     }
 
-    /// The same less what its series show beyond what a search predicts, series by series.
+    /// Subtracts `beyond`, the part that a search does not predict, series by series.
     pub fn less(&self, beyond: &[Vec<Complex<f64>>]) -> Self {
         let mut less = self.clone();
         for (series, beyond) in less.series.iter_mut().zip(beyond) {
@@ -61,7 +62,7 @@ impl Evidence {
         less
     }
 
-    /// The same with only the runs that `keep` wants.
+    /// Keeps only the runs for which `keep` is true.
     pub fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
         let kept: Vec<usize> = (0..self.runs.len()).filter(|&run| keep(run)).collect();
         let place = |run: usize| kept.iter().position(|&k| k == run);
@@ -80,12 +81,12 @@ impl Evidence {
 }
 
 impl Stimulus {
-    /// Leaves less of a record through which a model has to be driven, so many times less of a history and half of a
-    /// ride whose values stand `at` these times: when it ends now, and by how much fewer of its values are then to be
-    /// compared. Anything else stays.
+    /// Shortens a record that a model must be simulated through: a history by a limited factor `times`, a passage with
+    /// values `at` these times (s) to half of them. Returns the new end time (s) and the decimation of the values up to
+    /// there. Other excitations only decimate.
     fn shorten(&mut self, times: usize, at: &[f64]) -> (f64, usize) {
         match self {
-            // Part of a period is no period.
+            // A part of a period is not periodic.
             Stimulus::History { periodic: true, .. } => (f64::INFINITY, times),
             Stimulus::History { inputs, rate, band, .. } => {
                 let reach = band.as_ref().map_or(0, Band::half);
@@ -94,7 +95,7 @@ impl Stimulus {
                 signals.for_each(|(_, samples)| samples.truncate(length));
                 (inputs.start + ((length - reach) as f64 - 0.5) / *rate, 1)
             }
-            // The impact and the first of the after-shake have all modes of an axle.
+            // The impact and the early after-shake contain all modes of an axle.
             Stimulus::Cleat(passage) if at.len() > 1 && times > 1 => {
                 let last = at[at.len() - 1];
                 let end = at[at.len() / 2];

@@ -1,7 +1,8 @@
-//! With which states the records of a run begin that no fit has seen: found from these records themselves.
+//! Initial states of held-out records, estimated from these records.
 //!
-//! A run that judges tells as little of the states of the masses at its first sample as any other. Given everything that
-//! was fitted, they are estimated with their prior, by Gauss-Newton steps: of a linear model the first is the answer.
+//! A held-out record does not show the states of the masses at its first sample any better than a fitted record. With
+//! all fitted parameters held, the states are estimated with their prior by Gauss-Newton steps. For a linear model the
+//! first step is exact.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,17 +12,17 @@ use crate::discover::observe::{Evidence, Misread, PredictError, Prediction, Stim
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// The most steps,
+/// Most Gauss-Newton steps.
 const STEPS: usize = 10;
-/// and by what factor one is taken again that was too long.
+/// Factor on a step that was too long.
 const SHORTER: f64 = 0.25;
-/// The share of the sum of squares that the last step gained.
+/// Relative gain of the sum of squares at which the steps end.
 const LITTLE: f64 = 1e-4;
 
-/// Completes what is `misread` by where the records of the runs of one role begin; sensors are as these coefficients say.
+/// Completes `misread` with the initial states of the records of one role, for sensors with these coefficients.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn beginnings(
     model: &dyn Model,
     values: &Values,
@@ -52,7 +53,7 @@ pub fn beginnings(
                     best = (cost, misread.begun[place].clone());
                     step = next;
                 }
-                // Too far for a law that is not linear.
+                // The step was too long for a nonlinear law.
                 None => step *= SHORTER,
             }
             if gained > 0.0 && gained < LITTLE * cost {
@@ -68,7 +69,7 @@ pub fn beginnings(
     Ok(())
 }
 
-/// The residuals of a run over their noise, and their derivatives along its beginning.
+/// Normalised residuals of a run and their derivatives by its initial states.
 struct Rows {
     residual: Vec<f64>,
     columns: Vec<Vec<f64>>,
@@ -101,11 +102,11 @@ impl Rows {
         rows
     }
 
-    /// The sum of squares with the prior, and the step to its minimum; `None` where there is no number.
+    /// Sum of squares including the prior, and the step to its minimum; `None` if that is not finite.
     fn solve(&self, begun: &[(String, f64)], unknown: &[(String, f64)]) -> (f64, Option<DVector<f64>>) {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let count = unknown.len();
-        // In units of the prior, which keeps positions and velocities of one size.
+        // Scaled by the prior standard deviations, so that positions and velocities are comparable.
         let sigma = |k: usize| unknown[k].1;
         let mut normal = DMatrix::from_fn(count, count, |i, j| {
             sigma(i) * sigma(j) * dot(&self.columns[i], &self.columns[j])

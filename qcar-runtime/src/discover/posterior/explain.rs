@@ -1,4 +1,4 @@
-//! How well a model explains the evidence, and from where a search for its parameters may begin.
+//! Explanation of the evidence by a model, and the setting of a fit.
 
 use std::collections::BTreeMap;
 
@@ -15,22 +15,24 @@ pub struct Given {
     pub name: String,
     /// Start value, SI.
     pub value: f64,
-    /// Bounds, for one that may move.
+    /// Bounds of a free parameter, SI; `None` if it is fixed.
     pub range: Option<(f64, f64)>,
 }
 
-/// What the engineer gives beside the evidence.
+/// Inputs of the engineer besides the evidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// The parameters of the base model.
+    /// Parameters of the base model.
     pub given: Vec<Given>,
-    /// Facts of the vehicle, which a model may or may not use.
+    /// Vehicle data by name, SI; a model need not use them.
     pub vehicle: BTreeMap<String, f64>,
 }
 
 impl Setting {
+    /// Checks that every parameter of the model has a value.
+    ///
     /// # Errors
-    /// A value for a parameter that the model does not have, and a parameter without a value.
+    /// Fails if a value has no parameter in the model, or a parameter has no value.
     pub fn check(&self, about: &About) -> Result<(), PredictError> {
         let given = self.given.iter().map(|p| (p.name.clone(), p.value)).collect();
         let values = Values::resolve(about, &given, &self.vehicle);
@@ -38,19 +40,19 @@ impl Setting {
     }
 }
 
-/// A model's explanation.
+/// Fit of a model and its residuals over all runs.
 #[derive(Clone, Debug)]
 pub struct Explanation {
-    /// The parameters of its model by name.
+    /// All parameters of the model by name, SI.
     pub named: Vec<(String, f64)>,
-    /// Its parameters and sensor errors.
+    /// The fit, with its nuisance parameters.
     pub refit: Refit,
-    /// What it leaves.
+    /// Residuals over all runs.
     pub gap: Gap,
 }
 
 impl Explanation {
-    /// What the fitted residuals scatter by, squared; 1 where only noise is left.
+    /// Mean square of the fitted residuals, at least 1; 1 if only noise is left.
     pub fn scatter(&self) -> f64 {
         self.refit.scatter()
     }

@@ -1,4 +1,4 @@
-//! Fits of a model: with its discrepancy, or against noise alone.
+//! Fits of a model, with a discrepancy or against noise alone.
 
 use super::offset;
 use super::problem::Posterior;
@@ -9,22 +9,21 @@ use crate::least_squares::Problem;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// Fits the free parameters of a model, from their `values`, and the errors of the sensors to the runs that may be
-/// fitted.
+/// Fits the free parameters, starting from `values`, and the sensor errors to the fitted runs, against noise alone.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn refit(model: &dyn Model, values: &Values, free: &[Free], evidence: &Evidence) -> Result<Refit, PredictError> {
     refit_with(model, values, free, evidence, Nuisance::of(evidence), MOST_EVALUATIONS)
 }
 
-/// How often a refit may evaluate the model by default.
+/// Default limit on model evaluations.
 const MOST_EVALUATIONS: usize = 60;
 
-/// The same with sensors that may be wrong as `nuisance` says, and at most so many evaluations.
+/// Like [`refit`], with the sensor errors of `nuisance` and at most this number of evaluations.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn refit_with(
     model: &dyn Model,
     values: &Values,
@@ -42,25 +41,25 @@ pub fn refit_with(
     Ok(posterior.refit(outcome))
 }
 
-/// Where a fit by evidence begins.
+/// Start point of a fit with a discrepancy.
 pub struct Start<'a> {
     /// All parameters.
     pub values: &'a Values,
-    /// The errors of sensors with the logarithms of the recorded side's factors after them, zero beyond those that are known.
+    /// Coefficients of the sensor errors, followed by the log factors of the recorded side; missing ones are zero.
     pub errors: &'a [f64],
-    /// With which states records were found to begin; others begin as they are seen.
+    /// Initial states of the records; missing ones start where sensors show them.
     pub begun: &'a [(Beginning, f64)],
-    /// Where the priors of the parameters are centred.
+    /// Centres of the parameter priors.
     pub centre: &'a Values,
-    /// The discrepancy to begin with.
+    /// Discrepancy at the start.
     pub discrepancy: Discrepancy,
 }
 
-/// Fits the free parameters and nuisance parameters at their maximum a posteriori, and the discrepancy with them: in so many
-/// `rounds` of at most so many evaluations each, after each of which the discrepancy is learnt from what is left.
+/// Maximum a posteriori fit of the free and nuisance parameters together with the discrepancy. It runs `rounds`
+/// searches of at most `evaluations` each, and learns the discrepancy from the residuals after each search.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn fit(
     model: &dyn Model,
     start: Start<'_>,

@@ -1,4 +1,4 @@
-//! The residuals of a fit over all runs, in units of their uncertainty: how large they are, and where.
+//! Normalised residuals of a fit over all runs: their size and location.
 
 use std::collections::BTreeMap;
 
@@ -11,47 +11,48 @@ use crate::mean;
 use crate::model::Model;
 use crate::transmissibility::Point;
 
-/// The gap of a model after its fit: its residuals over their uncertainty. An RMS of 1 is the noise.
+/// Residuals of a fitted model over their uncertainty. An RMS of 1 is noise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gap {
-    /// RMS of (measured - modelled) over its uncertainty, on the runs that were fitted; NaN without any.
+    /// RMS of the normalised residual on the fitted runs; NaN without any.
     pub fit: f64,
-    /// The same on those that no fit has seen; NaN without any.
+    /// The same RMS on the held-out runs; NaN without any.
     pub held_out: f64,
-    /// The same by series, in the order of the evidence.
+    /// The same RMS for each series, in the order of the evidence.
     pub series: Vec<f64>,
-    /// The residuals of every series, as [`Series::residuals`] counts them.
+    /// Residuals of every series, as counted by [`Series::residuals`].
     pub residuals: Vec<Vec<f64>>,
-    /// Where it is, the strongest first.
+    /// Parts of the residual, largest first.
     pub tiles: Vec<Tile>,
 }
 
-/// A part of the gap.
+/// Part of the residual of one series.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tile {
     /// The sensor.
     pub sensor: Point,
-    /// What its values are.
+    /// Kind of its values.
     pub kind: Kind,
-    /// The place of its run in the evidence.
+    /// Position of its run in the evidence.
     pub run: usize,
-    /// The level of the run.
+    /// Level of the run.
     pub level: f64,
-    /// Its role.
+    /// Role of the run.
     pub role: Role,
-    /// From where to where: a sixth of an octave, Hz, for harmonics; a twentieth of the record, s, for a history or passage.
+    /// First and last position: a sixth of an octave, Hz, for harmonics; a twentieth of the range of the series for all
+    /// others.
     pub span: (f64, f64),
     /// RMS of the residuals.
     pub strength: f64,
-    /// Number of the residuals.
+    /// Number of residuals.
     pub count: usize,
 }
 
 impl Gap {
-    /// Holds a refitted model against all runs, with the sensor errors that the fitted runs gave.
+    /// Compares a refitted model with all runs, with the sensor errors of the fitted runs.
     ///
     /// # Errors
-    /// Where the model lacks what was measured.
+    /// Fails if the model lacks a measured quantity.
     pub fn of(model: &dyn Model, refit: &Refit, evidence: &Evidence) -> Result<Self, PredictError> {
         let mut residuals = vec![Vec::new(); evidence.series.len()];
         let sensors = (&refit.nuisance, refit.coefficients.as_slice());
@@ -83,7 +84,7 @@ impl Gap {
     }
 }
 
-/// Root of the mean square; NaN of nothing.
+/// Root mean square; NaN without values.
 pub fn rms(values: impl Iterator<Item = f64>) -> f64 {
     let mut values = values.peekable();
     match values.peek() {
@@ -128,7 +129,7 @@ fn tile(evidence: &Evidence, series: &Series, place: i64, (sum, count): (f64, us
     }
 }
 
-/// Which tile a value belongs to.
+/// Scale on which the values of a series are divided into tiles.
 enum Scale {
     Octaves,
     /// First value and width of a tile.

@@ -1,4 +1,4 @@
-//! What a search found, by Laplace's approximation of the posterior at its maximum: covariance and evidence.
+//! Laplace approximation of the posterior at its maximum: covariance and evidence.
 
 use std::ops::Range;
 
@@ -11,11 +11,11 @@ use crate::least_squares::information::{Information, Unseen};
 use crate::least_squares::{Outcome, Problem};
 
 impl Posterior<'_> {
-    /// What was found.
+    /// Result of a search.
     pub fn refit(&mut self, outcome: Outcome) -> Refit {
         let count = self.free.len();
         let inside: Vec<bool> = outcome.at_bound.iter().map(|&side| side == 0).collect();
-        // The priors of free parameters are no information: errors are those of the data.
+        // The priors of free parameters are left out: standard errors come from the data alone.
         let informative = outcome
             .jacobian
             .rows(0, self.residuals + self.sigmas.len())
@@ -56,8 +56,9 @@ impl Posterior<'_> {
         errors.as_slice().to_vec()
     }
 
-    /// Laplace's approximation of the evidence, in units in which every prior has the standard deviation one: it cancels
-    /// the normalisations of priors and posterior but for the determinant (MacKay 2003, chapter 28).
+    /// Laplace approximation of the log evidence, in units in which every prior has standard deviation 1. The
+    /// normalisations of priors and posterior then cancel, except for the determinant (MacKay 2003, chapter 28). NaN
+    /// without a discrepancy.
     fn log_evidence(&self, outcome: &Outcome) -> f64 {
         let Some(discrepancy) = &self.discrepancy else {
             return f64::NAN;
@@ -77,7 +78,7 @@ impl Posterior<'_> {
     }
 }
 
-/// Why one of the first `count` variables is not seen, by those among them.
+/// Why one of the first `count` variables cannot be estimated, in terms of these variables; `None` if it can.
 fn unseen(information: &Information, variable: usize, count: usize) -> Option<Unseen> {
     match information.unseen(variable)? {
         Unseen::Nowhere => Some(Unseen::Nowhere),
@@ -87,7 +88,7 @@ fn unseen(information: &Information, variable: usize, count: usize) -> Option<Un
     }
 }
 
-/// The rows and columns of some variables of a covariance.
+/// Covariance of a range of variables; NaN where a variable cannot be estimated.
 fn spread(information: &Information, variables: Range<usize>) -> DMatrix<f64> {
     let place = |k: usize| information.seen().iter().position(|&seen| seen == variables.start + k);
     DMatrix::from_fn(variables.len(), variables.len(), |i, j| match (place(i), place(j)) {

@@ -1,4 +1,4 @@
-//! The residuals at a fit: of the model that was fitted, with their derivatives, and of another in its place.
+//! Residuals at a fit: of the fitted model with its Jacobian, and of another model in its place.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -11,14 +11,14 @@ use crate::model::Model;
 use crate::response::parameters::Values;
 
 impl Refit {
-    /// The residuals of the `model` that was fitted, in units of their noise, those of the data before those of what is held
-    /// by a prior, and their Jacobian along all unknowns.
+    /// Residuals and Jacobian of the fitted `model`, in units of the noise and not whitened. The rows of the data come
+    /// first, then those of the priors; the columns are all unknowns.
     pub fn linearised(&self, model: &dyn Model, evidence: &Evidence) -> (DVector<f64>, DMatrix<f64>) {
         Posterior::of(self, model, evidence).linearised(self)
     }
 
-    /// The residuals of the data where another model with these `values` stands in the place of the `fitted` one, and
-    /// sensors with these errors; `None` where that gives no number.
+    /// Data residuals of another model with these `values` and sensor errors in place of the `fitted` one; `None` if
+    /// one is not finite.
     pub fn residuals_of(
         &self,
         other: &dyn Model,

@@ -1,4 +1,4 @@
-//! Offsets that would be counted twice: of sensors whose reading a parameter of the model moves as a whole already.
+//! Removes sensor offsets that are confounded with a parameter of the model.
 
 use nalgebra::DVector;
 
@@ -8,16 +8,16 @@ use crate::discover::observe::{Evidence, Free, PredictError, Prediction, Run, St
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// The share of a derivative's power that is not a constant, of one that is.
+/// Largest share of the power of a derivative outside the constant, for a derivative that counts as constant.
 const CONSTANT: f64 = 1e-5;
-/// The share of a power that is left by rounding.
+/// Share of a power that counts as rounding error.
 const ROUNDING: f64 = 1e-9;
 
-/// The same sensors, without the offset of those that a free parameter moves by a constant and nothing else, whatever the
-/// states with which their records begin.
+/// Removes the offset of each sensor whose reading a free parameter shifts by a constant, up to changes of the initial
+/// states.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn once(
     mut nuisance: Nuisance,
     model: &dyn Model,
@@ -39,8 +39,8 @@ pub fn once(
     Ok(nuisance)
 }
 
-/// What of the model moves a prediction as a whole: a parameter, or the state with which a record begins where nothing
-/// pulls it back.
+/// Name of the parameter, or of the initial state, that shifts a prediction by a constant; `None` if there is none. An
+/// initial state does so if nothing pulls it back.
 fn owner(model: &dyn Model, free: &[Free], prediction: &Prediction) -> Option<String> {
     let real = |slope: &[nalgebra::Complex<f64>]| DVector::from_iterator(slope.len(), slope.iter().map(|s| s.re));
     let constant = DVector::from_element(prediction.value.len(), 1.0);
@@ -66,7 +66,7 @@ fn owner(model: &dyn Model, free: &[Free], prediction: &Prediction) -> Option<St
     free.iter().zip(&prediction.slopes).find_map(moves)
 }
 
-/// What is left of a column beside others, which are of length 1 and at right angles.
+/// The part of a column that is orthogonal to orthonormal others.
 fn without(column: &DVector<f64>, others: &[DVector<f64>]) -> DVector<f64> {
     others.iter().fold(column.clone(), |left, other| {
         let share = left.dot(other);
@@ -74,7 +74,7 @@ fn without(column: &DVector<f64>, others: &[DVector<f64>]) -> DVector<f64> {
     })
 }
 
-/// True where the one is the other, up to a factor that is not zero.
+/// True if the columns are parallel and not zero.
 fn is_multiple(one: &DVector<f64>, other: &DVector<f64>) -> bool {
     let powers = one.norm_squared() * other.norm_squared();
     powers > 0.0 && one.dot(other).powi(2) > (1.0 - CONSTANT) * powers

@@ -1,18 +1,18 @@
-//! What is known of parameters, and of the sides of a car, before any measurement.
+//! Priors of parameters and of the sides of a car.
 
 use crate::discover::observe::{Free, Run, Stimulus};
 use crate::model::Model;
 
-/// Standard deviation of the logarithm of a side's factor: parts of one drawing, and springs of one batch.
+/// Prior standard deviation of a side's log factor: parts of one drawing and springs of one batch.
 pub const SIDE: f64 = 0.015;
 
-/// Standard deviation of a weak prior around where a search begins: a factor of ten, or the whole of a range that reaches
-/// zero. What a part of the data hardly determines stays where the fit to all of them begins.
+/// Standard deviation of the weak prior around the start, as a log ratio: a factor of ten. For a range that reaches zero
+/// it is the width of the range. Parameters that the data hardly determine stay near their start.
 const STRAY: f64 = std::f64::consts::LN_10;
 
 impl Free {
-    /// How far it is from the centre of its prior in standard deviations, and the derivative of that: of a value whose range
-    /// lies above zero in its logarithm. The standard deviation is that of a uniform distribution over the range.
+    /// Distance from the centre of the prior in standard deviations, and its derivative. The scale is logarithmic if
+    /// the range is positive. The standard deviation is that of a uniform distribution over the range.
     pub(super) fn prior(&self, value: f64, centre: f64) -> (f64, f64) {
         let of_width = |width: f64| width / 12.0_f64.sqrt();
         if self.lower > 0.0 {
@@ -24,7 +24,7 @@ impl Free {
         }
     }
 
-    /// How far it is from its start in standard deviations of a weak prior, and the derivative of that.
+    /// Distance from the start in standard deviations of the weak prior, and its derivative.
     pub(super) fn strayed(&self, value: f64, start: f64) -> (f64, f64) {
         if self.lower > 0.0 {
             ((value / start.max(self.lower)).ln() / STRAY, 1.0 / (value * STRAY))
@@ -40,7 +40,7 @@ pub fn of_one_side(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Cleat(_))
 }
 
-/// True for a parameter that may differ between the sides of a car.
+/// True for a parameter that may differ between the sides: one with a unit.
 pub fn is_of_a_side(model: &dyn Model, free: &Free) -> bool {
     model.about().parameters[free.parameter].unit != "1"
 }

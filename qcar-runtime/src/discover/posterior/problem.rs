@@ -1,4 +1,4 @@
-//! The least-squares problem of a fit: residuals of the data, whitened by the discrepancy, followed by those of the
+//! Least-squares problem of a fit: data residuals, whitened by the discrepancy, followed by the residuals of the
 //! priors.
 
 use nalgebra::Complex;
@@ -13,12 +13,13 @@ use crate::least_squares::Problem;
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// True for a run whose derivatives cost little beside its prediction: a sweep's come from the same factorisation.
+/// True for a run with cheap derivatives: those of a sweep come from the factorisation of its prediction.
 fn is_swept(run: &Run) -> bool {
     matches!(run.stimulus, Stimulus::Sweep { .. })
 }
 
-/// The least-squares problem.
+/// The least-squares problem. Its variables are the free parameters, the nuisance coefficients and the log factors of
+/// the recorded side.
 pub struct Posterior<'a> {
     model: &'a dyn Model,
     pub values: Values,
@@ -26,37 +27,39 @@ pub struct Posterior<'a> {
     pub free: Vec<Free>,
     pub evidence: &'a Evidence,
     pub nuisance: Nuisance,
-    /// Of the sensors' errors, then of the factors of the recorded side, where there is one.
+    /// Prior standard deviations of the nuisance coefficients and of the log factors of the recorded side.
     pub sigmas: Vec<f64>,
-    /// Where the search began.
+    /// Start of the search.
     pub start: Vec<f64>,
-    /// Where the priors of the parameters are centred, where there is a discrepancy,
+    /// Centres of the parameter priors, which apply if there is a discrepancy.
     pub centre: Values,
-    /// and what that is.
+    /// Discrepancy; `None` for a fit against noise alone, and while it is learnt.
     pub discrepancy: Option<Discrepancy>,
-    /// Whether residuals are independent by it,
+    /// True if the discrepancy whitens the residuals.
     pub whitens: bool,
-    /// and whether there is one at all, whatever it is at the moment.
+    /// True for a fit with a discrepancy, even while [`Self::discrepancy`] is taken out.
     pub by_evidence: bool,
+    /// Number of data residuals.
     pub residuals: usize,
-    /// Why the model cannot say anything of the evidence at all,
+    /// Why the model cannot predict the evidence; `None` once it has predicted it.
     pub refused: Option<PredictError>,
-    /// or that it has said something: where it gives no number from then on, a step went too far.
+    /// True once the model has predicted the evidence. A later failure means that a step was too long.
     has_answered: bool,
-    /// What the sweeps add to their balance, series by series.
+    /// Non-steady part of the sweeps, series by series.
     pub unsteady: Vec<Vec<Complex<f64>>>,
-    /// What was predicted last, and last with derivatives: an accepted step asks again, and so does the next round.
+    /// Cache of the last prediction and of the last one with derivatives. An accepted step and the next round ask for
+    /// them again.
     pub known: Vec<Known>,
 }
 
-/// What a model says of the fitted runs at a place.
+/// Prediction of the fitted runs at a point.
 pub struct Known {
     at: Vec<f64>,
-    /// Of the sweeps, always with derivatives,
+    /// Predictions of the sweeps, always with derivatives.
     swept: Vec<Prediction>,
-    /// and of all other runs,
+    /// Predictions of all other runs.
     others: Vec<Prediction>,
-    /// which may have derivatives, too.
+    /// True if those have derivatives too.
     is_sloped: bool,
 }
 
@@ -91,7 +94,7 @@ impl<'a> Posterior<'a> {
         }
     }
 
-    /// At a refit that was made of this evidence, or of another part of it.
+    /// The problem at a refit of this evidence or of another part of it.
     pub fn of(refit: &Refit, model: &'a dyn Model, evidence: &'a Evidence) -> Self {
         let mut posterior = Self::new(
             model,
@@ -106,7 +109,7 @@ impl<'a> Posterior<'a> {
         posterior
     }
 
-    /// How far a free parameter is from where its prior has it, and the derivative of that.
+    /// Distance of a free parameter from the centre of its prior in standard deviations, and its derivative.
     pub fn prior_of(&self, k: usize, value: f64) -> (f64, f64) {
         match self.discrepancy {
             Some(_) => self.free[k].prior(value, self.centre.as_slice()[self.free[k].parameter]),
@@ -114,7 +117,7 @@ impl<'a> Posterior<'a> {
         }
     }
 
-    /// The place of a refit.
+    /// Variables at a refit.
     pub fn place(&self, refit: &Refit) -> Vec<f64> {
         let factors = self.free.iter().map(|free| refit.factor(free.parameter));
         let place = refit.estimate.iter().chain(&refit.coefficients).copied();
@@ -130,12 +133,12 @@ impl<'a> Posterior<'a> {
         }
     }
 
-    /// The logarithms of the factors of the recorded side.
+    /// Log factors of the recorded side.
     pub fn factors<'x>(&self, x: &'x [f64]) -> &'x [f64] {
         &x[self.free.len() + self.nuisance.len()..]
     }
 
-    /// What the model says of the fitted runs, differentiated where that is wanted.
+    /// Prediction of the fitted runs, with derivatives if `sloped`.
     fn predicted(&mut self, x: &[f64], sloped: bool) -> Result<Known, PredictError> {
         let here = self.known.iter().position(|known| known.at == x);
         let here = here.map(|place| self.known.remove(place));
@@ -166,14 +169,15 @@ impl<'a> Posterior<'a> {
         })
     }
 
-    /// Keeps what was predicted last, and what was predicted last with derivatives.
+    /// Keeps the last prediction, and the last one with derivatives.
     fn keep(&mut self, known: Known) {
         let is_sloped = known.is_sloped;
         self.known.retain(|own| own.is_sloped && !is_sloped);
         self.known.push(known);
     }
 
-    /// Writes the residual; gives the columns of the Jacobian, of the data alone, where these are wanted.
+    /// Writes the residual. Returns the data rows of the Jacobian column by column if `sloped`, and no columns
+    /// otherwise.
     pub fn residual_and_slopes(&mut self, x: &[f64], residual: &mut [f64], sloped: bool) -> Vec<Vec<f64>> {
         let known = match self.predicted(x, sloped) {
             Ok(known) => known,
@@ -204,12 +208,12 @@ impl<'a> Posterior<'a> {
         columns
     }
 
-    /// Adds the rows of one prediction to columns that grow together. A column may be moved in more ways than one: the gain
-    /// of a reference scales what is shown, and says how hard the run was driven. Without columns there is the residual
-    /// alone.
+    /// Appends the rows of one prediction to `residual` and to all `columns`; without columns, to the residual alone.
+    /// Several terms may add to one column: the gain of a reference scales the shown values and also sets the level of
+    /// the run.
     fn rows(&self, prediction: &Prediction, x: &[f64], residual: &mut Vec<f64>, columns: &mut [Vec<f64>]) {
         let series = &self.evidence.series[prediction.series];
-        // Beside a discrepancy, what neighbours have in common is not noise.
+        // With a discrepancy, the part of the uncertainty that neighbouring values share is not noise.
         let sigma = if self.by_evidence { &series.noise } else { &series.sigma };
         let of_sensors = self.free.len();
         let shown = self
@@ -272,7 +276,7 @@ impl Problem for Posterior<'_> {
         }
     }
 
-    /// Differentiated by differences, rides and histories cost many times more than alone.
+    /// The residual alone: derivatives of rides and records by finite differences cost many times more.
     fn evaluate_residual(&mut self, x: &[f64], residual: &mut [f64]) -> bool {
         self.residual_and_slopes(x, residual, false);
         true

@@ -1,9 +1,9 @@
-//! Profile intervals of a fit by evidence: how far each parameter may be moved until the posterior of all others, maximised anew, has
-//! fallen too far to be chance.
+//! Profile intervals of a fit: the range of each parameter outside which the posterior, maximised over all others,
+//! falls too far to be chance.
 //!
-//! The rise of the cost is counted in units of what the fit's own standard error says near the maximum, as the
-//! [profiles](crate::fit::profile) of a linear fit are. What the range of the profiled parameter says beforehand is left out, so that an
-//! end is where the data put it.
+//! The rise of the cost is in units of the fit's own standard error near the maximum, as in the
+//! [profiles](crate::fit::profile) of a linear fit. The prior of the profiled parameter is left out, so that the data
+//! alone determine the ends.
 
 use super::problem::Posterior;
 use super::refit::Refit;
@@ -14,25 +14,25 @@ use crate::least_squares::profile::{Profiled, profile};
 use crate::least_squares::{Options, Problem, minimize};
 use crate::model::Model;
 
-/// What each search for the other variables is held to.
+/// Tolerances and limits of the searches over the other variables.
 const OPTIONS: Options = Options {
     gradient: 1e-5,
     cost: 1e-6,
     step: 1e-6,
     evaluations: 20,
 };
-/// The first step without a standard error, in parts of the range.
+/// First step without a standard error, relative to the range.
 const FIRST: f64 = 0.02;
 
 impl Refit {
-    /// What was fitted of the evidence: the runs that may be, less what the model shows beyond what a search predicts.
+    /// The fitted part of the evidence: the fitted runs without the non-steady part of their sweeps.
     pub fn fitted_of(&self, evidence: &Evidence) -> Evidence {
         let steady = evidence.less(&self.unsteady);
         steady.only(|run| steady.runs[run].role == Role::Fit)
     }
 
-    /// The profile of a free parameter, by its place among these, with the `model` that was fitted and what was
-    /// [fitted](Self::fitted_of).
+    /// Profile of a free parameter, by its position among these, for the fitted `model` and the
+    /// [fitted](Self::fitted_of) evidence.
     pub fn profile(&self, model: &dyn Model, fitted: &Evidence, free: usize) -> ParameterProfile {
         let mut posterior = Posterior::of(self, model, fitted);
         let (start, bounds) = (posterior.place(self), posterior.bounds());
@@ -76,10 +76,10 @@ impl Refit {
     }
 }
 
-/// A posterior without what is known beforehand of one parameter.
+/// A posterior without the prior of one parameter.
 struct Open<'a> {
     posterior: Posterior<'a>,
-    /// Of its prior.
+    /// Residual row of that prior.
     row: usize,
     variable: usize,
 }

@@ -1,12 +1,11 @@
-//! What further measurements would say of the parameters of a fit by evidence: a D-optimal choice among sensors, runs, levels and
-//! dynamometers.
+//! Expected information of further measurements: a D-optimal choice among sensors, runs, levels and dynamometers.
 //!
-//! The criterion is that of the [prospects](crate::fit::prospect) of a linear fit: the rise of the log determinant of the information about
-//! some parameters, all other unknowns being estimated, too. The information is that of the residuals of the fit, whitened by what the
-//! model misses; what is added is what the fitted model predicts, and a model that misses something of a sensor is taken to miss as much
-//! of others beside it.
+//! The criterion is that of the [prospects](crate::fit::prospect) of a linear fit: the increase of the log determinant
+//! of the information about some parameters, with all other unknowns estimated too. The information is that of the fit
+//! residuals, whitened by the discrepancy. New measurements take the predictions of the fitted model as their values. A
+//! new sensor has the mean discrepancy of the sensors beside it.
 
-// What else could be measured.
+// Possible further measurements.
 mod further;
 
 use nalgebra::{DMatrix, DVector};
@@ -22,11 +21,11 @@ use crate::least_squares::information::Information;
 use crate::model::Model;
 use crate::progress::{self, Told};
 
-/// What each further measurement would say of the parameters of a refit of `model`; `matter` are names of those that count, all where
-/// there are none. Measurement by measurement `told` hears how far it is.
+/// Expected gain of each further measurement for the parameters of a refit of `model`, largest first. `matter` names
+/// the parameters that count; empty means all. `told` receives the progress after each measurement.
 ///
 /// # Errors
-/// Where the model says nothing of the evidence.
+/// Fails if the model cannot predict the evidence.
 pub fn prospects(
     model: &dyn Model,
     refit: &Refit,
@@ -59,11 +58,11 @@ pub fn prospects(
     })
 }
 
-/// What evidence says of the parameters.
+/// Information of the evidence about the parameters.
 struct Said {
-    /// Log determinant of the information about those that count, what is known beforehand included.
+    /// Log determinant of the information about the parameters that count, including their priors.
     information: f64,
-    /// Standard errors as the fit prints them; `None` of what nothing determines, or rests on a bound.
+    /// Standard errors as the fit reports them; `None` if a parameter is not determined or at its bound.
     errors: Vec<Option<f64>>,
 }
 
@@ -76,7 +75,7 @@ impl Said {
         posterior.discrepancy = known.map(|known| known.expected_of(evidence, Role::Fit));
         posterior.by_evidence = posterior.discrepancy.is_some();
         posterior.centre = refit.centre.clone();
-        // Sensors are right, and records begin as they are seen: that changes derivatives by as little as errors are small.
+        // Sensor errors and initial state deviations are taken as zero: they are small and hardly change the Jacobian.
         let mut place = refit.estimate.clone();
         place.resize(posterior.variables(), 0.0);
         posterior.start.clone_from(&place);
@@ -100,7 +99,7 @@ impl Said {
     }
 }
 
-/// Log determinant of the information about some of the variables; not a number where there is none.
+/// Log determinant of the information about some variables; NaN if the normal matrix is singular.
 fn log_information(jacobian: &DMatrix<f64>, counted: &[usize]) -> f64 {
     let lengths = DVector::from_iterator(jacobian.ncols(), jacobian.column_iter().map(|column| column.norm()));
     let mut scaled = jacobian.clone();

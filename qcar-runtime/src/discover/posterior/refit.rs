@@ -1,4 +1,4 @@
-//! What a fit gives: the maximum a posteriori with its errors.
+//! Result of a fit: the maximum a posteriori with its errors.
 
 use nalgebra::{Complex, DMatrix};
 
@@ -10,45 +10,46 @@ use crate::least_squares::information::Unseen;
 use crate::response::parameters::Values;
 use crate::transmissibility::Point;
 
-/// The explanation that was found.
+/// Result of a fit.
 #[derive(Clone, Debug)]
 pub struct Refit {
-    /// All parameters.
+    /// All parameter values, SI.
     pub values: Values,
-    /// The same on the side that cleat runs record.
+    /// Parameter values of the side that cleat runs record, SI.
     pub side: Values,
-    /// Those that moved.
+    /// The free parameters.
     pub free: Vec<Free>,
-    /// What they came to.
+    /// Their estimates, SI.
     pub estimate: Vec<f64>,
-    /// Covariance of the free parameters, sensor errors allowed for; NaN for one at a bound or not seen.
+    /// Covariance of the free parameters with sensor errors allowed for; NaN for one that is at its bound or cannot be
+    /// estimated. Not scaled by [`Self::scatter`].
     pub covariance: DMatrix<f64>,
-    /// Why a free parameter off its bounds is not seen by itself; places of others are those in `free`.
+    /// Why a free parameter inside its bounds cannot be estimated alone, by positions in `free`; `None` if it can.
     pub unseen: Vec<Option<Unseen>>,
-    /// For each free parameter: -1 on its lower bound, 1 on its upper bound, 0 between.
+    /// For each free parameter: -1 at its lower bound, 1 at its upper bound, 0 between.
     pub at_bound: Vec<i8>,
-    /// The sensors.
+    /// The nuisance parameters.
     pub nuisance: Nuisance,
-    /// Their errors.
+    /// Their coefficients.
     pub coefficients: Vec<f64>,
-    /// Standard errors of these; NaN for one that nothing determines.
+    /// Standard errors of the coefficients, not scaled by [`Self::scatter`]; NaN for one that nothing determines.
     pub coefficient_stderr: Vec<f64>,
     /// Sum of squares of all residuals, priors included.
     pub chi2: f64,
-    /// By how much the last search lowered half the sum of squares.
+    /// Decrease of half the sum of squares by the last search.
     pub gained: f64,
-    /// Logarithm of the evidence, by Laplace's method, but for a constant of the data; NaN without a discrepancy.
+    /// Log evidence by the Laplace approximation, up to a constant of the data; NaN without a discrepancy.
     pub log_evidence: f64,
-    /// What the model misses; `None` where residuals are held against noise alone.
+    /// Discrepancy of the model; `None` for a fit against noise alone.
     pub discrepancy: Option<Discrepancy>,
-    /// The values at which the priors of the parameters are centred.
+    /// Centres of the parameter priors.
     pub centre: Values,
-    /// Number of residuals of the data.
+    /// Number of data residuals.
     pub residuals: usize,
-    /// Relative standard deviation of what the mean of the measured sides has by chance: of the parts that were made for one
-    /// drawing, two are measured.
+    /// Relative standard deviation of the mean of the measured sides from the drawing: two parts of one drawing are
+    /// measured. 0 if only one side is measured.
     pub made: f64,
-    /// What the model shows of each series beyond what a search predicts: nothing before it has settled.
+    /// Non-steady part of each series, which a search does not predict; empty before [`settle`](super::settle()).
     pub unsteady: Vec<Vec<Complex<f64>>>,
     /// Evaluations of residual and Jacobian.
     pub evaluations: usize,
@@ -57,8 +58,8 @@ pub struct Refit {
 }
 
 impl Refit {
-    /// Standard errors of the free parameters, as those of the drawing: by what the residuals scatter, and by what the
-    /// parts of two sides differ from it.
+    /// Standard errors of the free parameters as values of the drawing, SI: from the scatter of the residuals and from
+    /// the differences of the two sides.
     pub fn stderr(&self) -> Vec<f64> {
         let variances = self.covariance.diagonal();
         let of = variances.iter().zip(&self.estimate);
@@ -66,39 +67,39 @@ impl Refit {
             .collect()
     }
 
-    /// The logarithm of a parameter's factor on the side that cleat runs record.
+    /// Log factor of a parameter on the side that cleat runs record.
     pub fn factor(&self, parameter: usize) -> f64 {
         let factor = (self.side.as_slice()[parameter] / self.values.as_slice()[parameter]).ln();
         if factor.is_finite() { factor } else { 0.0 }
     }
 
-    /// What the fitted residuals scatter by, squared; 1 where only noise is left.
+    /// Mean square of the fitted residuals, at least 1; 1 if only noise is left.
     pub fn scatter(&self) -> f64 {
         (self.chi2 / self.residuals as f64).max(1.0)
     }
 
-    /// The discrepancy that was found, for another part of the evidence.
+    /// The discrepancy of the fit for another part of the evidence.
     pub fn discrepancy_of(&self, evidence: &Evidence) -> Option<Discrepancy> {
         self.discrepancy
             .as_ref()
             .map(|known| known.carried_to(evidence, Role::Fit))
     }
 
-    /// What the sensors of records read at zero, with standard errors; SI.
+    /// Zero offset of each sensor with records, and its standard error, SI.
     pub fn offsets(&self) -> Vec<(Point, f64, f64)> {
         let scatter = self.scatter().sqrt();
         let errors: Vec<f64> = self.coefficient_stderr.iter().map(|error| scatter * error).collect();
         self.nuisance.offsets(&self.coefficients, &errors)
     }
 
-    /// With which states records were found to begin.
+    /// Estimated initial states of the records.
     pub fn begun(&self) -> Vec<(Beginning, f64)> {
         let coefficients = &self.coefficients[self.nuisance.of_sensors()..];
         let beginnings = self.nuisance.beginnings.iter().cloned();
         beginnings.zip(coefficients.iter().copied()).collect()
     }
 
-    /// What the sensors would have shown of a prediction.
+    /// The prediction as the sensors with their fitted errors show it.
     pub fn measured(&self, evidence: &Evidence, prediction: &Prediction) -> Vec<Complex<f64>> {
         let series = &evidence.series[prediction.series];
         self.nuisance

@@ -1,10 +1,11 @@
-//! Residuals as real numbers in units of their uncertainty.
+//! Normalised residuals as real numbers.
 
 use nalgebra::Complex;
 
 use crate::discover::observe::Series;
 
-/// The real residuals of a series: each complex one as its parts, in units of the standard deviation of a part.
+/// Appends the real residuals of a series in units of their standard deviation. A complex value gives two, each with
+/// half its variance.
 pub fn scaled(series: &Series, sigma: &[f64], values: impl Iterator<Item = Complex<f64>>, into: &mut Vec<f64>) {
     let complex = series.kind.complex();
     for (value, sigma) in values.zip(sigma) {
@@ -17,7 +18,7 @@ pub fn scaled(series: &Series, sigma: &[f64], values: impl Iterator<Item = Compl
     }
 }
 
-/// A slope by the factors with which a sensor shows it, scaled.
+/// A derivative multiplied by the sensor factors and a scale.
 pub fn through(slope: &[Complex<f64>], factors: &[Complex<f64>], scale: f64) -> impl Iterator<Item = Complex<f64>> {
     slope
         .iter()

@@ -1,4 +1,4 @@
-//! The maximum of a posterior, and the discrepancy that goes with it.
+//! Search for the maximum of a posterior together with its discrepancy.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -8,16 +8,16 @@ use crate::discover::noise::STRAINED;
 use crate::discover::observe::PredictError;
 use crate::least_squares::{Bounds, Options, Outcome, Problem, minimize};
 
-/// The most that a side differs by, in standard deviations of its prior: a model that lacks something shall not
-/// explain it by sides that no car has.
+/// Largest side difference in prior standard deviations: a model must not explain a missing effect by sides that no car
+/// has.
 const MOST: f64 = 3.0;
 
-/// The most that the error of a sensor differs from its prior by, in standard deviations, where a discrepancy is fitted: no
-/// such error is met in practice, and a search stays where numbers are finite.
+/// Largest sensor error in prior standard deviations if a discrepancy is fitted. Larger errors do not occur in practice,
+/// and the bound keeps the search finite.
 const FARTHEST: f64 = 6.0;
 
 impl Posterior<'_> {
-    /// The best place that is found from `start`.
+    /// Least-squares minimum from `start`.
     pub fn search(&mut self, start: &[f64], evaluations: usize) -> Result<Outcome, PredictError> {
         let options = Options {
             gradient: 1e-5,
@@ -31,11 +31,11 @@ impl Posterior<'_> {
         self.refused.take().map_or(Ok(outcome), Err)
     }
 
-    /// Ranges of the parameters, and how far errors of sensors and factors of a side may be from their priors.
+    /// Bounds of the parameters, the sensor errors and the side factors.
     pub fn bounds(&self) -> Bounds {
         let (sensors, sides) = self.sigmas.split_at(self.nuisance.len());
         let sides = sides.iter().map(|sigma| MOST * sigma);
-        // Beside a discrepancy a prior alone holds the errors of sensors.
+        // With a discrepancy, the prior holds the sensor errors; the bound is only a safeguard.
         let strained = if self.discrepancy.is_some() { FARTHEST } else { STRAINED };
         let priors: Vec<f64> = sensors.iter().map(|sigma| strained * sigma).chain(sides).collect();
         let lower = self.free.iter().map(|f| f.lower).chain(priors.iter().map(|most| -most));
@@ -46,7 +46,7 @@ impl Posterior<'_> {
         }
     }
 
-    /// Searches and learns the discrepancy in turn.
+    /// Alternates between searches and updates of the discrepancy.
     pub fn fit(&mut self, mut place: Vec<f64>, rounds: usize, evaluations: usize) -> Result<Refit, PredictError> {
         let mut outcome = self.search(&place, evaluations)?;
         for round in 0..rounds {
@@ -59,14 +59,14 @@ impl Posterior<'_> {
         let mut residual = DVector::zeros(self.residuals());
         let mut jacobian = DMatrix::zeros(self.residuals(), self.variables());
         self.evaluate(&place, residual.as_mut_slice(), jacobian.as_mut_slice());
-        // What the discrepancy takes up is no gain of the search.
+        // The change of cost by the discrepancy is no gain of the search.
         outcome.start_cost += residual.norm_squared() / 2.0 - outcome.cost;
         outcome.cost = residual.norm_squared() / 2.0;
         outcome.jacobian = jacobian;
         Ok(self.refit(outcome))
     }
 
-    /// The discrepancy that explains best what is left.
+    /// Learns the discrepancy from the residuals at a point.
     pub fn learn(&mut self, place: &[f64]) {
         let Some(mut discrepancy) = self.discrepancy.take() else {
             return;

@@ -1,4 +1,4 @@
-//! The end of a refit: what its sweeps show beyond their steady harmonics.
+//! Final stage of a refit: adds the non-steady part of the sweeps.
 
 use super::problem::Posterior;
 use super::refit::Refit;
@@ -6,16 +6,16 @@ use crate::campaign::Role;
 use crate::discover::observe::{Evidence, PredictError, Series, Stimulus, unsteady};
 use crate::model::Model;
 
-/// Rounds of a refit with what its sweeps add to their steady harmonics: the second has it from where the first arrived.
+/// Rounds of a refit with the non-steady part of the sweeps; the second recomputes it at the result of the first.
 const ROUNDS: usize = 2;
-/// Evaluations of such a round: it begins beside its end, and what is still far then is no explanation.
+/// Evaluations of a round. It starts near its optimum, so a fit that is still far away then is no explanation.
 const TO_SETTLE: usize = 20;
 
-/// The same refit with what its sweeps show beyond their steady harmonics, which a search alone leaves out: see
-/// [`unsteady`].
+/// Refits with the non-steady part of the sweeps, which a search leaves out: see [`unsteady`]. Without fitted sweeps
+/// the refit stays as it is.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Refit, PredictError> {
     let swept = |(_, series): (usize, &Series)| matches!(evidence.runs[series.run].stimulus, Stimulus::Sweep { .. });
     if !evidence.of_role(Role::Fit).any(swept) {
@@ -34,7 +34,7 @@ pub fn settle(model: &dyn Model, refit: Refit, evidence: &Evidence) -> Result<Re
 }
 
 impl Posterior<'_> {
-    /// A short search, and the discrepancy where there is one.
+    /// A short search, with an update of the discrepancy if there is one.
     fn settle(&mut self, place: Vec<f64>) -> Result<Refit, PredictError> {
         if self.discrepancy.is_some() {
             return self.fit(place, 1, TO_SETTLE);

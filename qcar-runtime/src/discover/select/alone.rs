@@ -1,4 +1,4 @@
-//! A model alone, without a search for what it lacks: where in its ranges it explains the runs best, and where almost as well.
+//! Fits a model without a search for missing effects: the best optimum in its ranges, and the local minima of the cost.
 
 use std::collections::BTreeMap;
 
@@ -14,33 +14,34 @@ use crate::discover::posterior::{Explanation, Given, Refit, Setting};
 use crate::fit::starts;
 use crate::least_squares::Bounds;
 
-/// Rounds and evaluations of each search: of all starts, of the best half of them, and of the minima that are left.
+/// Rounds and evaluations of the searches: of all starts, of the best half of them, and of the remaining minima.
 const SEARCHES: [(usize, usize); 3] = [(1, 8), (1, 30), (2, 30)];
-/// Of the answer.
+/// Rounds and evaluations of the final fit.
 const TO_THE_END: (usize, usize) = (3, 60);
-/// Searches have met the same minimum where the logarithms of its evidence differ by less: odds of less than three to one.
+/// Log evidence difference below which two searches count as the same minimum: odds of less than three to one.
 const SAME: f64 = 1.0;
 
-/// The best explanation by a model, and its other minima.
+/// The best explanation by a model, and its other local minima.
 pub struct Alone {
-    /// Where the posterior is highest.
+    /// The explanation at the highest posterior found.
     pub explanation: Explanation,
     /// Other minima, the most probable first.
     pub others: Vec<Minimum>,
 }
 
-/// A place where searches have ended, and which is less probable than the best.
+/// A local minimum that is less probable than the best.
 pub struct Minimum {
-    /// Logarithm of the odds against it.
+    /// Log odds against it, relative to the best.
     pub log_odds: f64,
-    /// The parameters there by name.
+    /// Parameter values at the minimum by name, SI.
     pub named: BTreeMap<String, f64>,
 }
 
-/// Fits a model to all runs: from the values that are given, and from others all over the ranges.
+/// Fits a model to all fitted runs from the given values and from `count` starts in total, spread over the ranges.
 ///
 /// # Errors
-/// Where the model lacks what was measured, a parameter has no value, or nothing is to be fitted.
+/// Fails if no run may be fitted, if the model lacks a measured quantity, if a parameter has no value, or if no search
+/// gives a finite evidence.
 pub fn alone(
     workshop: Box<dyn Workshop>,
     setting: &Setting,
@@ -58,7 +59,7 @@ pub fn alone(
     progress(News::Doing("searching to the end"));
     let best = hypothesis.fit(&hypothesis.place(&minima[0]), &fidelity.fine, SEARCHES[2])?;
     let settled = hypothesis.explanation(best, evidence)?.refit;
-    // What sweeps show beyond steady harmonics is taken off what was measured, which the steady harmonics then are held against.
+    // Subtract the non-steady part of the sweeps from the measurement; the fit compares steady harmonics only.
     let steady = super::fidelity(&evidence.less(&settled.unsteady)).fine;
     let refit = hypothesis.fit(&hypothesis.place(&settled), &steady, TO_THE_END)?;
     let other = |other: &Refit| Minimum {
@@ -71,7 +72,7 @@ pub fn alone(
     })
 }
 
-/// Different minima, the most probable first.
+/// Distinct local minima, most probable first.
 fn minima(
     hypothesis: &Hypothesis<'_>,
     from: Vec<BTreeMap<String, f64>>,
@@ -89,7 +90,7 @@ fn minima(
     Ok(different(searched(hypothesis, places, &fidelity.medium, SEARCHES[2])?))
 }
 
-/// Where searches from these places end, the most probable first.
+/// Fits from these places, most probable first.
 fn searched(
     hypothesis: &Hypothesis<'_>,
     places: Vec<Place>,
@@ -103,7 +104,7 @@ fn searched(
         match fit {
             Ok(refit) if refit.log_evidence.is_finite() => found.push(refit),
             Ok(_) => (),
-            // What cannot be predicted from one start may be from another.
+            // A start that cannot be predicted does not stop the others.
             Err(error) => refusal = error,
         }
     }
@@ -111,7 +112,7 @@ fn searched(
     if found.is_empty() { Err(refusal) } else { Ok(found) }
 }
 
-/// Each minimum once.
+/// Keeps one fit for each minimum. The input is sorted by evidence, best first.
 fn different(sorted: Vec<Refit>) -> Vec<Refit> {
     let mut different: Vec<Refit> = Vec::new();
     for refit in sorted {
@@ -123,7 +124,7 @@ fn different(sorted: Vec<Refit>) -> Vec<Refit> {
     different
 }
 
-/// The values that are given, and others all over the ranges.
+/// Start points: the given values, and others spread over the ranges.
 fn spread(given: &[Given], count: usize) -> Vec<BTreeMap<String, f64>> {
     let free: Vec<(&Given, (f64, f64))> = given.iter().filter_map(|own| Some((own, own.range?))).collect();
     let bounds = Bounds {

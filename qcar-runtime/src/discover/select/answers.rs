@@ -1,4 +1,4 @@
-//! Which names are the answer: those of the smallest list of sets that is certain.
+//! The names in the answer: the smallest set of hypotheses that reaches the required probability (a credible set).
 
 use super::bagged::probabilities;
 use super::judging::predictive;
@@ -6,16 +6,17 @@ use super::set::{Set, is_part, most_probable, nameless};
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 
-/// A list of names, and how probable it is.
+/// Sets with the same names, and their joint probability.
 pub struct Answer {
-    /// Place of its most probable set.
+    /// Position of the most probable of these sets.
     pub set: usize,
     pub probability: f64,
-    /// True for names that are no answer: the runs that judge leave nothing of them, or they are the first ones at a limit.
+    /// True if these names are no answer: the held-out runs support none of them, or they are a limiting case of the
+    /// most probable answer.
     pub dismissed: bool,
 }
 
-/// The answers, the most probable first: sets of the same names are one.
+/// The answers, most probable first. Merges sets with the same names.
 pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     let probability = probabilities(&sets.iter().collect::<Vec<_>>(), evidence);
     let left: Vec<usize> = (0..sets.len()).map(|place| predictive(sets, place, evidence)).collect();
@@ -46,8 +47,9 @@ pub fn answers(sets: &[Set], evidence: &Evidence) -> Vec<Answer> {
     answers
 }
 
-/// The set that a set speaks for: itself, if the runs that judge leave it whole, or else the most probable one that they leave
-/// whole and that has what they leave of it. That part says what is there, not that nothing else is.
+/// The set that a set counts for. If the held-out runs support the whole set, that is the set itself. Otherwise it is the
+/// most probable fully supported set that contains the supported part: the part shows what is there, not that nothing else
+/// is.
 fn standing(place: usize, sets: &[Set], left: &[usize]) -> usize {
     if left[place] == place {
         return place;
@@ -57,9 +59,9 @@ fn standing(place: usize, sets: &[Set], left: &[usize]) -> usize {
     most_probable(sets, (0..sets.len()).filter(speaks)).unwrap_or(part)
 }
 
-/// The smallest list of sets that is certain, without those that only add to another one of it. It is the base model alone
-/// where the runs that judge leave nothing of the most probable names, and unless that is less probable than the others have
-/// to be certain.
+/// The credible set: the most probable names that together reach the required probability, without those that only add
+/// effects to another member. It is the base model alone if the most probable names are dismissed, or if the base
+/// model's probability exceeds the accepted doubt.
 pub fn credible(sets: &[Set], answers: &[Answer], numbers: &Numbers) -> Vec<usize> {
     let is_named = |own: &&Answer| !sets[own.set].names().is_empty();
     let none: f64 = answers

@@ -1,4 +1,4 @@
-//! A model with effects in it, and one more effect that might be added.
+//! A model with effects, and its extension by one more effect.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use crate::discover::posterior::{Explanation, Gap, Given, Refit, Setting, Start,
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// A model with effects in it.
+/// A model with effects, and the setting and nuisance parameters of its fit.
 #[derive(Clone)]
 pub struct Assembly {
     workshop: Arc<dyn Workshop>,
@@ -24,15 +24,15 @@ pub struct Assembly {
 /// An effect at its place, in one of its forms.
 #[derive(Clone)]
 pub struct Placed {
-    /// Its name.
+    /// Name of the effect.
     pub effect: String,
-    /// Its place.
+    /// Link, mass or sensor location.
     pub at: String,
-    /// Its form; `None` where it has only one.
+    /// Its form; `None` if it has only one.
     pub form: Option<String>,
-    /// Whether it is no answer, since every real car has some of it.
+    /// True for a nuisance effect: every real car has some of it, so it is no answer.
     pub nuisance: bool,
-    /// What of it is unknown.
+    /// Its unknowns.
     pub unknowns: Unknowns,
 }
 
@@ -43,7 +43,7 @@ impl Placed {
     }
 }
 
-/// A model that can be fitted: that of an assembly, or of a candidate beside it.
+/// A model that can be fitted: an assembly, or an assembly with a candidate.
 pub struct Hypothesis<'a> {
     model: &'a dyn Model,
     given: Vec<Given>,
@@ -51,23 +51,23 @@ pub struct Hypothesis<'a> {
     nuisance: Nuisance,
 }
 
-/// Values of parameters by name, and errors of sensors, from which a fit begins.
+/// Start point of a fit: parameters, nuisance parameters and discrepancy.
 #[derive(Clone, Debug, Default)]
 pub struct Place {
-    /// Parameters.
+    /// Parameter values by name, SI. Others keep their given values.
     pub named: BTreeMap<String, f64>,
-    /// Logarithms of the factors of the recorded side, by parameter.
+    /// Log factors of the recorded side, by parameter.
     pub sides: BTreeMap<String, f64>,
-    /// Coefficients of the sensors' errors.
+    /// Coefficients of the sensor errors.
     pub errors: Vec<f64>,
-    /// With which states records begin.
+    /// Initial states of the records.
     pub begun: Vec<(Beginning, f64)>,
-    /// What the model is taken to miss.
+    /// Discrepancy at which the fit starts.
     pub discrepancy: Discrepancy,
 }
 
 impl Place {
-    /// The values that the campaign gives, with sensors that are right and nothing missed.
+    /// The given values, without sensor errors and with the smallest discrepancy.
     pub fn given(evidence: &Evidence) -> Self {
         Self {
             named: BTreeMap::new(),
@@ -83,7 +83,7 @@ impl Assembly {
     /// The base model.
     ///
     /// # Errors
-    /// Where a parameter has no value.
+    /// Fails if a parameter has no value, or a value has no parameter.
     pub fn base(workshop: Arc<dyn Workshop>, setting: &Setting, evidence: &Evidence) -> Result<Self, PredictError> {
         setting.check(workshop.model().about())?;
         Ok(Self {
@@ -99,27 +99,27 @@ impl Assembly {
         &self.effects
     }
 
-    /// The parameters of its model.
+    /// Parameters of the model, with those of its effects.
     pub fn given(&self) -> &[Given] {
         &self.setting.given
     }
 
-    /// The model.
+    /// The model with all effects.
     pub fn model(&self) -> &dyn Model {
         self.workshop.model()
     }
 
-    /// Every effect at every place of it.
+    /// Every effect at every place, without those already in the assembly.
     pub fn candidates(&self) -> Vec<Candidate> {
         self.not_yet_there(self.workshop.candidates())
     }
 
-    /// Every law that names no cause, at every place of it.
+    /// Every law without a named cause at every place, without those already in the assembly.
     pub fn laws(&self) -> Vec<Candidate> {
         self.not_yet_there(self.workshop.laws())
     }
 
-    /// Those that it does not have.
+    /// Removes candidates whose effect and place are already in the assembly.
     fn not_yet_there(&self, candidates: Vec<Candidate>) -> Vec<Candidate> {
         let is_new = |candidate: &Candidate| {
             let is_there = |own: &Placed| own.effect == candidate.effect && own.at == candidate.at;
@@ -128,7 +128,7 @@ impl Assembly {
         candidates.into_iter().filter(is_new).collect()
     }
 
-    /// The assembly itself.
+    /// The assembly as a hypothesis.
     pub fn hypothesis(&self) -> Hypothesis<'_> {
         Hypothesis {
             model: self.workshop.model(),
@@ -138,7 +138,7 @@ impl Assembly {
         }
     }
 
-    /// The assembly with a candidate; `None` for a sensor that the evidence does not have.
+    /// The assembly with a candidate; `None` if the evidence lacks the sensor of the candidate.
     pub fn hypothesis_with<'a>(&'a self, candidate: &'a Candidate) -> Option<Hypothesis<'a>> {
         let mut hypothesis = self.hypothesis();
         match &candidate.change {
@@ -151,7 +151,7 @@ impl Assembly {
         Some(hypothesis)
     }
 
-    /// With a candidate in it; `None` where it does not apply.
+    /// The assembly with a candidate added; `None` if the candidate does not apply.
     pub fn with(&self, candidate: &Candidate) -> Option<Self> {
         let mut assembly = self.clone();
         match &candidate.change {
@@ -172,7 +172,7 @@ impl Assembly {
         Some(assembly)
     }
 
-    /// The base model with these effects; `None` where they do not go together.
+    /// The assembly with these effects added; `None` if one of them does not apply.
     pub fn with_all(&self, effects: &[&Placed]) -> Option<Self> {
         let mut assembly = self.clone();
         for own in effects {
@@ -184,7 +184,7 @@ impl Assembly {
     }
 }
 
-/// What of an effect is to be found.
+/// Free parameters of an effect.
 fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
     let unknown = parameters.iter().filter(|parameter| !parameter.known);
     unknown.map(|parameter| Given {
@@ -194,7 +194,7 @@ fn unknown(parameters: &[Added]) -> impl Iterator<Item = Given> {
     })
 }
 
-/// With the sensor of a candidate under suspicion; `None` where it is none, or not in the evidence.
+/// Sensor errors with that of a candidate added; `None` if it is no sensor candidate or the evidence lacks the sensor.
 fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
     let Change::Sensor {
         location,
@@ -206,7 +206,7 @@ fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
         return None;
     };
     let (low, high) = parameter.range;
-    // The coefficient of a gain is its logarithm, that of a delay is in seconds.
+    // The coefficient of a gain is its logarithm; the coefficient of a delay is in seconds.
     let width = if *form == Form::Delay {
         high - low
     } else {
@@ -218,13 +218,13 @@ fn suspecting(nuisance: &Nuisance, candidate: &Candidate) -> Option<Nuisance> {
 }
 
 impl<'a> Hypothesis<'a> {
-    /// The model.
+    /// The model that is fitted.
     pub fn model(&self) -> &'a dyn Model {
         self.model
     }
 
-    /// The errors of sensors of a fit of the present model, with those of this one beside them, and their coefficients at a
-    /// place.
+    /// The nuisance parameters of a fit of the present model with the suspected sensor errors of this hypothesis, and
+    /// their coefficients at `place`.
     pub fn nuisance_at(&self, refit: &Refit, place: &Place) -> (Nuisance, Vec<f64>) {
         let mut nuisance = refit.nuisance.clone();
         nuisance.suspects.clone_from(&self.nuisance.suspects);
@@ -232,18 +232,18 @@ impl<'a> Hypothesis<'a> {
         (nuisance, place.errors.iter().chain(begun).copied().collect())
     }
 
-    /// Number of its errors of sensors.
+    /// Number of coefficients of its sensor errors.
     pub fn sensor_errors(&self) -> usize {
         self.nuisance.len()
     }
 
-    /// All parameters, where these are known and the others are as they are given.
+    /// All parameter values: the `known` ones, clamped to their ranges, and the given ones.
     ///
     /// # Errors
-    /// Where a parameter has no value.
+    /// Fails if a parameter has no value.
     pub fn values(&self, known: &BTreeMap<String, f64>) -> Result<Values, PredictError> {
         let about = self.model.about();
-        // An effect may replace a law, and its parameters with it.
+        // An effect may replace a law together with its parameters.
         let of_model = self
             .given
             .iter()
@@ -273,10 +273,10 @@ impl<'a> Hypothesis<'a> {
         self.given.iter().filter_map(free).collect()
     }
 
-    /// Fits it from a place, in so many rounds of so many evaluations.
+    /// Fits from a place; `budget` is the number of rounds and the evaluations of each.
     ///
     /// # Errors
-    /// Where the model says nothing of the evidence.
+    /// Fails if the model cannot predict the evidence.
     pub fn fit(&self, from: &Place, evidence: &Evidence, budget: (usize, usize)) -> Result<Refit, PredictError> {
         let free = self.free();
         let parameters = &self.model.about().parameters;
@@ -299,10 +299,10 @@ impl<'a> Hypothesis<'a> {
         fit(self.model, start, &free, evidence, self.nuisance.clone(), budget)
     }
 
-    /// What a fit says of all runs, with what sweeps show beyond steady harmonics.
+    /// Explanation of all runs by a fit, with the non-steady part of the sweeps.
     ///
     /// # Errors
-    /// Where the model says nothing of the evidence.
+    /// Fails if the model cannot predict the evidence.
     pub fn explanation(&self, refit: Refit, evidence: &Evidence) -> Result<Explanation, PredictError> {
         let refit = settle(self.model, refit, evidence)?;
         let gap = Gap::of(self.model, &refit, evidence)?;
@@ -311,7 +311,7 @@ impl<'a> Hypothesis<'a> {
         Ok(Explanation { named, refit, gap })
     }
 
-    /// Where a fit ended.
+    /// The optimum of a fit as a start point.
     pub fn place(&self, refit: &Refit) -> Place {
         let parameters = &self.model.about().parameters;
         let named = parameters

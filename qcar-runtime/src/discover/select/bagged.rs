@@ -1,20 +1,20 @@
-//! How probable each set is.
+//! Probability of each set.
 //!
-//! Where the most probable set leaves no more than noise, that is its posterior probability. Where it leaves more, no model is
-//! right in every detail: of two models that are both a little wrong, the evidence of many data prefers one with a certainty
-//! that other data would turn around. There it is the mean of the posterior probability over data drawn again with
-//! replacement, a bagged posterior (Huggins and Miller, Bayesian Analysis 18, 2023), which is as uncertain as the data
-//! scatter. It keeps each fit: only the weights of the data are drawn, not the parameters.
+//! If the most probable set leaves no more than noise, this is its posterior probability. If it leaves more, no model
+//! is right in every detail. The evidence of many data then prefers one of two slightly wrong models with a certainty
+//! that other data would reverse. In that case the probability is the bagged posterior (Huggins and Miller, Bayesian
+//! Analysis 18, 2023): the mean of the posterior over data that are resampled with replacement. It is as uncertain as
+//! the data scatter. Each fit is kept: resampling changes the weights of the data, not the parameters.
 
 use super::set::{Set, leaves_more_than_noise};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 use crate::random::SplitMix;
 
-/// Draws of the data. The probabilities have a standard error of at most 0.016 by it.
+/// Number of bootstrap draws. It limits the standard error of a probability to 0.016.
 const DRAWS: usize = 1000;
 
-/// The probability of each set.
+/// Probability of each set; they sum to 1.
 pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
     let whole: Vec<f64> = sets.iter().map(|set| set.log_posterior()).collect();
     let best = sets
@@ -28,7 +28,7 @@ pub fn probabilities(sets: &[&Set], evidence: &Evidence) -> Vec<f64> {
     bagged(&whole, &parts)
 }
 
-/// The probability of each model: `whole` is its logarithm, but for a constant.
+/// Posterior probability of each model; `whole` is its log posterior, up to a constant.
 fn posterior(whole: &[f64]) -> Vec<f64> {
     let most = whole.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let weights: Vec<f64> = whole.iter().map(|log| (log - most).exp()).collect();
@@ -36,8 +36,8 @@ fn posterior(whole: &[f64]) -> Vec<f64> {
     weights.into_iter().map(|weight| weight / all).collect()
 }
 
-/// The mean over draws of the parts of the data: `whole` is the logarithm of the posterior of each model, but for a constant,
-/// `parts` what each part of the data has added to it.
+/// Mean posterior over resampled data. `whole` is the log posterior of each model, up to a constant; `parts` is the
+/// contribution of each part of the data to it.
 fn bagged(whole: &[f64], parts: &[Vec<f64>]) -> Vec<f64> {
     let count = parts.iter().map(Vec::len).min().unwrap_or(0);
     let mut random = SplitMix::new(0);
@@ -61,7 +61,7 @@ fn bagged(whole: &[f64], parts: &[Vec<f64>]) -> Vec<f64> {
 mod tests {
     use super::bagged;
 
-    /// Parts of the data that all say the same leave what the evidence says: the draws change nothing but its scale.
+    /// If all parts of the data agree, resampling leaves the preference of the evidence unchanged.
     #[test]
     fn data_that_agree_leave_no_doubt() {
         let parts = [vec![0.0; 40], vec![0.5; 40]];
@@ -69,10 +69,10 @@ mod tests {
         assert!(probability[1] > 0.999_999, "{probability:?}");
     }
 
-    /// A sum that two opposed halves of the data decide: its standard deviation is known, and with it the share of draws in
-    /// which the other model wins. Of 40 parts that add 1.5 or -1, the sum is 10 with a standard deviation of
-    /// √40 · 1.25 = 7.9; the normal distribution gives Φ(-10/7.9) = 0.103 to the other model, and a little more as the
-    /// evidence of one draw is no step.
+    /// If two halves of the data disagree, the sum has a known standard deviation, and so has the share of draws that
+    /// the other model wins. The 40 parts of 1.5 or -1 have the sum 10 with a standard deviation of √40 · 1.25 = 7.9.
+    /// The normal distribution gives the other model Φ(-10/7.9) = 0.103, and slightly more because the posterior of one
+    /// draw is no step.
     #[test]
     fn data_that_disagree_are_as_uncertain_as_they_scatter() {
         let halves = (0..40).map(|k| if k % 2 == 0 { 1.5 } else { -1.0 });
@@ -80,7 +80,7 @@ mod tests {
         assert!((probability[0] - 0.11).abs() < 0.02, "{probability:?}");
     }
 
-    /// Models that no part of the data tells apart are as probable as before.
+    /// Models that no part of the data separates keep their prior odds.
     #[test]
     fn alike_models_keep_their_odds() {
         let parts = vec![vec![-3.0, 2.0, 7.0]; 2];

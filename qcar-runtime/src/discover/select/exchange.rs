@@ -1,7 +1,8 @@
-//! A set of effects with one of them replaced by a rival.
+//! Replaces one effect of a set by a rival.
 //!
-//! An effect beats its rivals before the later effects are added. What is missing then biases that choice: an unmodelled bending
-//! of the body, or a late sensor, can favour the wrong effect. So each rival is fitted again beside the later effects.
+//! An effect beats its rivals before the later effects are added. The effects still missing then bias that choice:
+//! unmodelled body bending or a sensor delay can favour the wrong effect. So each rival is fitted again beside the
+//! later effects.
 
 use rayon::prelude::*;
 
@@ -10,8 +11,8 @@ use super::explained;
 use super::set::Set;
 use crate::discover::observe::Evidence;
 
-/// The set with each of its effects replaced by each rival that was behind by less than the later effects have gained: these
-/// may gain as much beside the rival.
+/// Fitted sets in which one effect is replaced by a rival. A rival is tried if it was behind by less than the later
+/// effects gained, since they may gain as much beside the rival.
 pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     let last = set.assembly.effects().len() - 1;
     let rivals = (0..last).flat_map(|place| {
@@ -30,13 +31,14 @@ pub fn exchanges(set: &Set, sets: &[Set], evidence: &Evidence) -> Vec<Set> {
     open.into_par_iter().filter_map(exchanged).collect()
 }
 
-/// True where the other set is the first so many effects of the set.
+/// True if the other set consists of the first `count` effects of this set.
 fn is_begun_with(set: &Set, other: &Set, count: usize) -> bool {
     let (own, others) = (set.assembly.effects(), other.assembly.effects());
     others.len() == count && own.iter().zip(others).all(|(own, other)| is_same(own, other))
 }
 
-/// True where the other set has another effect in this place, after the same ones.
+/// True if the other set has the same effects before `place` and, at `place` as its last, an effect that this set
+/// lacks.
 fn competed(set: &Set, other: &Set, place: usize) -> bool {
     let (own, others) = (set.assembly.effects(), other.assembly.effects());
     let begins_alike =
@@ -48,7 +50,8 @@ fn is_same(own: &Placed, other: &Placed) -> bool {
     own.name() == other.name() && own.form == other.form
 }
 
-/// The set with the last effect of `rival` where it has the last of `chosen`; `None` where that is known or cannot be fitted.
+/// The set with the last effect of `chosen` replaced by the last effect of `rival`; `None` if that set is known or
+/// cannot be fitted.
 fn exchanged(set: &Set, chosen: &Set, rival: &Set, sets: &[Set], evidence: &Evidence) -> Option<Set> {
     let later = &set.assembly.effects()[chosen.assembly.effects().len()..];
     let effects: Vec<&Placed> = rival.assembly.effects().iter().chain(later).collect();

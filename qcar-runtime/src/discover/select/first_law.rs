@@ -1,5 +1,5 @@
-//! One law at one place, learned before effects are tried in twos and threes: where it explains the gap and no effect does, few
-//! sets of effects can still overtake it.
+//! Learns one law at one place before pairs and triples of effects are tried. If the law explains the excess residual
+//! and no single effect does, few sets of effects can still overtake it.
 
 use super::learn::{holds, with_law};
 use super::set::{Set, closed, nameless};
@@ -7,15 +7,15 @@ use super::{Progress, best};
 use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
 
-/// The most probable law beside the model without names, once that was asked for.
+/// The most probable law beside the nameless set, computed on first use.
 #[derive(Default)]
 pub struct FirstLaw {
-    /// The place of that model among the sets, and the law.
+    /// Position of the nameless set, and its law; `None` before the first use.
     known: Option<(usize, Option<Set>)>,
 }
 
 impl FirstLaw {
-    /// The law; `None` where none can be fitted.
+    /// The law; `None` if none can be fitted. Learns again if the nameless set has changed.
     pub fn beside(&mut self, sets: &[Set], evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
         let alone = nameless(sets);
         if self.known.as_ref().is_none_or(|(beside, _)| *beside != alone) {
@@ -24,8 +24,9 @@ impl FirstLaw {
         self.known.as_ref().and_then(|(_, law)| law.clone())
     }
 
-    /// By how much the law is ahead of a set with effects, in the logarithm of the posterior and beyond the odds of a certain
-    /// answer; 0 where some set explains the greater part of the gap, or the law less than all but chance.
+    /// Lead of the law over a set with effects: the difference of the log posteriors minus the log odds of a certain
+    /// answer, at least 0. It is 0 if the set has no effects, if the best set explains most of the excess residual, if
+    /// the data do not support the law, or if the law does not explain nearly all of it.
     pub fn lead(&mut self, sets: &[Set], set: usize, evidence: &Evidence, progress: Progress<'_>) -> f64 {
         let alone = &sets[nameless(sets)];
         let closes = |own: &Set| closed(&alone.explanation, &own.explanation, evidence);

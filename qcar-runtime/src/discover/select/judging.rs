@@ -1,12 +1,12 @@
-//! What the runs that judge leave of a set: no fit and no choice has seen them.
+//! Checks sets on the held-out runs, which no fit and no choice has seen.
 
 use super::set::{Set, closed, is_part, most_probable};
 use crate::campaign::Role;
 use crate::discover::observe::Evidence;
 
-/// The set itself, or the part of it that predicts the runs that judge better, or that leaves little for the rest to close:
-/// what does not predict, what changes next to nothing, and what stands for another effect is withdrawn, whichever part shows
-/// it. The last needs no runs that judge.
+/// The set itself, or the part of it that remains after unsupported effects are removed. A smaller set replaces the set
+/// if it predicts the held-out runs at least as well, if the additional effects explain too little of its excess
+/// residual, or if one of them stands in for another effect. The last check needs no held-out runs.
 pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     let judges = evidence.of_role(Role::HeldOut).next().is_some();
     loop {
@@ -26,13 +26,13 @@ pub fn predictive(sets: &[Set], mut best: usize, evidence: &Evidence) -> usize {
     }
 }
 
-/// True where a set predicts the runs that judge better than another does, or where there are none.
+/// True if a set predicts the held-out runs better than another set, or if no run is held out.
 pub fn predicts(set: &Set, other: &Set, evidence: &Evidence) -> bool {
     let nothing_judges = evidence.of_role(Role::HeldOut).next().is_none();
     nothing_judges || log_score(set, evidence) > log_score(other, evidence)
 }
 
-/// Logarithm of the likelihood of the runs that judge, but for a constant (the logarithmic score).
+/// Logarithmic score: the log likelihood of the held-out runs, up to a constant.
 fn log_score(set: &Set, evidence: &Evidence) -> f64 {
     *set.score.get_or_init(|| {
         let parts = set.log_likelihoods(Role::HeldOut, evidence);

@@ -1,5 +1,5 @@
-//! A law where the catalogue has none: free curves, held against the data at every place like the effects of the
-//! catalogue, and paying for each of their coefficients.
+//! Learns a law if the catalogue has none: fits free curves at every place as it fits effects. The evidence penalises
+//! each of their coefficients.
 
 use rayon::prelude::*;
 
@@ -12,11 +12,12 @@ use super::{News, Progress, explained, fidelity};
 use crate::discover::answer::{Finding, Learned};
 use crate::discover::observe::Evidence;
 
-/// Laws that act at once: one of the travel and one of the speed, say.
+/// Most laws that are learned together, for example one in travel and one in speed.
 const MOST_LAWS: usize = 2;
 
-/// The laws that the evidence wants beside a set, of which the `first` is known; `None` where it wants none. They must predict
-/// the runs that judge, or close most of the gap there where the set is far off.
+/// The set with the laws that the evidence supports beside `base`, starting with the `first`; `None` if it supports
+/// none. The laws must predict the held-out runs better than `base`, or explain most of the excess residual there if
+/// `base` is far off.
 pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let mut best: Option<Set> = None;
     let mut next = first;
@@ -32,27 +33,28 @@ pub fn learn(base: &Set, first: Option<Set>, evidence: &Evidence, progress: Prog
         }
         best = Some(more);
     }
-    // The score leaves out the uncertainty of the law's parameters, so a law is overconfident on runs beyond the range of the
-    // fitted ones. Where the model alone is far off, a law that closes most of the gap there still says what is missing.
+    // The held-out score leaves out the parameter uncertainty of the law, so a law is overconfident outside the range
+    // of the fitted runs. If the base model is far off, a law that explains most of the excess residual still shows
+    // what is missing.
     let closes_most =
         |best: &Set| closed(&base.explanation, &best.explanation, evidence) >= evidence.numbers.explained();
     best.filter(|best| holds(best, base, evidence) || is_missing(base, evidence) && closes_most(best))
 }
 
-/// True where the evidence wants laws, and they predict the runs that judge.
+/// True if the evidence supports the learned laws and they predict the held-out runs better than `base`.
 pub fn holds(learned: &Set, base: &Set, evidence: &Evidence) -> bool {
     let is_wanted = learned.log_posterior() > base.log_posterior();
     let closes = closed(&base.explanation, &learned.explanation, evidence) > 0.0;
     is_wanted && closes && predicts(learned, base, evidence)
 }
 
-/// The most probable law at the most probable place beside a set.
+/// The set with the most probable law at its most probable place; `None` if no law can be fitted.
 pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Option<Set> {
     let laws = set.assembly.laws();
     progress(News::Doing(&format!("learning a law at {} places", laws.len())));
     let refit = &set.explanation.refit;
     let here = set.assembly.hypothesis().place(refit);
-    // At its start no law changes much: nothing is known yet that one of them could be dropped by.
+    // A law changes little at its start values, so the screening has no basis to drop one.
     let start = |candidate: usize| Prospect {
         candidate,
         starts: vec![(here.clone(), 0.0)],
@@ -77,7 +79,7 @@ pub fn with_law(set: &Set, evidence: &Evidence, progress: Progress<'_>) -> Optio
     fitted.max_by(|a, b| a.log_posterior().total_cmp(&b.log_posterior()))
 }
 
-/// What is told of the laws that were learned.
+/// The learned laws as they are reported.
 pub fn told(base: &Set, learned: Set, evidence: &Evidence) -> Learned {
     let explained = closed(&base.explanation, &learned.explanation, evidence);
     let laws = learned.assembly.effects().iter();

@@ -1,7 +1,7 @@
-//! Which of many candidates explain best: successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
+//! Selects the best of many candidates by successive halving on the evidence (Jamieson and Talwalkar, AISTATS 2016).
 //!
-//! Every round has about twice the budget of the one before for half of the candidates. One that is behind stays as long
-//! as its own last steps still gained more than it is behind by.
+//! Each round roughly doubles the budget and halves the number of candidates. A candidate that is behind stays as long
+//! as its last search gained at least as much as it is behind.
 
 use std::collections::{BTreeMap, HashSet};
 
@@ -14,24 +14,24 @@ use crate::discover::candidate::Candidate;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// The data that the rounds fit.
+/// The data at three fidelities, for the rounds of successive halving.
 pub struct Fidelity {
-    /// A part of the lines, and one ride.
+    /// Decimated sweep lines and one cleat run.
     pub coarse: Evidence,
-    /// More of them.
+    /// More sweep lines and the same cleat run.
     pub medium: Evidence,
     /// All fitted runs.
     pub fine: Evidence,
 }
 
-/// A round.
+/// One round of successive halving.
 struct Round {
     evidence: fn(&Fidelity) -> &Evidence,
-    /// Searches after each of which the discrepancy is learnt, and evaluations of each.
+    /// Number of searches, each followed by an update of the discrepancy, and evaluations of each search.
     budget: (usize, usize),
-    /// Candidates that go on.
+    /// Number of effects at their places that go on.
     kept: usize,
-    /// Starts of each.
+    /// Number of starts kept for each candidate.
     starts: usize,
 }
 
@@ -62,34 +62,33 @@ const ROUNDS: [Round; 4] = [
     },
 ];
 
-/// The first of them enter with all their starts until so many run, the others with their best.
+/// Number of runners up to which a candidate enters with all its starts; later candidates enter with their best start.
 const STARTED: usize = 9;
-/// Candidates whose evidences differ by less than this are not told apart before the end: a probability of one in twenty
+/// Log evidence difference below which candidates are not separated before the last round: odds of one to twenty
 /// thousand.
 const CLOSE: f64 = 10.0;
-/// So many of those that gain most enter, at whatever place and in whatever form.
+/// Number of candidates with the largest gain that enter, whatever their place and form.
 const ENTRANTS: usize = 6;
-/// How many times as many evaluations a linear model has. They cost little, and with a third of them a light mass on mounts is dropped
+/// Factor on the evaluations of a linear model. They are cheap, and a third of them would drop a light mass on mounts
 /// before its mode is found.
 const LINEAR: usize = 3;
 
-/// A candidate that was fitted to all runs.
+/// A candidate after its fit to all fitted runs.
 pub struct Finalist {
-    /// Its place among the candidates.
+    /// Its position among the candidates.
     pub candidate: usize,
-    /// The fit.
     pub refit: Refit,
 }
 
-/// A candidate that was dropped on the way.
+/// A candidate that was dropped before the last round.
 pub struct Dropped {
-    /// Its place among the candidates.
+    /// Its position among the candidates.
     pub candidate: usize,
-    /// The logarithm of its evidence less that of the best, in the last round that it ran.
+    /// Its log evidence minus that of the best, in its last round; zero or negative.
     pub behind: f64,
 }
 
-/// One start of one candidate.
+/// One start of one candidate in the race.
 struct Runner<'a> {
     candidate: usize,
     hypothesis: &'a Hypothesis<'a>,
@@ -109,7 +108,8 @@ impl Runner<'_> {
     }
 }
 
-/// The best of the candidates that enter, the very best first, fitted to all runs; and the others.
+/// Runs all rounds. Returns the finalists, best first, fitted to all fitted runs, and the dropped candidates, the
+/// latest and best first.
 pub fn race(
     assembly: &Assembly,
     candidates: &[Candidate],
@@ -161,9 +161,9 @@ pub fn race(
     (finalists.collect(), dropped)
 }
 
-/// The prospects that gain most, and the best of each place and of each form of each effect, as far as they gain anything. The
-/// screening tells whether something is missing. What it is, the race tells: a fit that has come to terms without an effect may
-/// have to move far before that effect gains much.
+/// Candidates for the first round, among those with a positive gain: the ones with the largest gain, the best of each
+/// place, and the best of each form of each effect. The screening shows whether something is missing; the fits show
+/// what. A model fitted without an effect may have to move far before that effect gains much.
 pub fn entrants<'p>(candidates: &[Candidate], prospects: &'p [Prospect]) -> Vec<&'p Prospect> {
     let (mut places, mut forms) = (HashSet::new(), HashSet::new());
     let enters = |(rank, prospect): &(usize, &Prospect)| {
@@ -195,7 +195,7 @@ fn run<'a>(mut runner: Runner<'a>, evidence: &Evidence, round: &Round) -> Option
     Some(runner)
 }
 
-/// Who goes on, the best first, and who is dropped.
+/// The runners that go on, best first, and the dropped candidates.
 fn best<'a>(
     mut field: Vec<Runner<'a>>,
     candidates: &[Candidate],
@@ -213,7 +213,7 @@ fn best<'a>(
         let name = (own.effect.as_str(), own.at.as_str());
         let known = names.contains(&name);
         let behind = first - runner.evidence();
-        // What is behind by more than its last steps gained will not come first.
+        // A candidate that is further behind than its last search gained will not come first.
         let improves = behind <= runner.gained().max(CLOSE);
         let is_best_there = !late && !places.contains(&name.1);
         let is_of_beam = names.len() < BEAM;
@@ -269,7 +269,7 @@ mod tests {
         }
     }
 
-    /// Friction gains little at first, behind as many as enter anyway; the stop gains nothing.
+    /// Friction has a small gain and ranks behind all direct entrants; the stop has no gain.
     #[test]
     fn every_form_of_an_effect_is_fitted_at_its_best_place_and_every_place_has_one() {
         let law = |k: usize| (candidate(&format!("law {k}"), "damper"), 100.0 - k as f64);

@@ -1,9 +1,9 @@
-//! Candidates without a fit: what each would gain, to first order in all other unknowns.
+//! Screens candidates without a fit: the gain of each, to first order in all other unknowns.
 //!
-//! A candidate at some values changes the predicted residuals by `g`. What the other unknowns of the fit could imitate is
-//! projected out (the score test of C. R. Rao, Proc. Cambridge Phil. Soc. 44, 1948, with a step of finite size), and
-//! what is left of `g` is held against what is left of the residuals. The effect's strength is scaled to where it gains most;
-//! its shapes are tried over a grid.
+//! A candidate at given values changes the predicted residuals by `g`. The part of `g` that the other unknowns can
+//! imitate is projected out, and the rest is compared with the projected residual. This is the score test of C. R. Rao
+//! (Proc. Cambridge Phil. Soc. 44, 1948) with a finite step. The magnitude of the effect is scaled to its largest gain;
+//! its shape parameters are tried on a grid.
 
 use std::collections::BTreeMap;
 
@@ -17,44 +17,44 @@ use crate::discover::noise::{Discrepancy, Form};
 use crate::discover::observe::{Evidence, PredictError};
 use crate::discover::posterior::Refit;
 
-/// A candidate with the places from which it should be fitted.
+/// A candidate with the start points of its fits.
 pub struct Prospect {
-    /// Its place among the candidates.
+    /// Its position among the candidates.
     pub candidate: usize,
-    /// Where fits should begin, the best first, with what each would gain in the logarithm of the likelihood.
+    /// Start points, best first, each with its predicted gain in log likelihood.
     pub starts: Vec<(Place, f64)>,
-    /// Another start, of which the screening knows nothing.
+    /// A further start point that the screening has not assessed.
     pub afresh: Option<Place>,
 }
 
 impl Prospect {
-    /// Begins from a place too, with the usual values of the candidate.
+    /// Adds a start at `place` with the default values of the candidate.
     pub fn start_from(&mut self, place: &Place, assembly: &Assembly, candidate: &Candidate) {
         let hypothesis = assembly.hypothesis_with(candidate);
         self.afresh = hypothesis.map(|own| Point::usual(candidate).at(place, &own, candidate));
     }
 
-    /// What the best start would gain.
+    /// Predicted gain of the best start in log likelihood; 0 without a start.
     pub fn gain(&self) -> f64 {
         self.starts.first().map_or(0.0, |start| start.1)
     }
 }
 
-/// Starts of a candidate that are fitted.
+/// Number of starts of a candidate that are kept.
 const STARTS: usize = 3;
-/// How far towards the ends of their ranges a single shape is tried,
+/// Grid of a single shape parameter: shares of the way to its bounds.
 const SHAPES: &[f64] = &[0.0, -0.2, 0.2, -0.4, 0.4, -0.6, 0.6, -0.8, 0.8];
-/// each of two or more of a linear model, which costs little,
+/// Grid of each of several shape parameters of a linear model, which is cheap to predict.
 const SHAPES_OF_LINEAR: &[f64] = &[0.0, -0.35, 0.35, -0.7, 0.7];
-/// each of two of any other, and each of more, one after the other,
+/// Grid of each of several shape parameters of a nonlinear model: all combinations of two, one at a time for more.
 const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
-/// and anything else.
+/// Grid of every other free parameter.
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
-/// All candidates, those that would gain most first.
+/// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
 ///
 /// # Errors
-/// Where a parameter of the present model has no value.
+/// None: a candidate that cannot be predicted is left out.
 pub fn screen(
     assembly: &Assembly,
     candidates: &[Candidate],
@@ -94,36 +94,36 @@ pub fn screen(
     Ok(all)
 }
 
-/// The present fit, linearised: residuals, and what all unknowns could imitate.
+/// The present fit, linearised: residuals, Jacobian and the derived quantities of the score test.
 pub struct Tangent {
-    /// In units of the noise, those of the priors behind those of the data.
+    /// Residuals in units of the noise: those of the data, then those of the priors.
     residual: DVector<f64>,
     jacobian: DMatrix<f64>,
-    /// The same, independent by the discrepancy.
+    /// The same residuals, whitened by the discrepancy.
     white: DVector<f64>,
     white_jacobian: DMatrix<f64>,
     hessian: Option<Cholesky<f64, Dyn>>,
-    /// Jᵀr of these.
+    /// Jᵀr of the whitened quantities.
     gradient: DVector<f64>,
-    /// As it is.
+    /// The discrepancy of the fit.
     discrepancy: Discrepancy,
-    /// Minus the logarithm of the posterior density.
+    /// Negative log posterior density, up to a constant.
     cost: f64,
     data: usize,
 }
 
-/// The best step along a candidate.
+/// The best step along the change that a candidate makes.
 struct Step {
-    /// Factor of its change of the residuals.
+    /// Factor on the change of the residuals.
     scale: f64,
-    /// How all unknowns follow it.
+    /// Change of all other unknowns along with it.
     unknowns: DVector<f64>,
-    /// What it gains in half the sum of squares.
+    /// Decrease of half the sum of squares.
     gain: f64,
 }
 
 impl Tangent {
-    /// Of a fit.
+    /// Linearises a fit on this evidence.
     pub fn new(refit: &Refit, assembly: &Assembly, evidence: &Evidence) -> Self {
         let (residual, jacobian) = refit.linearised(assembly.model(), evidence);
         let known = refit
@@ -147,8 +147,8 @@ impl Tangent {
         }
     }
 
-    /// The step along a change of the residuals of the data, within limits of its factor, that gains most while the
-    /// discrepancy stays what it is.
+    /// The step along a change of the data residuals that gains most with the discrepancy held fixed. The factor stays
+    /// within `(least, most)`. `None` if other unknowns can imitate the whole change, or if the gain is not finite.
     fn step(&self, there: &DVector<f64>, (least, most): (f64, f64)) -> Option<Step> {
         let mut change = there - self.residual.rows(0, self.data);
         self.discrepancy.whiten(change.as_mut_slice());
@@ -166,7 +166,8 @@ impl Tangent {
         gain.is_finite().then_some(Step { scale, unknowns, gain })
     }
 
-    /// The sum of squares of a change of the residuals of the data that nothing else can imitate.
+    /// Sum of squares of the part of a residual change that no other unknown can imitate; `None` if the normal matrix
+    /// is singular.
     pub fn trace(&self, there: &DVector<f64>) -> Option<f64> {
         let mut change = there - self.residual.rows(0, self.data);
         self.discrepancy.whiten(change.as_mut_slice());
@@ -175,7 +176,7 @@ impl Tangent {
         Some(change.norm_squared() - along.dot(&imitated))
     }
 
-    /// What the present unknowns and the discrepancy gain by themselves on this part of the evidence.
+    /// Gain of the present unknowns and the discrepancy on this evidence, without a candidate.
     fn gain_alone(&self) -> f64 {
         let Some(hessian) = &self.hessian else { return 0.0 };
         let stay = Step {
@@ -187,7 +188,7 @@ impl Tangent {
         self.gain_with_discrepancy(&here, &stay).max(0.0)
     }
 
-    /// What a step gains in the logarithm of the posterior density, where the discrepancy becomes what is then left.
+    /// Gain of a step in log posterior density, with the discrepancy learned again from the remaining residual.
     fn gain_with_discrepancy(&self, there: &DVector<f64>, step: &Step) -> f64 {
         let mut left = &self.residual + &self.jacobian * &step.unknowns;
         let change = there - self.residual.rows(0, self.data);
@@ -202,16 +203,16 @@ impl Tangent {
     }
 }
 
-/// How far each parameter of a candidate is towards the ends of its range: by place among its parameters.
+/// A grid point of a candidate: for each of its parameters, the signed share of the way from its start to a bound.
 #[derive(Clone, Debug)]
 pub struct Point {
     shifts: Vec<f64>,
-    /// Factor of the strength.
+    /// Factor on the magnitude.
     scale: f64,
 }
 
 impl Point {
-    /// The start of every parameter.
+    /// The point at which every parameter has its start value.
     pub fn usual(candidate: &Candidate) -> Self {
         Self {
             shifts: vec![0.0; candidate.parameters().len()],
@@ -219,7 +220,7 @@ impl Point {
         }
     }
 
-    /// The place in which the candidate stands at this point beside the present fit.
+    /// The present fit extended by the candidate with the values of this point.
     pub fn at(&self, here: &Place, hypothesis: &Hypothesis<'_>, candidate: &Candidate) -> Place {
         let mut there = here.clone();
         let parameters = candidate.parameters().iter().zip(&self.shifts);
@@ -249,7 +250,7 @@ impl Point {
         scaled.clamp(own.range.0, own.range.1)
     }
 
-    /// By what factors the strength of a candidate may be scaled within its range; of one without, none.
+    /// Least and largest factor on the magnitude of a candidate within its range; (1, 1) if it has no magnitude.
     fn scales(&self, candidate: &Candidate) -> (f64, f64) {
         let parameters = candidate.parameters().iter().zip(&self.shifts);
         let mut strengths = parameters.filter_map(|(own, &shift)| match own.role {
@@ -274,12 +275,12 @@ impl Point {
     }
 }
 
-/// The coefficient of a sensor's error: of a gain its logarithm.
+/// Coefficient of a sensor error: a delay in s, the logarithm of a gain.
 fn coefficient(form: Form, value: f64) -> f64 {
     if form == Form::Delay { value } else { value.ln() }
 }
 
-/// Where a candidate is tried: its shapes over a grid, and everything else towards either end alone.
+/// Grid points of a candidate: combinations of its shape parameters, and every other free parameter alone.
 fn grid(candidate: &Candidate) -> Vec<Point> {
     let parameters = candidate.parameters();
     let is_shape = |own: &&Added| own.role == ParameterRole::Shape && !own.known;
@@ -306,7 +307,7 @@ fn grid(candidate: &Candidate) -> Vec<Point> {
                 point
             })
         };
-        // Shapes go with everything; anything else moves alone.
+        // Every combination of shapes is tried; any other parameter moves alone.
         let more: Vec<Vec<f64>> = match own.role {
             ParameterRole::Shape if together => points.iter().flat_map(moved).collect(),
             _ => moved(&start).collect(),
@@ -318,7 +319,7 @@ fn grid(candidate: &Candidate) -> Vec<Point> {
     points.into_iter().map(|shifts| Point { shifts, scale: 1.0 }).collect()
 }
 
-/// A value on the way from the start (0) to the lower (-1) or the upper end (1) of the range, by ratio where it can be.
+/// The value at `shift`, from the start (0) to the lower (-1) or upper (1) bound; geometric if the range is positive.
 fn towards(parameter: &Added, shift: f64) -> f64 {
     let (low, high) = parameter.range;
     let end = if shift < 0.0 { low } else { high };

@@ -1,4 +1,4 @@
-//! A set of effects with its fit: how probable it is, what it names, and what it leaves.
+//! A set of effects with its fit: its probability, its names and its remaining residual.
 
 use std::sync::OnceLock;
 
@@ -9,29 +9,27 @@ use crate::discover::numbers::{Numbers, ONE_SIDED};
 use crate::discover::observe::{Evidence, Series};
 use crate::discover::posterior::Explanation;
 
-/// A set of effects with its fit.
 #[derive(Clone)]
 pub struct Set {
-    /// The model with them.
+    /// The model with these effects.
     pub assembly: Assembly,
-    /// Its fit.
     pub explanation: Explanation,
-    /// Logarithm of its odds before any measurement.
+    /// Log prior odds of the set.
     pub log_prior: f64,
-    /// Whether its extensions were looked for.
+    /// True once extensions of the set were tried.
     pub extended: bool,
-    /// Whether its effects were replaced by their rivals.
+    /// True once its effects were replaced by their rivals.
     pub exchanged: bool,
-    /// Whether it was tried without each of its effects.
+    /// True once it was fitted without each of its effects.
     pub reduced: bool,
-    /// Others that were dropped on the way to it.
+    /// Candidates that were dropped in the race that led to it.
     pub rivals: Vec<Rival>,
-    /// What the runs that judge say of it, once that was asked: see [`super::judging`].
+    /// Log likelihood of the held-out runs, computed on first use: see [`super::judging`].
     pub score: OnceLock<f64>,
 }
 
 impl Set {
-    /// A set that was not extended yet.
+    /// A set on which no search step was tried yet.
     pub fn new(assembly: Assembly, explanation: Explanation, log_prior: f64) -> Self {
         Self {
             assembly,
@@ -45,18 +43,17 @@ impl Set {
         }
     }
 
-    /// Logarithm of its probability, but for a constant of the data.
+    /// Log posterior probability, up to a constant of the data.
     pub fn log_posterior(&self) -> f64 {
         self.explanation.refit.log_evidence + self.log_prior
     }
 
-    /// Odds of one effect more, before any measurement.
+    /// Prior odds of one more effect: even for the first.
     pub fn odds_of_another(&self, numbers: &Numbers) -> f64 {
         if self.names().is_empty() { 1.0 } else { numbers.further }
     }
 
-    /// Logarithm of the likelihood of the runs of a role, but for a constant, part by part of the data; `None` without a
-    /// discrepancy.
+    /// Log likelihood of the runs of a role, up to a constant, for each part of the data; `None` without a discrepancy.
     pub fn log_likelihoods(&self, role: Role, evidence: &Evidence) -> Option<Vec<f64>> {
         let discrepancy = self.explanation.refit.discrepancy.as_ref()?;
         let mut residual = Vec::new();
@@ -74,7 +71,7 @@ impl Set {
         Some(discrepancy.carried_to(evidence, role).log_likelihoods(residual))
     }
 
-    /// What is told of all its effects.
+    /// Findings for all its effects, with `evidence` and `closed` left at 0.
     pub fn findings(&self) -> Vec<Finding> {
         let effects = self.assembly.effects().iter();
         let finding = |own: &Placed| Finding {
@@ -89,14 +86,14 @@ impl Set {
         effects.map(finding).collect()
     }
 
-    /// True where an effect stands for another.
+    /// True if an effect that may be an answer has a magnitude at its bound.
     pub fn stands_at_an_end(&self) -> bool {
         self.named().any(|own| own.unknowns.stands_at_an_end(&self.explanation))
     }
 
-    /// True where an effect that a part of it lacks has a magnitude at an end of its range, so that it stands for another
-    /// effect. A further effect must have its shapes inside their ranges too: little is left for it to explain, and at the
-    /// limit of a shape it imitates almost anything.
+    /// True if an effect that `part` lacks has a magnitude at its bound, so that it stands in for another effect. A
+    /// further effect must also have its shape parameters inside their ranges: little is left for it to explain, and at
+    /// the bound of a shape parameter it imitates almost anything.
     pub fn adds_a_substitute(&self, part: &Set) -> bool {
         let is_further = !part.names().is_empty();
         let is_substitute = |own: &Placed| {
@@ -107,19 +104,19 @@ impl Set {
         self.named().filter(is_new).any(is_substitute)
     }
 
-    /// True where a shape stands at an end of its range and the other set has fewer unknowns: at its limit a law is a simpler
-    /// one, and no alternative to it.
+    /// True if a parameter is at its bound and the other set has fewer free parameters. At the bound a law reduces to a
+    /// simpler one, so this set is no alternative to the simpler set.
     pub fn is_a_limit_beside(&self, other: &Set) -> bool {
         let unknowns = |set: &Set| set.explanation.refit.free.len();
         unknowns(self) > unknowns(other) && self.named().any(|own| own.unknowns.reaches_an_end(&self.explanation))
     }
 
-    /// Its effects that may be an answer.
+    /// Its effects that are not nuisance effects.
     pub fn named(&self) -> impl Iterator<Item = &Placed> + Clone {
         self.assembly.effects().iter().filter(|own| !own.nuisance)
     }
 
-    /// Names and places of them, in one order.
+    /// Sorted pairs of name and place of these effects.
     pub fn names(&self) -> Vec<(&str, &str)> {
         let mut names: Vec<_> = self.named().map(Placed::name).collect();
         names.sort_unstable();
@@ -127,25 +124,25 @@ impl Set {
     }
 }
 
-/// The most probable of the sets at these places.
+/// The most probable of the sets at these positions; `None` if there are none.
 pub fn most_probable(sets: &[Set], places: impl IntoIterator<Item = usize>) -> Option<usize> {
     let order = |a: &usize, b: &usize| sets[*a].log_posterior().total_cmp(&sets[*b].log_posterior());
     places.into_iter().max_by(order)
 }
 
-/// The most probable set that names nothing: the base model, with what every real car has where the runs show it.
+/// The most probable set that names nothing: the base model with the nuisance effects that the data show.
 pub fn nameless(sets: &[Set]) -> usize {
     let nameless = (0..sets.len()).filter(|&place| sets[place].names().is_empty());
     most_probable(sets, nameless).unwrap_or(0)
 }
 
-/// True where every effect of one set is in the other.
+/// True if `whole` contains every named effect of `part`.
 pub fn is_part(part: &Set, whole: &Set) -> bool {
     part.names().iter().all(|name| whole.names().contains(name))
 }
 
-/// True where a model leaves more of any sensor than models of its kind do, and more than the uncertainty of all that
-/// judges: what a noisy sensor leaves alone is no sign of an effect.
+/// True if an effect is missing: the discrepancy of some sensor exceeds the expected one, and the excess residual is
+/// positive. A noisy sensor alone is no sign of an effect.
 pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     let discrepancy = set.explanation.refit.discrepancy.iter();
     let is_large = discrepancy
@@ -154,8 +151,8 @@ pub fn is_missing(set: &Set, evidence: &Evidence) -> bool {
     is_large && excess(&set.explanation, evidence) > 0.0
 }
 
-/// True where the residuals of the runs that were fitted are larger than noise alone would leave: their mean square is 1 for
-/// a model that is right, and of `n` values exceeds 1 by `sqrt(2/n)` as its standard deviation.
+/// True if the fitted residuals are significantly larger than noise. For a right model their mean square is 1 with a
+/// standard deviation of `sqrt(2/n)` for `n` values.
 pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     let parts = |series: &Series| series.at.len() * if series.kind.complex() { 2 } else { 1 };
     let values: usize = evidence.of_role(Role::Fit).map(|(_, series)| parts(series)).sum();
@@ -164,13 +161,13 @@ pub fn leaves_more_than_noise(set: &Set, evidence: &Evidence) -> bool {
     square.is_nan() || square > 1.0 + ONE_SIDED * scatter
 }
 
-/// Share of the excess of the squared gap over noise that is gone on the runs that judge.
+/// Share of the excess residual of `before` that `after` explains, on the held-out runs.
 pub fn closed(before: &Explanation, after: &Explanation, evidence: &Evidence) -> f64 {
     1.0 - excess(after, evidence) / excess(before, evidence).max(f64::MIN_POSITIVE)
 }
 
-/// The squared gap over its uncertainty on the runs that judge (those that were fitted, where none do) beyond what noise
-/// alone leaves, which is 1.
+/// Excess residual: the mean square of the normalised residual minus 1, which noise alone leaves; at least 0. It is
+/// taken on the held-out runs, or on the fitted runs if none is held out.
 pub fn excess(own: &Explanation, evidence: &Evidence) -> f64 {
     let held_out = evidence.of_role(Role::HeldOut).next().is_some();
     let gap = if held_out { own.gap.held_out } else { own.gap.fit };

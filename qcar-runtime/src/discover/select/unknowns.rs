@@ -1,28 +1,28 @@
-//! What is unknown of an effect in a model, and what an explanation says of it.
+//! The unknowns of an effect in a model, and their estimates.
 
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Form, Nuisance};
 use crate::discover::posterior::Explanation;
 
-/// What is unknown of an effect in a model.
+/// The unknowns of an effect in a model.
 #[derive(Clone)]
 pub struct Unknowns {
     all: Vec<Unknown>,
-    /// The parameters of the model that say how much of it there is, not where it acts.
+    /// Names of its free model parameters other than shape parameters: they say how much of the effect there is.
     magnitudes: Vec<String>,
 }
 
-/// A number that belongs to an effect, by its name in the effect.
+/// An unknown of an effect. The first string is its name in the effect.
 #[derive(Clone)]
 enum Unknown {
-    /// A parameter of the model, by its name there.
+    /// A model parameter, with its name in the model.
     Parameter(String, String),
-    /// A coefficient of the sensors' errors.
+    /// A coefficient of the sensor errors, with its position among the coefficients and its form.
     Coefficient(String, usize, Form),
 }
 
 impl Unknowns {
-    /// A candidate, with the sensors as it suspects them.
+    /// The unknowns of a candidate. `nuisance` must already contain the sensor error that the candidate adds.
     pub fn new(candidate: &Candidate, nuisance: &Nuisance) -> Self {
         let unknowns = match &candidate.change {
             Change::Model { parameters, .. } => {
@@ -51,12 +51,13 @@ impl Unknowns {
         }
     }
 
-    /// True where a magnitude stands at an end of its range: the effect does duty for another. A shape may go to its limit.
+    /// True if a magnitude is at its bound: the effect then stands in for another. A shape parameter may be at its
+    /// bound.
     pub fn stands_at_an_end(&self, explanation: &Explanation) -> bool {
         self.magnitudes.iter().any(|name| is_at_end(explanation, name))
     }
 
-    /// True where any of its parameters does, a shape too.
+    /// True if any parameter is at its bound, shape parameters included.
     pub fn reaches_an_end(&self, explanation: &Explanation) -> bool {
         self.all.iter().any(|unknown| match unknown {
             Unknown::Parameter(_, name) => is_at_end(explanation, name),
@@ -64,7 +65,7 @@ impl Unknowns {
         })
     }
 
-    /// What an explanation says of the effect: name, value, standard error, which is 0 for a value that is given.
+    /// Estimates of the effect: name, value and standard error, SI. The error is 0 for a fixed parameter.
     pub fn parameters(&self, explanation: &Explanation) -> Vec<(String, f64, f64)> {
         let refit = &explanation.refit;
         let errors = refit.stderr();
@@ -93,7 +94,7 @@ fn is_at_end(explanation: &Explanation, name: &str) -> bool {
     free_of(explanation, name).is_some_and(|free| explanation.refit.at_bound[free] != 0)
 }
 
-/// Place of a parameter among the free ones.
+/// Position of a parameter among the free ones; `None` if it is fixed.
 fn free_of(explanation: &Explanation, name: &str) -> Option<usize> {
     let place = explanation.named.iter().position(|(known, _)| known == name)?;
     explanation.refit.free.iter().position(|free| free.parameter == place)

@@ -1,4 +1,4 @@
-//! What is said of the sets: the answer, and the most probable candidates beside it.
+//! The verdict on the sets, and the most probable candidates.
 
 use super::answers::{Answer, answers, credible};
 use super::assembly::Placed;
@@ -8,13 +8,13 @@ use crate::discover::numbers::GREATER_PART;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Explanation;
 
-/// The answer, and the place of the set that it tells of; of a class the most probable one.
+/// The answer, and the position of the set that it describes. For a class, this is the most probable member.
 pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let answers = answers(sets, evidence);
     let alone = nameless(sets);
     let before = sets[alone].explanation.clone();
     let credible = credible(sets, &answers, &evidence.numbers);
-    // What explains less than most of the gap is not the answer, however probable beside the others.
+    // Names that explain less than most of the excess residual are no answer, even if they are the most probable.
     let explains = |set: usize| closed(&before, &sets[set].explanation, evidence) >= GREATER_PART;
     let members = if explains(credible[0]) { credible } else { vec![alone] };
     let best = members[0];
@@ -43,7 +43,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     let holds = |own: &Answer| members.iter().any(|&member| is_part(&sets[member], &sets[own.set]));
     let probability = match verdict {
         Verdict::None => Some(of_none),
-        // Given that one of the names that may be an answer is the truth.
+        // Probability given that one of the names that are not dismissed is true.
         Verdict::Found | Verdict::Class => Some(sum(&|own| !own.dismissed && holds(own)) / sum(&|own| !own.dismissed)),
         Verdict::Unknown => None,
     };
@@ -66,7 +66,7 @@ pub fn judged(sets: &[Set], evidence: &Evidence) -> (Discovery, usize) {
     (discovery, best)
 }
 
-/// The findings of a list of sets, what all of them have first, and how many follow that stand in each other's place.
+/// Findings of the members, those common to all first, and the number of alternative findings at the end.
 fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Vec<Finding>, usize) {
     let is_common = |own: &Placed| members.iter().all(|set| set.names().contains(&own.name()));
     let (common, others): (Vec<&Placed>, Vec<&Placed>) = members[0].named().partition(|own| is_common(own));
@@ -88,16 +88,16 @@ fn findings(members: &[&Set], finding: &dyn Fn(&Set, &Placed) -> Finding) -> (Ve
     (findings, alike)
 }
 
-/// A part of all, and nothing of nothing.
+/// Ratio of `part` to `all`, at least 0; 0 if `all` is 0.
 fn share(part: f64, all: f64) -> f64 {
     if all > 0.0 { (part / all).max(0.0) } else { 0.0 }
 }
 
-/// How many candidates are told of.
+/// Number of candidates in the answer.
 const CANDIDATES: usize = 3;
 
-/// The most probable effects, each with the best set that has it alone, or else the best with it. What an answer withdraws
-/// of a set, since it predicts nothing, has no part in its probability.
+/// The most probable effects, each described by the best of the smallest sets that contain it. Dismissed answers do not
+/// count towards the probability.
 fn candidates(sets: &[Set], answers: &[Answer], before: &Explanation, evidence: &Evidence) -> Vec<Probable> {
     let mut names: Vec<(&str, &str)> = sets.iter().flat_map(Set::names).collect();
     names.sort_unstable();

@@ -1,7 +1,8 @@
-//! What `none` is worth: which effects would have been seen (the detection limit).
+//! Detection limits: the effects that the data would have shown, if none was found.
 //!
-//! An effect of its usual size changes the predicted residuals. What of that no other unknown can imitate, to first order,
-//! is what it would gain in the logarithm of the likelihood; it is held against what it would have to gain to be certain.
+//! An effect of its default size changes the predicted residuals. The part of this change that no other unknown can
+//! imitate, to first order, gives its gain in log likelihood. This gain is compared with the gain that a certain answer
+//! needs.
 
 use rayon::prelude::*;
 
@@ -14,7 +15,7 @@ use crate::discover::numbers::Numbers;
 use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
-/// Each effect of the model at each place, in its usual form, the best seen first.
+/// The detection limit of each effect at each place, in its first form; most visible first.
 pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<Visible> {
     let tangent = Tangent::new(refit, assembly, evidence);
     let here = assembly.hypothesis().place(refit);
@@ -49,8 +50,8 @@ pub fn visible(assembly: &Assembly, refit: &Refit, evidence: &Evidence) -> Vec<V
     visible
 }
 
-/// What an effect has to gain in the logarithm of the likelihood to be certain: the odds against it, and for each of its
-/// parameters the part of its range that such a gain would leave (the Occam factor).
+/// Gain in log likelihood that makes an effect certain: the log odds against it, plus an Occam factor for each of its
+/// free parameters, which such a gain would narrow to a part of its range.
 fn needed(candidate: &Candidate, all: &[Candidate], gain: f64, numbers: &Numbers) -> f64 {
     let odds = (numbers.certain() / numbers.doubt).ln() - log_prior(candidate, all);
     odds + candidate.unknowns() as f64 * (1.0 + 2.0 * gain).ln() / 2.0

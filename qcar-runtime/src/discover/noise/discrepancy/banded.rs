@@ -1,19 +1,19 @@
-//! A symmetric matrix of which each row is known from some column on up to the diagonal, and its Cholesky factor.
+//! Symmetric matrix with a variable band, and its Cholesky factor.
 
 use std::ops::Range;
 
-/// The lower triangle, row after row.
+/// The lower triangle, row by row.
 #[derive(Clone, Debug)]
 pub struct Banded {
     /// Column of the first entry of each row.
     first: Vec<usize>,
-    /// Where each row begins among the entries; the end of the last behind them.
+    /// Position of the first entry of each row, and the number of entries at the end.
     start: Vec<usize>,
     entries: Vec<f64>,
 }
 
 impl Banded {
-    /// Of so many rows: `columns` are those of a row, up to its diagonal.
+    /// A matrix with this number of rows. `columns` gives the columns of a row up to and including its diagonal.
     pub fn new(rows: usize, columns: impl Fn(usize) -> Range<usize>, entry: impl Fn(usize, usize) -> f64) -> Self {
         let mut banded = Self {
             first: Vec::with_capacity(rows),
@@ -39,7 +39,7 @@ impl Banded {
         scaled
     }
 
-    /// The lower triangular factor of a positive definite matrix.
+    /// Lower triangular factor of a positive definite matrix.
     pub fn cholesky(mut self) -> Self {
         for row in 0..self.first.len() {
             let (before, rest) = self.entries.split_at_mut(self.start[row]);
@@ -68,7 +68,7 @@ impl Banded {
         }
     }
 
-    /// The logarithms of the diagonal.
+    /// Logarithms of the diagonal.
     pub fn log_diagonal(&self) -> impl Iterator<Item = f64> {
         self.start[1..].iter().map(|end| self.entries[end - 1].ln())
     }

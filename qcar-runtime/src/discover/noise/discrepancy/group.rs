@@ -1,4 +1,4 @@
-//! The series of one sensor in one kind of run, which have a discrepancy in common.
+//! The series of one sensor in one kind of run, which share a discrepancy.
 
 use std::mem::Discriminant;
 use std::ops::Range;
@@ -13,27 +13,27 @@ use crate::transmissibility::Point;
 #[derive(Clone, Debug)]
 pub struct Group {
     pub key: Key,
-    /// For each value, in the order of where it stands, the rows of its real parts among the residuals.
+    /// Residual rows of each value, in the order of its position.
     rows: Vec<[usize; 2]>,
-    /// How many values stand within each distance at which correlation ends, in the same order.
+    /// Number of values in each correlation length, in the same order.
     cells: Vec<usize>,
-    /// Rows of a value: two where it is complex.
+    /// Number of residual rows of a value: two if it is complex.
     parts: usize,
-    /// What the evidence of each run counts: a tyre's law is wrong in all rides alike, and moves all masses along an axis by
-    /// one force, so that all of these count as one.
+    /// Weight of the evidence of each run. An error of the tyre law is equal in all cleat runs and moves all masses
+    /// along an axis by one force, so all of them together count as one.
     weight: f64,
-    /// The correlation, in units of the noise, for a `τ` of one.
+    /// Covariance in units of the noise for `τ` = 1.
     correlation: Banded,
-    /// The least that any model misses,
+    /// Smallest `τ`.
     least: f64,
-    /// and what is expected before any measurement.
+    /// Mean of the exponential prior of `τ`.
     expected: f64,
     pub tau: f64,
-    /// Cholesky factor of the covariance in units of the noise; `None` without discrepancy.
+    /// Cholesky factor of the covariance in units of the noise; `None` if `τ` is zero.
     factor: Option<Banded>,
 }
 
-/// What tells groups apart.
+/// Identity of a group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Key {
     pub sensor: Point,
@@ -42,19 +42,21 @@ pub struct Key {
 }
 
 impl Key {
-    /// True for what sensors along the same axis give in runs of the same kind, the sensor itself included.
+    /// True for a group of the same axis, kind and type of run, including the group itself.
     pub fn is_beside(&self, other: &Key) -> bool {
         (self.sensor.axis, self.kind, self.run) == (other.sensor.axis, other.kind, other.run)
     }
 }
 
-/// Steps of the search for `τ`, and the least that differs from zero.
+/// Steps of the search for `τ`.
 const STEPS: usize = 12;
+/// Smallest nonzero `τ` of the search.
 const LEAST: f64 = 1e-4;
+/// Largest `τ` of the search.
 const MOST: f64 = 2.0;
 
 impl Group {
-    /// Of so many sensors that see the same force.
+    /// A group at its smallest `τ`. `sensors` is the number of sensors that see the same force.
     pub fn new(key: Key, sensors: usize, least: f64, mut values: Vec<Value>, numbers: &Numbers) -> Self {
         values.sort_by(|a, b| a.place.total_cmp(&b.place));
         let correlated = |row: usize| -> Range<usize> {
@@ -94,7 +96,7 @@ impl Group {
         self.factor = (tau > 0.0).then(|| self.factor(tau));
     }
 
-    /// Minus the logarithm of the prior of `τ`, but for a constant: an exponential law, which allows zero.
+    /// Negative log prior of `τ`, up to a constant. The prior is exponential, so it allows zero.
     pub fn prior(&self, tau: f64) -> f64 {
         tau / self.expected
     }
@@ -103,13 +105,13 @@ impl Group {
         self.correlation.scaled_beside_one(tau * tau).cholesky()
     }
 
-    /// Half the logarithm of the determinant of the covariance of all parts.
+    /// Half the log determinant of the covariance of all parts.
     pub fn log_determinant(&self) -> f64 {
         let of_part: f64 = self.factor.iter().flat_map(Banded::log_diagonal).sum();
         self.weight * self.parts as f64 * of_part
     }
 
-    /// Logarithm of the likelihood of whitened residuals, but for a constant, cell by cell: each given the cells before it.
+    /// Log likelihood of whitened residuals, up to a constant, for each correlation length given those before it.
     pub fn log_likelihoods(&self, whitened: &[f64]) -> Vec<f64> {
         let mut determinant = self.factor.iter().flat_map(Banded::log_diagonal);
         let mut rows = self.rows.iter();
@@ -138,7 +140,7 @@ impl Group {
         }
     }
 
-    /// Minus the logarithm of the likelihood of residuals and the prior, but for a constant.
+    /// Negative log likelihood of residuals plus the negative log prior, up to a constant.
     fn cost(&self, tau: f64, residual: &[Vec<f64>]) -> f64 {
         let square = |values: &[f64]| self.weight * values.iter().map(|value| value * value).sum::<f64>() / 2.0;
         if tau == 0.0 {
@@ -153,7 +155,7 @@ impl Group {
         residual.iter().map(of_part).sum::<f64>() + self.prior(tau)
     }
 
-    /// Golden section over the logarithm of `τ`, then against none at all.
+    /// Sets `τ` to its most probable value: golden section over log `τ`, compared with the smallest `τ`.
     pub fn learn(&mut self, residual: &[f64]) {
         let part = |part: usize| self.rows.iter().map(|rows| residual[rows[part]]).collect();
         let residual: Vec<Vec<f64>> = (0..self.parts).map(part).collect();
@@ -187,9 +189,9 @@ impl Group {
     }
 }
 
-/// How much two discrepancies have in common, by their distance: Wendland's functions, positive definite and zero from one
-/// on. A record may jump where a law does, with all its harmonics: φ₃,₀ is continuous. Anything else is smooth: φ₃,₁ is twice
-/// continuously differentiable.
+/// Correlation of two discrepancies at distance `r`, by Wendland's functions: positive definite, and zero from `r` = 1
+/// on. A record may jump with all its harmonics where a law does, so φ₃,₀ is only continuous. Everything else is
+/// smooth: φ₃,₁ is twice continuously differentiable.
 fn correlation(kind: Kind, r: f64) -> f64 {
     match kind {
         _ if r >= 1.0 => 0.0,

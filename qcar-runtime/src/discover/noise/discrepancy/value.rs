@@ -1,4 +1,4 @@
-//! Values that a discrepancy correlates: where they stand, and the signal that it is a part of.
+//! Values that a discrepancy correlates, with their position and signal.
 
 use crate::discover::numbers::Numbers;
 use crate::discover::observe::{Evidence, Kind, Series};
@@ -7,15 +7,15 @@ use crate::mean::rms;
 /// A value of a group.
 pub struct Value {
     pub run: usize,
-    /// Where it stands, in units of the distance at which correlation ends.
+    /// Position, in units of the correlation length.
     pub place: f64,
     pub rows: [usize; 2],
     pub parts: usize,
-    /// The signal there over the noise.
+    /// Ratio of signal to noise.
     pub scale: f64,
 }
 
-/// The values of a series whose first residual stands in row `first`.
+/// The values of a series; `first` is the row of its first residual.
 pub fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> {
     let parts = if series.kind.complex() { 2 } else { 1 };
     let (places, signal) = (places(series, &evidence.numbers), signal(evidence, series));
@@ -29,8 +29,8 @@ pub fn values(evidence: &Evidence, series: &Series, first: usize) -> Vec<Value> 
     (0..series.at.len()).map(of).collect()
 }
 
-/// Where the values of a series stand, in units of the distance at which correlation ends: of harmonics a part of an
-/// octave, of records half a period of their own mean frequency, of a cycle of travel a quarter of it.
+/// Positions of the values of a series in units of the correlation length: a part of an octave for harmonics, half the
+/// mean period for records and passages, a quarter of the range for K&C curves and dynamometer tables.
 fn places(series: &Series, numbers: &Numbers) -> Vec<f64> {
     let distance = match series.kind {
         Kind::Harmonic(_) | Kind::Cycle(_) => {
@@ -52,11 +52,11 @@ fn places(series: &Series, numbers: &Numbers) -> Vec<f64> {
         .collect()
 }
 
-/// Two records have no time in common: they stand so far apart.
+/// Distance between two records, so that they are uncorrelated.
 const RECORDS_APART: f64 = 1e6;
 
-/// What a discrepancy is a part of: of harmonics the first one of the same sensor at the same frequency, of anything else
-/// the RMS value of the series around.
+/// Signal that scales the discrepancy of each value: for harmonics, the first harmonic of the same sensor at the same
+/// frequency; for a passage, the RMS around the value; otherwise the RMS of the series.
 fn signal(evidence: &Evidence, series: &Series) -> Vec<f64> {
     let fundamental = |order: usize| {
         let first = match series.kind {
@@ -83,7 +83,8 @@ fn signal(evidence: &Evidence, series: &Series) -> Vec<f64> {
     }
 }
 
-/// Values to each side over which the signal of a passage is taken: with means of 5 ms a period of a wheel's hop.
+/// Number of values on each side for the signal of a passage. With means of 5 ms they span about one period of wheel
+/// hop.
 const AROUND: usize = 10;
 
 fn nearest(at: &[f64], wanted: f64) -> usize {
@@ -96,7 +97,7 @@ fn nearest(at: &[f64], wanted: f64) -> usize {
     }
 }
 
-/// Number of runs that values are of.
+/// Number of runs among the values, at least 1.
 pub fn runs(values: &[Value]) -> usize {
     let mut runs: Vec<usize> = values.iter().map(|value| value.run).collect();
     runs.sort_unstable();

@@ -1,4 +1,4 @@
-//! A cleat run as evidence: the accelerations while a tyre rolls over an obstacle, as means around evenly spaced instants.
+//! Reads a cleat run: accelerations while a tyre rolls over an obstacle, as weighted means at evenly spaced times.
 
 use nalgebra::Complex;
 
@@ -15,22 +15,22 @@ use crate::roles::Roles;
 use crate::simulate::{Cleat, tyre};
 use crate::transmissibility::{Point, signal};
 
-/// Half width and spacing of the means, s: half of what is at 100 Hz is left, and nothing at 200 Hz. That keeps the modes
-/// of an axle, and leaves out what depends on how a recorder filters and on how a tyre meets an edge.
+/// Half width and spacing of the means, s. Half of the amplitude passes at 100 Hz, and nothing at 200 Hz. This keeps
+/// the modes of an axle and removes effects of the recorder's filter and of the tyre's contact with an edge.
 const HALF: f64 = 5e-3;
-/// From where the tyre's circle comes to the obstacle, s: impact and after-shake.
+/// Duration of the evidence after the tyre circle reaches the obstacle, s: impact and after-shake.
 const DURATION: f64 = 1.0;
-/// The most that the clock of a record may be off, s: a trigger, and the error of the speed over the run-in.
+/// Largest clock error of a record, s, from the trigger and from the speed error over the run-in.
 pub const TIMING: f64 = 5e-3;
-/// The most that a sensor may be ahead of the others, s.
+/// Largest time by which one sensor may lead the others, s.
 const AHEAD: f64 = 0.01;
-/// What no model of a tyre on an edge gets right, and no second sensor of a pair: this share of the envelope.
+/// Relative error, as a share of the envelope, of any tyre model on an edge and between the two sensors of a pair.
 const SHARE: f64 = 0.025;
-/// The same of the whole record, so that a record without noise has an uncertainty too.
+/// Relative error as a share of the whole record, so that a record without noise has an uncertainty too.
 const FLOOR: f64 = 0.002;
-/// The envelope of a signal is its RMS value over so many values to each side: a period of a wheel's hop.
+/// Number of values to each side for the envelope, an RMS over one period of wheel hop.
 const AROUND: usize = 10;
-/// A quiet start with fewer samples tells no noise.
+/// Fewest samples at rest before the obstacle for an estimate of the noise.
 const QUIET: usize = 20;
 
 impl Evidence {
@@ -87,23 +87,23 @@ impl Evidence {
     }
 }
 
-/// True for what a ride gives as it was measured.
+/// True if a passage gives the measured quantity without differentiation.
 fn is_output(about: &About, sensor: &Point) -> bool {
     output_of(about, &signal_of(about, sensor)).is_ok_and(|(_, power)| power == 0)
 }
 
-/// Height of the road from its lowest to its highest point, m.
+/// Height difference between the lowest and the highest point of the road, m.
 fn rise(road: &Road) -> f64 {
     let heights = || road.vertices().iter().map(|vertex| vertex[1]);
     heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)
 }
 
-/// The part of a record that is evidence, in s after the wheel's centre was above x = 0.
+/// The part of a record that is compared, in s after the wheel centre passes x = 0.
 struct Window {
     means: Means,
-    /// Of the first sample.
+    /// Time of the first sample.
     first: f64,
-    /// Before it nothing happens.
+    /// Time before which the car is at rest.
     start: f64,
     /// Number of means.
     count: usize,
@@ -133,12 +133,12 @@ impl Window {
         })
     }
 
-    /// How long a ride has to be to be seen like the record, s.
+    /// Duration of a simulated passage that covers the record, s.
     fn end(&self) -> f64 {
         self.start + (self.count + 1) as f64 * self.means.half() + TIMING + AHEAD
     }
 
-    /// What one sensor says; nothing where it never moves.
+    /// Series of one sensor; `None` if its signal never changes.
     fn series(&self, run: usize, sensor: Point, samples: &[f64]) -> Option<Series> {
         let at: Vec<f64> = (0..self.count)
             .map(|k| self.start + k as f64 * self.means.half())
@@ -162,7 +162,7 @@ impl Window {
         })
     }
 
-    /// Mean of the record before the obstacle, and the standard deviation of its means.
+    /// Mean of the record before the obstacle, and the standard deviation of its weighted means.
     fn quiet(&self, samples: &[f64]) -> (f64, f64) {
         let rest = &samples[..((self.start - self.first) * self.means.rate()) as usize];
         let offset = rest.iter().sum::<f64>() / rest.len() as f64;
@@ -171,7 +171,7 @@ impl Window {
     }
 }
 
-/// Where a road first leaves its initial height, m.
+/// Position at which a road first leaves its initial height, m.
 fn obstacle(road: &Road) -> f64 {
     let vertices = road.vertices();
     let flat = vertices.iter().take_while(|vertex| vertex[1] == vertices[0][1]).count();

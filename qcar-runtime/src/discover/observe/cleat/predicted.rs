@@ -1,7 +1,7 @@
-//! Rides over an obstacle, simulated and shifted in time to where the measurement has them.
+//! Simulated passages over an obstacle, shifted in time to match the measurement.
 //!
-//! The clock of a record may be off by a few milliseconds, which is no fault of the model: each run is shifted as a whole
-//! to where it agrees best, and what a parameter would only shift is taken out of its derivative (variable projection:
+//! The clock of a record may be wrong by a few milliseconds, which is no error of the model. So each run is shifted as
+//! a whole to its best agreement, and the part of a derivative that equals a shift is removed (variable projection:
 //! Golub and Pereyra, SIAM J. Numer. Anal. 10, 1973).
 
 use nalgebra::Complex;
@@ -14,13 +14,14 @@ use crate::response::parameters::Values;
 use crate::response::signal::output_of;
 use crate::simulate::{Car, Drive, Method, Settings, SimulateError, Variant, ride, variation};
 
-/// The integration: its error stays far below what a tyre model is good for.
+/// Integration method; its error is far below the accuracy of a tyre model.
 const METHOD: Method = Method::Adaptive(3e-6);
-/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: large against
-/// the error of the integration, small against the curvature.
+/// Parameter change for a finite difference, relative to its value. It is large against the integration error and small
+/// against the curvature.
 const DIFFERENCE: f64 = 3e-3;
+/// Share of the range that replaces the value of a parameter near zero.
 const PART_OF_RANGE: f64 = 1e-2;
-/// Steps to the best shift; the first is nearly all.
+/// Gauss-Newton steps for the shift; the first one achieves nearly all.
 const STEPS: usize = 4;
 
 pub fn passage(
@@ -66,14 +67,14 @@ pub fn passage(
     Ok(seen.predictions(&base, &slopes))
 }
 
-/// By how much a parameter is changed for its difference; towards its lower bound where it stands at the upper one.
+/// Parameter change for a finite difference; negative at the upper bound.
 fn change(values: &Values, free: &Free) -> f64 {
     let value = values.as_slice()[free.parameter];
     let change = DIFFERENCE * value.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
     if value + change > free.upper { -change } else { change }
 }
 
-/// The car of a passage, and how it is driven.
+/// Car and drive of a passage.
 fn car_and_drive<'a>(
     model: &'a dyn Model,
     values: &'a Values,
@@ -96,7 +97,7 @@ fn car_and_drive<'a>(
     (car, drive)
 }
 
-/// The outputs of a ride, sampled like the record.
+/// Outputs of a passage at the sample times of the record.
 fn accelerations(
     model: &dyn Model,
     values: &Values,
@@ -112,7 +113,8 @@ fn accelerations(
     Ok(outputs.iter().map(|&output| ride.outputs[output].clone()).collect())
 }
 
-/// Their derivatives by each parameter that is `moved`, which a linear axle tells of itself; differences of rides else.
+/// Derivatives of the outputs by each parameter that is `moved`: from the variational equations for a linear axle,
+/// otherwise from finite differences of passages.
 fn slopes(
     model: &dyn Model,
     (values, base): (&Values, &[Vec<f64>]),
@@ -139,17 +141,17 @@ fn slopes(
     moved.par_iter().zip(changes).map(difference).collect()
 }
 
-/// What the sensors of a run see of a ride.
+/// Series of a run, and how a passage is read for them.
 struct Seen<'a> {
     means: Means,
     series: Vec<&'a Series>,
-    /// Of each its place in the evidence,
+    /// Positions of the series in the evidence.
     places: Vec<usize>,
-    /// and how late its sensor is, s.
+    /// Delay of the sensor of each series, s.
     late: Vec<f64>,
 }
 
-/// For each series its values, and their derivatives by the shift.
+/// For each series its values and their derivatives by the shift.
 type Shifted = Vec<(Vec<f64>, Vec<f64>)>;
 
 impl Seen<'_> {
@@ -180,7 +182,7 @@ impl Seen<'_> {
         self.places.iter().enumerate().map(predict).collect()
     }
 
-    /// The records as they are read when they begin `shift` later, each by a sensor as late as it is.
+    /// Values and derivatives of the series for records that begin `shift` (s) later, with the delay of each sensor.
     fn shifted(&self, records: &[Vec<f64>], shift: f64) -> Shifted {
         let read = |((series, late), record): ((&&Series, &f64), &Vec<f64>)| {
             let means = series.at.iter().map(|t| self.means.at(record, t - shift - late));
@@ -189,7 +191,7 @@ impl Seen<'_> {
         self.series.iter().zip(&self.late).zip(records).map(read).collect()
     }
 
-    /// Of a delay of each sensor, what the shift of all takes up; none at the limit of the shift.
+    /// Share of each sensor's delay that the common shift absorbs, by series; empty if the shift is at its limit.
     fn shares(&self, here: &Shifted, shift: f64) -> Vec<(usize, f64)> {
         let square = |(series, (_, by_shift)): (&&Series, &(Vec<f64>, Vec<f64>))| -> f64 {
             let scaled = by_shift.iter().zip(&series.sigma).map(|(slope, sigma)| slope / sigma);
@@ -204,7 +206,7 @@ impl Seen<'_> {
         self.places.iter().copied().zip(shares).collect()
     }
 
-    /// The shift at which the records agree best with the measurement (Gauss-Newton).
+    /// Shift at which the records agree best with the measurement (Gauss-Newton).
     fn best_shift(&self, records: &[Vec<f64>]) -> f64 {
         (0..STEPS).fold(0.0, |shift: f64, _| {
             let here = self.shifted(records, shift);
@@ -218,7 +220,7 @@ impl Seen<'_> {
         })
     }
 
-    /// How much of a shift there is in a change of all series, by weighted least squares.
+    /// Component of a shift in a change of all series, by weighted least squares.
     fn share_of_shift(&self, changes: &[Vec<f64>], here: &Shifted) -> f64 {
         let (mut product, mut square) = (0.0, 0.0);
         for ((series, change), (_, by_shift)) in self.series.iter().zip(changes).zip(here) {
@@ -230,7 +232,7 @@ impl Seen<'_> {
         if square > 0.0 { product / square } else { 0.0 }
     }
 
-    /// A derivative less what the shift takes up of it; a shift that is at its limit takes up nothing.
+    /// Removes the component of the shift from a derivative; nothing is removed if the shift is at its limit.
     fn without_shift(&self, mut slopes: Vec<Vec<f64>>, here: &Shifted, shift: f64) -> Vec<Vec<f64>> {
         if shift.abs() < TIMING {
             let share = self.share_of_shift(&slopes, here);

@@ -1,6 +1,6 @@
-//! A dynamometer's table as evidence: the force of a link at each speed with which it passes the middle of its travel.
+//! Reads a dynamometer table: the force of a link at each speed with which it passes the middle of its travel.
 //!
-//! Its load cell is a sensor of its own, so that its gain is an unknown beside those of the sensors in the car.
+//! The load cell is a separate sensor, so its gain is a nuisance parameter beside those of the sensors in the car.
 
 use nalgebra::Complex;
 
@@ -52,7 +52,7 @@ impl Evidence {
 }
 
 /// # Errors
-/// A link that the model does not have.
+/// Fails if the model lacks the link.
 fn check_link(campaign: &Campaign, about: &About, run: &Listed, test: &Dynamometer) -> Result<(), InputError> {
     let along = || {
         about

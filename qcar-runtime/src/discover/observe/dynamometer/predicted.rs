@@ -1,7 +1,8 @@
-//! What the law of a link gives on a dynamometer: its force in the middle of sines of travel, on the way out and on the way back.
+//! Predicts the force of a link on a dynamometer: its force in the middle of travel sines, for extension and
+//! compression.
 //!
-//! A law without inner states is read at its speed. One with inner states is moved through whole cycles until its force repeats,
-//! the sensitivities of the states beside it (`dS/dt = ∂f/∂x S + ∂f/∂p`).
+//! A law without inner states is evaluated at its speed. A law with inner states is moved through whole cycles until
+//! its force repeats. The sensitivities of the states are integrated with them (`dS/dt = ∂f/∂x S + ∂f/∂p`).
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,13 +14,17 @@ use crate::model::{About, InputKind, Matrix, Model, Quantity};
 use crate::response::parameters::Values;
 use crate::solver::{DormandPrince, Settings, System};
 
-/// Cycles after which a force that still changes is taken as it is; one repeats where it changes by less than `REPEATS` of itself.
+/// Most cycles; after these, a force that still changes is used as it is.
 const CYCLES: usize = 20;
+/// Relative change of the force from cycle to cycle that counts as a repetition.
 const REPEATS: f64 = 1e-6;
-/// Tolerances of the states, relative and in their units, and steps of a cycle.
+/// Relative tolerance of the states.
 const RELATIVE: f64 = 1e-8;
+/// Absolute tolerance of the states, in their units.
 const ABSOLUTE: f64 = 1e-7;
+/// Number of steps of a cycle.
 const STEPS: f64 = 40.0;
+/// Most integration steps.
 const MOST_STEPS: usize = 50_000;
 
 pub fn forces(
@@ -66,26 +71,27 @@ fn place(about: &About, link: &str, axis: Axis) -> Option<usize> {
     about.links.iter().position(is_it)
 }
 
-/// A force with its derivatives along the free parameters.
+/// A force and its derivatives by the free parameters.
 struct Reading {
     force: f64,
     slopes: Vec<f64>,
 }
 
-/// A link with its parameters.
+/// A link on the dynamometer, with its parameters.
 struct Bench<'a> {
     model: &'a dyn Model,
     p: &'a [f64],
     constants: Vec<f64>,
-    /// For each free parameter what it moves: it and all that are tied to it.
+    /// For each free parameter, the positions of all parameters tied to it, itself included.
     moved: Vec<Vec<usize>>,
-    /// How far a sensitivity goes along each, so that it has the size of its state.
+    /// Size of each free parameter, which scales its sensitivities to the size of the states.
     sizes: Vec<f64>,
     u: Vec<f64>,
     nonzeros: Vec<f64>,
     by_parameter: Vec<f64>,
-    /// rad/s and m, of the sine.
+    /// Angular frequency (rad/s) of the sine.
     omega: f64,
+    /// Amplitude (m) of the sine.
     amplitude: f64,
 }
 
@@ -113,7 +119,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The force where a sine of this amplitude passes its middle with this speed.
+    /// The force at `speed` (m/s), in the middle of a sine with `amplitude` (m).
     fn read(&mut self, speed: f64, amplitude: f64) -> Reading {
         (self.omega, self.amplitude) = (speed.abs() / amplitude, amplitude);
         let states = self.model.about().states.len();
@@ -131,7 +137,7 @@ impl<'a> Bench<'a> {
             },
             0,
         );
-        // From the end of the travel before the middle that is read.
+        // Start at the end of travel before the middle at which the force is read.
         let period = TAU / self.omega;
         let middle = if speed > 0.0 { 0.0 } else { PI / self.omega };
         let mut last = self.after(&mut integrator, (middle - period / 4.0, middle), &mut x);
@@ -145,10 +151,10 @@ impl<'a> Bench<'a> {
         last
     }
 
-    /// The force after a part of the motion, which ends in the middle of the travel; not a number where that cannot be followed.
+    /// The force after a part of the motion that ends in the middle of the travel; NaN if the integration fails.
     fn after(&mut self, by: &mut DormandPrince, (start, end): (f64, f64), x: &mut [f64]) -> Reading {
         let quarter = PI / 2.0 / self.omega;
-        // Where the motion turns, laws of friction bend.
+        // Friction laws have a kink where the motion reverses.
         let turns: Vec<f64> = (-1..8)
             .map(|k| f64::from(2 * k + 1) * quarter)
             .filter(|at| (start..end).contains(at))
@@ -162,7 +168,7 @@ impl<'a> Bench<'a> {
         reading
     }
 
-    /// Puts the link at an angle of its sine.
+    /// Sets the inputs of the link at an angle of the sine.
     fn hold(&mut self, angle: f64) {
         let (sin, cos) = angle.sin_cos();
         let speed = self.omega * self.amplitude * cos;
@@ -184,7 +190,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// The force in the middle of the travel with these states and sensitivities.
+    /// The force in the middle of the travel for these states and sensitivities.
     fn reading(&mut self, speed: f64, x: &[f64]) -> Reading {
         self.set(0.0, speed, 0.0);
         let states = self.model.about().states.len();

@@ -1,8 +1,8 @@
-//! A model on a K&C rig: its body is held, its wheel follows a path, and all between them goes along.
+//! A model on a K&C rig: the body is held, the wheel follows a path, and all masses between them move along.
 //!
-//! The rig is slow, so that the masses between weigh nothing: each is where no force is left on it. What remembers
-//! (dry friction, relaxing branches, dampers in series with springs) follows by implicit steps (backward Euler), which
-//! no stiffness upsets.
+//! The rig is slow, so the inertia of these masses is neglected: each rests where the forces on it balance. Laws with
+//! memory (dry friction, relaxing branches, dampers in series with springs) are integrated by the implicit Euler
+//! method, which is stable for any stiffness.
 
 use std::rc::Rc;
 
@@ -13,64 +13,68 @@ use crate::kc::of_unit_force;
 use crate::model::{About, InputKind, Matrix, Model, Quantity, StateKind};
 use crate::roles::{OnRig, state};
 
-/// Newton's steps of an instant, and when one is small enough: relative to a state, or to `SMALL` of its unit.
+/// Most Newton steps at an instant.
 const STEPS: usize = 30;
+/// Step size that counts as converged, relative to a state.
 const RESTS: f64 = 1e-9;
+/// Magnitude that is added to a state for this comparison, in its unit.
 const SMALL: f64 = 1e-3;
-/// Two time steps that differ by less, relative to their length, differ by rounding alone.
+/// Relative difference of two time steps that counts as rounding error.
 const EQUAL: f64 = 1e-9;
 
-/// Where the rig holds the wheel.
+/// Motion of the wheel at an instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    /// m, against the body.
+    /// Travel against the body, m.
     pub travel: f64,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// s since the instant before.
+    /// Time since the previous instant, s.
     pub step: f64,
-    /// Whether the force is wanted.
+    /// True if the force is read at this instant.
     pub is_read: bool,
 }
 
-/// Places in a model on the rig.
+/// Positions of the rig's parts in a model.
 pub struct Bench {
-    /// What is moved and held, along which axis.
+    /// The wheel that the rig moves and the body that it holds.
     on: OnRig,
+    /// Axis of the motion.
     axis: Axis,
-    /// Position and velocity of the wheel.
+    /// Position of the wheel's displacement among the states.
     wheel: usize,
+    /// Position of the wheel's velocity among the states.
     wheel_speed: usize,
-    /// Velocity of the body.
+    /// Position of the body's velocity among the states.
     held_speed: usize,
-    /// The ground under the wheel, which goes with it: the force of the tyre is none of the rig's.
+    /// Inputs of the ground under the wheel. It moves with the wheel because the rig does not measure the tyre force.
     ground: Vec<(usize, Quantity)>,
     between: Vec<Between>,
     slopes: Vec<Slope>,
-    /// Those in the row of the wheel.
+    /// Entries in the row of the wheel.
     of_wheel: Vec<Slope>,
 }
 
 /// A state that the rig does not prescribe.
 struct Between {
     place: usize,
-    /// Where its velocity is, of a mass.
+    /// Position of its velocity if it belongs to a mass; `None` for an inner state.
     speed: Option<usize>,
 }
 
-/// An entry of `∂f/∂x` that couples what is between.
+/// An entry of `∂f/∂x` in a column of a free state.
 struct Slope {
-    /// Its place among the model's nonzeros.
+    /// Position among the nonzeros of the model.
     entry: usize,
-    /// Its row and column among what is between.
+    /// Row and column among the free states.
     row: usize,
     column: usize,
-    /// Whether it belongs to the velocity of its column.
+    /// True if the entry belongs to the velocity of the state.
     of_speed: bool,
 }
 
 impl Bench {
-    /// `None` of a model that lacks the parts that the rig moves along this axis.
+    /// The positions in a model; `None` if the model lacks the parts that the rig moves along this axis.
     pub fn new(about: &About, on: &OnRig, axis: Axis) -> Option<Self> {
         let along = |kind| {
             let states = about.states.iter().enumerate();
@@ -109,12 +113,12 @@ impl Bench {
         })
     }
 
-    /// The force on the wheel (N) at each instant that is read of a path that begins at rest: with these parameters, and
-    /// with each of some sets that are so near that one Newton step leads from the one to the other. `None` where no force
-    /// can be put on the wheel.
+    /// Force on the wheel (N) at each instant of `path` that is read. The path begins at rest. The first row belongs to
+    /// the parameters `p`, the others to the sets `near`, which must be so close that one Newton step suffices. `None`
+    /// if a force on the wheel accelerates nothing.
     pub fn forces(&self, model: &dyn Model, p: &[f64], near: &[Vec<f64>], path: &[Instant]) -> Option<Vec<Vec<f64>>> {
         let mut first = Drive::new(self, model, p)?;
-        // What the rig does not feel leaves the forces as they are.
+        // Parameters that the rig does not feel leave the forces unchanged.
         let felt = (1..).zip(near).filter(|(_, other)| self.feels(model.about(), p, other));
         let near_drives = felt.map(|(set, p)| Some((set, Drive::new(self, model, p)?)));
         let mut near_drives = near_drives.collect::<Option<Vec<(usize, Drive)>>>()?;
@@ -138,7 +142,7 @@ impl Bench {
         Some(forces)
     }
 
-    /// Whether anything that differs between two parameter sets acts on what the rig measures.
+    /// True if a difference between two parameter sets acts on the forces that the rig measures.
     fn feels(&self, about: &About, p: &[f64], other: &[f64]) -> bool {
         let held = [self.wheel_speed, self.held_speed];
         let is_seen = |row: usize| held.contains(&row) || self.between.iter().any(|b| b.row() == row);
@@ -150,7 +154,7 @@ impl Bench {
     }
 }
 
-/// How the states between move what is in some rows of the model.
+/// Entries that couple the free states to some rows of the model.
 fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usize>) -> Vec<Slope> {
     let column = |state: usize| {
         let of_speed = between.iter().position(|b| b.speed == Some(state));
@@ -170,25 +174,25 @@ fn slopes(about: &About, between: &[Between], row: impl Fn(usize) -> Option<usiz
 }
 
 impl Between {
-    /// The row of the equations of motion that says where it goes.
+    /// Row of the equation of motion that determines this state.
     fn row(&self) -> usize {
         self.speed.unwrap_or(self.place)
     }
 }
 
-/// A model with a parameter set, on its way.
+/// A model with one parameter set, moved along the path.
 struct Drive<'a> {
     bench: &'a Bench,
     model: &'a dyn Model,
     p: &'a [f64],
     constants: Vec<f64>,
-    /// What a force of one on the wheel accelerates, through inerters more than the wheel.
+    /// Accelerations by a unit force on the wheel; with inerters, other masses accelerate too.
     of_unit: Vec<f64>,
     x: Vec<f64>,
     u: Vec<f64>,
     dx: Vec<f64>,
     nonzeros: Vec<f64>,
-    /// The last factor, and the time step (s) it belongs to.
+    /// The last factorisation and its time step (s).
     last_factor: Option<(f64, Rc<Factor>)>,
 }
 
@@ -211,7 +215,7 @@ impl<'a> Drive<'a> {
         })
     }
 
-    /// Puts the wheel where the rig has it.
+    /// Sets the wheel and the ground to an instant.
     fn hold(&mut self, at: &Instant) {
         let bench = self.bench;
         (self.x[bench.wheel], self.x[bench.wheel_speed]) = (at.travel, at.speed);
@@ -224,19 +228,19 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// What the rig pushes with.
+    /// Updates the derivatives and returns the force of the rig.
     fn force(&mut self) -> f64 {
         self.move_on();
         self.push()
     }
 
-    /// The force that holds the wheel, by what it would do if it were let go.
+    /// Force that holds the wheel, from the acceleration it would have without the rig.
     fn push(&self) -> f64 {
         -self.dx[self.bench.wheel_speed] / self.wheel_of_unit()
     }
 
-    /// The acceleration of the wheel for a force of one. The body is let go too: what inerters pass on from it to the wheel
-    /// is what they pass on from the wheel to it.
+    /// Acceleration of the wheel by a unit force on it and the opposite force on the body. By symmetry, a force on the
+    /// body accelerates the wheel through inerters as much as a force on the wheel accelerates the body.
     fn wheel_of_unit(&self) -> f64 {
         self.of_unit[self.bench.wheel_speed] - self.of_unit[self.bench.held_speed]
     }
@@ -245,8 +249,8 @@ impl<'a> Drive<'a> {
         self.model.derivative(&self.constants, &self.x, &self.u, &mut self.dx);
     }
 
-    /// Takes what is between to where it is after `h` s (Newton's method); returns the last slope. The slope of a linear model
-    /// is the same everywhere, and its first step is exact.
+    /// Moves the free states over `h` s by Newton's method; returns the last factorisation. A linear model has a
+    /// constant Jacobian, so its first step is exact.
     fn follow(&mut self, h: f64) -> Option<Rc<Factor>> {
         let last = self.between();
         let is_linear = self.model.about().linear;
@@ -267,7 +271,7 @@ impl<'a> Drive<'a> {
         factor.map(|(_, factor)| factor)
     }
 
-    /// The same in one step from where a drive next to this one has arrived.
+    /// Moves the free states in one Newton step from the states `arrived` at by a nearby parameter set.
     fn follow_near(&mut self, arrived: &[f64], factor: Option<&Factor>, h: f64) {
         let last = self.between();
         for b in &self.bench.between {
@@ -279,12 +283,12 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// Where what is between is.
+    /// Values of the free states.
     fn between(&self) -> Vec<f64> {
         self.bench.between.iter().map(|b| self.x[b.place]).collect()
     }
 
-    /// Moves what is between, and says whether it rests.
+    /// Applies a Newton step to the free states; true if it has converged.
     fn step(&mut self, step: &DVector<f64>, last: &[f64], h: f64) -> bool {
         let mut rests = true;
         for (b, step) in self.bench.between.iter().zip(step) {
@@ -303,7 +307,7 @@ impl<'a> Drive<'a> {
         }
     }
 
-    /// What is missing until each of what is between has gone its step: no force on a mass is left then.
+    /// Residual of the implicit step for each free state; for a mass, the unbalanced force.
     fn missing(&mut self, last: &[f64], h: f64) -> DVector<f64> {
         self.set_speeds(last, h);
         let push = self.force();
@@ -314,7 +318,7 @@ impl<'a> Drive<'a> {
         DVector::from_iterator(last.len(), self.bench.between.iter().zip(last).map(missing))
     }
 
-    /// How what is missing changes with where the states are, with the opposite sign.
+    /// Negative Jacobian of this residual by the free states.
     fn slope(&mut self, h: f64) -> DMatrix<f64> {
         self.model.matrices(self.p, &self.x, &self.u, &mut self.nonzeros);
         let between = &self.bench.between;
@@ -337,15 +341,15 @@ impl<'a> Drive<'a> {
     }
 }
 
-/// A slope that is ready to be solved for.
+/// Factorised Jacobian.
 enum Factor {
     Regular(LU<f64, Dyn, Dyn>),
-    /// What nothing holds stays where it is: the smallest step of all.
+    /// Solved by the pseudo-inverse, which gives the smallest step, so a state that nothing holds stays in place.
     Singular(SVD<f64, Dyn, Dyn>),
 }
 
 impl Factor {
-    /// `None` where nothing is between, or without a number.
+    /// `None` if there are no free states or an entry is not finite.
     fn of(slope: DMatrix<f64>) -> Option<Self> {
         if slope.is_empty() || !slope.iter().all(|entry| entry.is_finite()) {
             return None;
@@ -358,7 +362,7 @@ impl Factor {
         })
     }
 
-    /// `None` without a number.
+    /// Newton step; `None` if it is not finite.
     fn solve(&self, mut missing: DVector<f64>) -> Option<DVector<f64>> {
         let step = match self {
             Factor::Regular(factor) => factor.solve_mut(&mut missing).then_some(missing),

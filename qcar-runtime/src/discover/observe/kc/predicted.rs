@@ -1,4 +1,4 @@
-//! K&C cycles, slow ones and sines.
+//! Predicts K&C tests: slow cycles and sines.
 
 use std::f64::consts::{PI, TAU};
 
@@ -9,19 +9,22 @@ use crate::discover::observe::{Evidence, Free, Kind, PredictError, Prediction, S
 use crate::model::Model;
 use crate::response::parameters::Values;
 
-/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range.
+/// Parameter change for a finite difference, relative to its value.
 const DIFFERENCE: f64 = 1e-5;
+/// Share of the range that replaces the value of a parameter near zero.
 const PART_OF_RANGE: f64 = 1e-3;
-/// Of a cycle whose speed does not count, m/s: no damper gives a newton.
+/// Speed of a slow cycle, m/s: no damper force reaches one newton.
 const SLOW: f64 = 1e-4;
-/// Step where the wheel stays where it was, s.
+/// Time step if the wheel does not move, s.
 const SHORTEST: f64 = 1e-3;
-/// Instants on the way to the end of the travel, and from there to where it is read first.
+/// Number of instants on the way to an end of the travel, and from there to the first value.
 const APPROACH: usize = 6;
-/// Parts of a sine, of which half goes before, so that friction sets out as it does in every cycle.
+/// Parts of a sine. Half a cycle comes first, so that friction starts as in every later cycle.
 const PARTS: usize = 48;
-/// So many parts behind a reversal, where friction turns within a fraction of a millimetre, are taken finer.
+/// Number of parts after a reversal that are divided further, because friction reverses within a fraction of a
+/// millimetre.
 const TURNING: usize = 3;
+/// Number of pieces of such a part.
 const FINER: usize = 8;
 
 pub fn travel(
@@ -63,7 +66,7 @@ pub fn travel(
     Ok(series.iter().map(predict).collect())
 }
 
-/// The parameters with a free one moved, and by how much.
+/// The parameters with a free one changed, and the change.
 fn moved(values: &Values, free: &Free) -> (Vec<f64>, f64) {
     let at = values.as_slice()[free.parameter];
     let step = DIFFERENCE * at.abs().max(PART_OF_RANGE * (free.upper - free.lower).min(f64::MAX));
@@ -72,21 +75,21 @@ fn moved(values: &Values, free: &Free) -> (Vec<f64>, f64) {
     (moved.as_slice().to_vec(), step)
 }
 
-/// What a rig does in a run, and what is read from its forces.
+/// The path of a rig in a run, and how its forces are read.
 struct Course {
     path: Vec<Instant>,
     reading: Reading,
 }
 
 enum Reading {
-    /// The way there and the way back, each through so many travels.
+    /// Forces at `count` travels, for increasing and then for decreasing travel.
     Ways { count: usize },
-    /// Pieces of a sine of this amplitude (m).
+    /// Forces at pieces of a sine with this amplitude (m).
     Turns { turns: Vec<Turn>, amplitude: f64 },
 }
 
 impl Course {
-    /// A slow cycle between two ends, there and back through some travels.
+    /// A slow cycle between two ends of travel (m), read at `travels` (m) in both directions.
     fn cycle([low, high]: [f64; 2], travels: &[f64]) -> Self {
         let [first, last] = [travels[0], travels[travels.len() - 1]];
         let unread = |from: f64, to: f64| way(from, to).map(|travel| (travel, false));
@@ -112,7 +115,7 @@ impl Course {
         }
     }
 
-    /// A sine that begins at its end of travel.
+    /// A sine that begins at its largest travel; `amplitude` in m, `frequency` in Hz.
     fn sine(amplitude: f64, frequency: f64) -> Self {
         let omega = TAU * frequency;
         let approach = way(0.0, amplitude).map(|travel| Instant {
@@ -137,8 +140,8 @@ impl Course {
         }
     }
 
-    /// From the forces that are read the values of a series: middle or half width of a cycle at its travels, or a harmonic
-    /// over the amplitude.
+    /// Values of a series from the forces: the middle or half width of a cycle at its travels, or a harmonic over the
+    /// amplitude.
     fn read(&self, kind: Kind, forces: &[f64]) -> Vec<Complex<f64>> {
         match (&self.reading, kind) {
             (Reading::Ways { count }, _) => {
@@ -160,23 +163,23 @@ impl Course {
     }
 }
 
-/// Equal steps to the end of a way.
+/// Equally spaced positions on a path, up to its end.
 fn way(from: f64, to: f64) -> impl Iterator<Item = f64> {
     (1..=APPROACH).map(move |i| from + (to - from) * i as f64 / APPROACH as f64)
 }
 
 /// A piece of a sine.
 struct Turn {
-    /// Its middle, rad.
+    /// Angle of its middle, rad.
     angle: f64,
-    /// rad.
+    /// Width, rad.
     width: f64,
-    /// Whether it is behind the first half of a cycle.
+    /// True after the first half cycle.
     settled: bool,
 }
 
 impl Turn {
-    /// A part around its angle, in one piece or more; the first and the middle part of a cycle are at its reversals.
+    /// The pieces of a part around its angle. The first and the middle part of a cycle are at its reversals.
     fn of_part(part: usize) -> impl Iterator<Item = Turn> {
         let pieces = if part % (PARTS / 2) < TURNING { FINER } else { 1 };
         let width = TAU / (PARTS * pieces) as f64;

@@ -1,8 +1,8 @@
-//! A K&C sine as evidence: the harmonics of the force over the amplitude of the travel.
+//! Reads a K&C sine: the harmonics of the force over the amplitude of the travel.
 //!
-//! The first is the dynamic stiffness and damping at that speed; the third is what dry friction and stops make of a sine,
-//! the second what differs between both directions. Held against the slow cycle and sines of other speeds it tells a
-//! damper, whose force grows with speed, from friction, whose force does not.
+//! The first harmonic is the dynamic stiffness and damping at that speed. The third comes from dry friction and stops,
+//! and the second from differences between the two directions. Comparison with the slow cycle and with sines of other
+//! speeds separates a damper, whose force grows with speed, from friction, whose force does not.
 
 use std::f64::consts::TAU;
 
@@ -15,14 +15,15 @@ use crate::discover::observe::{Evidence, Kind, Run, Series, Stimulus};
 use crate::error::InputError;
 use crate::model::About;
 
-/// Harmonics that are evidence, and those that are taken out before noise is read.
+/// Number of harmonics in the evidence.
 const ORDERS: usize = 3;
+/// Number of harmonics that are removed before the noise is estimated.
 const FITTED: usize = 7;
-/// The share of the displacement's variance that may be anything but the sine that the campaign promises.
+/// Largest share of the displacement's variance outside the sine that the campaign specifies.
 const OTHER: f64 = 0.01;
 
 impl Evidence {
-    /// Reads a sine of `amplitude` m that crosses its middle at `peak_velocity` m/s.
+    /// Reads a sine with `amplitude` (m) and `peak_velocity` (m/s).
     pub(in crate::discover::observe) fn add_sine(
         &mut self,
         campaign: &Campaign,
@@ -55,7 +56,8 @@ impl Evidence {
     }
 }
 
-/// The amplitude of the travel, and a series for each harmonic of the last whole cycles.
+/// Amplitude of the travel (m), and a series for each harmonic of the last whole cycles. `None` if they cannot be
+/// fitted.
 fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, Vec<Series>)> {
     let end = *curve.time.last()?;
     let cycles = ((end - curve.time[0]) * frequency).floor();
@@ -86,15 +88,15 @@ fn harmonics(run: usize, curve: &DynamicCurve, frequency: f64) -> Option<(f64, V
     Some((reach, (1..=ORDERS).map(series).collect()))
 }
 
-/// A periodic signal.
+/// Harmonics of a periodic signal.
 struct Periodic {
-    /// Complex amplitudes of the harmonics from the first.
+    /// Complex amplitudes of the harmonics, from the first on.
     harmonic: Vec<Complex<f64>>,
-    /// RMS of what else there is.
+    /// RMS of the remaining signal.
     left: f64,
 }
 
-/// Least squares of a mean and so many harmonics.
+/// Least-squares fit of a mean and `orders` harmonics; `None` if the normal matrix is singular.
 fn fitted(time: &[f64], signal: &[f64], frequency: f64, orders: usize) -> Option<Periodic> {
     let entry = |sample: usize, column: usize| {
         let angle = TAU * frequency * time[sample] * column.div_ceil(2) as f64;

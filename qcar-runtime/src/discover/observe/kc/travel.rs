@@ -1,10 +1,9 @@
-//! A quasi-static K&C cycle as evidence: the force over the travel, as the middle between both directions and as half
-//! their distance.
+//! Reads a quasi-static K&C cycle: the force over the travel, as the mean of both directions and as half their
+//! difference.
 //!
-//! What friction and damping add to one direction they take from the other, so that the mean of both is what springs,
-//! stops and bushings give. Half the width of the loop is the dry friction, and what dampers add at the speed of the rig.
-//! A campaign does not say that speed; sines of known speed tell how much it may be, and without them the width is no
-//! evidence.
+//! Friction and damping add to one direction what they take from the other, so the mean is the force of springs, stops
+//! and bushings. Half the width of the loop is the dry friction plus the damper force at the rig speed. A campaign does
+//! not specify that speed. Sines of known speed limit the damper force; without them the width is no evidence.
 
 use nalgebra::Complex;
 
@@ -17,19 +16,20 @@ use crate::model::{About, StateKind};
 use crate::roles::{OnRig, Roles, state};
 use crate::transmissibility::Point;
 
-/// Where the force between what the rig moves and what it holds is measured.
+/// Location of the sensor for the force between wheel and body.
 const LOCATION: &str = "wheel_to_body";
 
-/// Values of a curve, and the share of the travel that they cover: at its ends the direction changes.
+/// Largest number of values of a curve.
 const VALUES: usize = 24;
+/// Share of the travel that the values cover; at the ends the direction reverses.
 const COVERED: f64 = 0.94;
-/// A value needs so many samples of each direction.
+/// Fewest samples of each direction for a value.
 const FEWEST: usize = 4;
-/// A curve has at least so many values, or else its shape cannot be seen.
+/// Fewest values that show the shape of a curve.
 const FEWEST_VALUES: usize = 5;
-/// The direction of travel is that over so many parts of the curve before and behind a sample.
+/// Number of parts of the curve; the direction is taken over one part before and one after a sample.
 const DIRECTION_PARTS: usize = 100;
-/// Of the largest force: how straight a load cell is.
+/// Linearity error of a load cell relative to the largest force.
 pub const FLOOR: f64 = 0.001;
 /// Speed of a quasi-static rig, m/s: a whole cycle through 0.15 m of travel takes half a minute or longer.
 const RIG: f64 = 0.01;
@@ -69,7 +69,7 @@ impl Evidence {
         Ok(())
     }
 
-    /// What the rig moves and holds in a model; leaves a notice where the model has no such parts.
+    /// Wheel and body of the rig in a model; adds a notice and returns `None` if the model lacks them.
     pub fn on_rig(
         &mut self,
         campaign: &Campaign,
@@ -97,7 +97,7 @@ pub fn sensor(axis: Axis) -> Point {
     Point::new(LOCATION, axis, Quantity::Force)
 }
 
-/// What the fitted sines of a campaign say of the damping between wheel and body, N s/m; `None` without any.
+/// Damping between wheel and body from the fitted sines of a campaign, N s/m; `None` if they do not determine it.
 fn damping(campaign: &Campaign) -> Result<Option<f64>, InputError> {
     let is_sine = |run: &&crate::campaign::Run| run.role == Role::Fit && matches!(run.test, Test::DynamicBounce { .. });
     let curves = campaign
@@ -110,26 +110,26 @@ fn damping(campaign: &Campaign) -> Result<Option<f64>, InputError> {
     Ok(sines(&samples).ok().map(|sine| sine.damping.value))
 }
 
-/// Force over travel, there and back.
+/// Force over travel in both directions.
 struct Loop {
-    /// m, of the travel.
+    /// Lowest and highest travel, m.
     ends: [f64; 2],
     at: Vec<f64>,
-    /// Height of both ways, each with its standard error.
+    /// Force (N) for increasing and decreasing travel, each with its standard error.
     ways: Vec<[(f64, f64); 2]>,
-    /// The largest force.
+    /// Largest absolute force, N.
     most: f64,
 }
 
 impl Loop {
-    /// `None` without travel in both directions.
+    /// Reads a loop; `None` without enough travel in both directions.
     fn read(displacement: &[f64], force: &[f64]) -> Option<Self> {
         let (low, high) = displacement
             .iter()
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| {
                 (low.min(*x), high.max(*x))
             });
-        // A curve of few samples has fewer values, each of enough of them.
+        // A curve with few samples has fewer values, each from enough samples.
         let values = (displacement.len() / (2 * (FEWEST + 1))).clamp(FEWEST_VALUES, VALUES);
         let width = COVERED * (high - low) / values as f64;
         let first = low + (1.0 - COVERED) * (high - low) / 2.0;
@@ -152,8 +152,8 @@ impl Loop {
         (at.len() > values / 2).then_some(Self { ends, at, ways, most })
     }
 
-    /// The middle, or half the width, which may be off by `common` N alike at every travel. That is spread over the
-    /// values, so that all of them together say no more than it allows.
+    /// Series of the mean or of half the width, with a `common` error in N at all travels. This error is spread over
+    /// the values, so that together they are as uncertain as a single one with this error.
     fn series(&self, run: usize, axis: Axis, kind: Kind, common: f64) -> Series {
         let sign = if kind == Kind::Width { -1.0 } else { 1.0 };
         let floor = (FLOOR * self.most).hypot(common * (self.at.len() as f64).sqrt());
@@ -173,7 +173,7 @@ impl Loop {
     }
 }
 
-/// Of samples on a straight line its height at zero, and the standard error of that; `None` of too few.
+/// Value of a straight line through the samples at zero, and its standard error; `None` for too few samples.
 fn line(samples: Vec<[f64; 2]>) -> Option<(f64, f64)> {
     let n = samples.len() as f64;
     let mean = |of: fn(&[f64; 2]) -> f64| samples.iter().map(of).sum::<f64>() / n;
@@ -197,7 +197,7 @@ fn line(samples: Vec<[f64; 2]>) -> Option<(f64, f64)> {
     Some((height, variance.sqrt()))
 }
 
-/// 1 where the travel grows, -1 where it falls.
+/// 1 if the travel increases, -1 if it decreases.
 fn direction(displacement: &[f64], at: usize) -> f64 {
     let reach = (displacement.len() / DIRECTION_PARTS).max(1);
     let behind = displacement[at.saturating_sub(reach)];

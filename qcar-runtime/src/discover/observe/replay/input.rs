@@ -1,4 +1,4 @@
-//! Recorded inputs at the ends and middles of the steps of an integration: every sample, and so many nodes between.
+//! Recorded inputs at the integration nodes: every sample and equally spaced nodes between samples.
 
 use std::f64::consts::TAU;
 
@@ -7,35 +7,35 @@ use nalgebra::Complex;
 use crate::model::{About, InputKind, Quantity};
 use crate::spectrum::{synthesize, transform};
 
-/// What was recorded of an excitation.
+/// Recorded signal of an excitation.
 #[derive(Clone, Debug)]
 pub struct Recorded<'a> {
-    /// The model's excitation.
+    /// Position of the excitation in the model.
     pub excitation: usize,
-    /// How many times it has been differentiated where it was measured.
+    /// Order of the time derivative that was measured.
     pub power: i32,
-    /// Its samples.
+    /// Samples.
     pub samples: &'a [f64],
 }
 
-/// How recordings are to be read between their samples.
+/// Interpolation of recordings between their samples.
 #[derive(Clone, Copy, Debug)]
 pub struct Between {
-    /// Hz.
+    /// Sample rate, Hz.
     pub rate: f64,
-    /// True where they hold nothing above half the sample rate; false where they are held.
+    /// True if the signals contain nothing above half the sample rate; false if they are held between samples.
     pub band_limited: bool,
-    /// Hz: what lies outside is not motion but noise.
+    /// Lowest and highest frequency, Hz; the signal outside is noise.
     pub band: (f64, f64),
-    /// True where they go on at their end as they began.
+    /// True if the signals are periodic.
     pub periodic: bool,
     /// Number of samples.
     pub samples: usize,
-    /// Nodes for each sample.
+    /// Number of nodes for each sample.
     pub nodes: usize,
 }
 
-/// A row of node values for each input of the model; zero for one that was not recorded.
+/// Node values for each input of the model; zero for an input that was not recorded.
 pub fn rows(about: &About, recorded: &[Recorded], how: &Between) -> Vec<Vec<f64>> {
     let length = how.samples * how.nodes;
     let row = |kind| {
@@ -62,10 +62,10 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
         .collect()
 }
 
-/// The derivative (or integral, below zero) of this order, by the spectrum.
+/// Derivative of order `power` by the spectrum; a negative order integrates.
 ///
-/// The straight line between the ends goes its own way: without it a record that does not end where it began would
-/// ring. An integral begins at zero, since its constant moves road and masses alike.
+/// The straight line between the ends is treated separately, since a record with different ends would ring. An integral
+/// begins at zero, since its constant moves road and masses alike.
 fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
     let line = if power < 0 || how.periodic {
         Line::default()
@@ -98,7 +98,7 @@ struct Line {
 }
 
 impl Line {
-    /// Through the first sample and the one that would follow the last, if the record went on as it began.
+    /// Line through the first and the last sample.
     fn through_ends(samples: &[f64], rate: f64) -> Self {
         let (start, end) = (samples[0], samples[samples.len() - 1]);
         Self {
@@ -122,7 +122,7 @@ fn differentiated(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
             _ => Complex::new(0.0, TAU * f).powi(power),
         };
         let inside = f >= how.band.0 && f <= how.band.1;
-        // More samples share the same lines.
+        // The inverse transform gives `nodes` times as many samples from the same lines.
         if inside {
             line * factor * how.nodes as f64
         } else {

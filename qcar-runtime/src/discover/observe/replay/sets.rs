@@ -1,27 +1,27 @@
-//! A model with one set of parameters, or with several that are computed at once.
+//! A model with one parameter set, or with several that are computed together.
 
 use crate::model::{LANES, Lanes, Model};
 
-/// A model with its parameters. States and outputs are rows of a value for each set.
+/// A model with its parameters. Each state and output has one value for each set.
 pub trait Sets {
-    /// How many sets there are.
+    /// Number of sets.
     const LANES: usize;
 
-    /// The rates of the states, where all sets have the same inputs.
+    /// Derivatives of the states. All sets have the same inputs.
     fn derivative(&mut self, x: &[f64], u: &[f64], dx: &mut [f64]);
 
-    /// The outputs.
+    /// Outputs of all sets.
     fn outputs(&mut self, x: &[f64], u: &[f64], y: &mut [f64]);
 }
 
-/// One set.
+/// A model with one parameter set.
 pub struct Alone<'a> {
     model: &'a dyn Model,
     constants: Vec<f64>,
 }
 
 impl<'a> Alone<'a> {
-    /// Of these values of the parameters.
+    /// The model with these parameter values.
     pub fn new(model: &'a dyn Model, p: &[f64]) -> Self {
         let mut constants = vec![0.0; model.about().constants];
         model.prepare(p, &mut constants);
@@ -41,16 +41,16 @@ impl Sets for Alone<'_> {
     }
 }
 
-/// As many sets as a model takes at once. Where there are fewer, the last one fills the other lanes.
+/// A model with as many parameter sets as it computes together. The last set fills unused lanes.
 pub struct Several<'a> {
     model: &'a dyn Model,
     constants: Vec<Lanes>,
-    /// The inputs, for each set the same.
+    /// Inputs, equal in all lanes.
     u: Vec<Lanes>,
 }
 
 impl<'a> Several<'a> {
-    /// Of these sets, at least one.
+    /// The model with at least one parameter set.
     pub fn new(model: &'a dyn Model, sets: &[Vec<f64>]) -> Self {
         let of_lane = |lane: usize| &sets[lane.min(sets.len() - 1)];
         let p: Vec<Lanes> = (0..model.about().parameters.len())
@@ -86,7 +86,7 @@ impl Sets for Several<'_> {
     }
 }
 
-/// The rows of a number of sets, set by set.
+/// Splits rows of interleaved lanes into the rows of each set.
 pub fn apart(rows: Vec<Vec<f64>>, sets: usize) -> Vec<Vec<Vec<f64>>> {
     let mut apart = vec![Vec::new(); sets];
     for (place, row) in rows.into_iter().enumerate() {

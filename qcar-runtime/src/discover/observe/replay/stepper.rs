@@ -1,41 +1,42 @@
-//! Steps of the classical Runge-Kutta method, halved where a law is too stiff or too sharp for them.
+//! Steps of the classical Runge-Kutta method, halved where a law is too stiff or too sharp.
 //!
-//! The slope at the end of a step, which the next one begins with, makes a method of third order of the same stages: the
-//! difference of both is the error that is held down (Hairer, Norsett, Wanner: Solving ordinary differential equations I,
-//! section II.4). How often each step was halved is kept: where parameters move by a difference, the steps stay.
+//! Together with the derivative at the end of a step, which the next step needs anyway, the same stages form a
+//! third-order method. The difference of both methods is the controlled error (Hairer, Norsett, Wanner: Solving
+//! ordinary differential equations I, section II.4). The number of halvings of each step is stored: finite differences
+//! by parameters use the same steps.
 
 use super::sets::Sets;
 use crate::solver::rk4;
 
-/// Error of a step that is allowed, over the largest value that a state had.
+/// Largest error of a step, relative to the largest value of a state so far.
 const TOLERANCE: f64 = 1e-3;
-/// How often a step is halved at most.
+/// Most halvings of a step.
 const MOST: u8 = 4;
-/// An error that leaves room for steps of twice the length: theirs is some 16 times as large.
+/// Relative error below which the step length doubles: the error grows about 16 times.
 const ROOM: f64 = 1.0 / 32.0;
 
-/// Goes from step to step.
+/// Integrates step by step.
 pub struct Stepper<'a, S> {
-    /// The model.
+    /// The model with its parameter sets.
     pub sets: &'a mut S,
-    /// Of a whole step, s.
+    /// Length of a whole step, s.
     length: f64,
     k: [Vec<f64>; 5],
     x: Vec<f64>,
-    /// Inputs at the ends and in the middle of a part of a step.
+    /// Inputs at the start, the middle and the end of a part of a step.
     inputs: [Vec<f64>; 3],
-    /// Inputs at the end of the step before.
+    /// Inputs at the end of the previous step.
     last: Vec<f64>,
-    /// True where the last of the slopes is that at the present state, with these inputs.
+    /// True if the last derivative is that of the present state with the inputs `last`.
     knows_slope: bool,
-    /// State and slope at the start of a step, which may have to be taken again.
+    /// State and derivative at the start of a step, in case it must be repeated.
     start: [Vec<f64>; 2],
     largest: Vec<f64>,
     halvings: u8,
 }
 
 impl<'a, S: Sets> Stepper<'a, S> {
-    /// Of so many states, those of all sets, and inputs, in steps of a length in s.
+    /// A stepper for the given numbers of states (of all sets together) and inputs, with steps of `length` (s).
     pub fn new(sets: &'a mut S, (states, inputs): (usize, usize), length: f64) -> Self {
         Self {
             sets,
@@ -51,12 +52,13 @@ impl<'a, S: Sets> Stepper<'a, S> {
         }
     }
 
-    /// The state was changed from outside.
+    /// Discards the stored derivative after the state was changed from outside.
     pub fn forget(&mut self) {
         self.knows_slope = false;
     }
 
-    /// A step, with the inputs at its start, middle and end, halved as often as it needs: how often.
+    /// Takes a step with the inputs at its start, middle and end. Halves it as often as needed and returns the number
+    /// of halvings.
     pub fn find(&mut self, inputs: [&[f64]; 3], x: &mut [f64]) -> u8 {
         let knew_slope = self.knows_slope && self.last == inputs[0];
         self.start[0].copy_from_slice(x);
@@ -80,14 +82,14 @@ impl<'a, S: Sets> Stepper<'a, S> {
         }
     }
 
-    /// A step that is halved so many times.
+    /// Takes a step with a given number of halvings.
     pub fn follow(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64]) {
         self.parts(inputs, halvings, x, |_, _, _| 0.0);
     }
 
-    /// All parts of a step. Returns the largest value of `error`, which is called after each part with its length.
+    /// Takes all parts of a step. Calls `error` after each part with its length and returns the largest value.
     fn parts(&mut self, inputs: [&[f64]; 3], halvings: u8, x: &mut [f64], error: fn(&Self, f64, &[f64]) -> f64) -> f64 {
-        // What is held jumps from one sample to the next.
+        // A held input jumps from one sample to the next.
         self.knows_slope &= self.last == inputs[0];
         let error = if halvings == 0 {
             self.part(inputs, self.length, x);
@@ -99,14 +101,14 @@ impl<'a, S: Sets> Stepper<'a, S> {
                 self.short_part(inputs, (part, parts), x);
                 error(self, length, x)
             });
-            // What is no number is no small error either.
+            // NaN must not count as a small error.
             errors.fold(0.0, |a, b| if b.is_nan() { f64::INFINITY } else { a.max(b) })
         };
         self.last.copy_from_slice(inputs[2]);
         if error.is_nan() { f64::INFINITY } else { error }
     }
 
-    /// One of the parts of a step. Between the start, the middle and the end of it inputs lie on a parabola.
+    /// Takes one part of a step. The inputs are interpolated by a parabola through start, middle and end of the step.
     fn short_part(&mut self, [a, b, c]: [&[f64]; 3], (part, parts): (u32, u32), x: &mut [f64]) {
         let mut inputs = std::mem::take(&mut self.inputs);
         for (half, into) in inputs.iter_mut().enumerate() {
@@ -120,7 +122,7 @@ impl<'a, S: Sets> Stepper<'a, S> {
         self.inputs = inputs;
     }
 
-    /// A part of a step.
+    /// Takes a Runge-Kutta step of length `h` (s).
     fn part(&mut self, inputs: [&[f64]; 3], h: f64, x: &mut [f64]) {
         let Self { sets, k, .. } = self;
         if self.knows_slope {
@@ -136,7 +138,7 @@ impl<'a, S: Sets> Stepper<'a, S> {
         self.knows_slope = true;
     }
 
-    /// The error of the last part, of length `h` to `x`, over what is allowed.
+    /// Error of the last part, of length `h` (s) to state `x`, relative to the tolerance.
     fn error(&self, h: f64, x: &[f64]) -> f64 {
         let error = |i: usize| {
             let size = self.largest[i].max(x[i].abs());

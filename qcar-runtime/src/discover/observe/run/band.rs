@@ -1,28 +1,28 @@
-//! The band of a record that is compared: a filter of linear phase, for what was measured and what is predicted alike.
+//! Frequency band of a record: a linear-phase filter that is applied to measurement and prediction alike.
 //!
-//! Its weights are an ideal band under a Hamming window (Oppenheim and Schafer, Discrete-time signal processing, 3rd
-//! edition, section 7.5). They are centred, so that nothing is delayed, and half of their length at each end of a record
-//! is not compared, since there they would reach beyond it; a record that repeats has no ends.
+//! Its weights are an ideal band-pass with a Hamming window (Oppenheim and Schafer, Discrete-time signal processing,
+//! 3rd edition, section 7.5). They are centred, so there is no delay. Half the filter length at each end of a record is
+//! not compared because the filter reaches beyond the record there. A periodic record has no ends.
 
 use std::f64::consts::{PI, TAU};
 
 use crate::spectrum::{synthesize, transform};
 
-/// A band of a record.
+/// Frequency band of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Band {
-    /// Centred, an odd number.
+    /// Filter weights; their number is odd.
     weights: Vec<f64>,
-    /// Hz.
+    /// Lowest and highest frequency, Hz.
     range: (f64, f64),
 }
 
-/// Length of a Hamming window for a slope as wide as the rate.
+/// Length of a Hamming window in samples for a transition as wide as the sample rate.
 const HAMMING: f64 = 3.3;
 
 impl Band {
-    /// Of the frequencies from `low` to `high` (Hz), at which half of a motion passes; it falls off over the width of
-    /// `low`, or half of `high` where `low` is zero.
+    /// The band from `low` to `high` (Hz), where the gain is one half. The transition is as wide as `low`, but at most
+    /// the band, or half of `high` if `low` is zero. `rate` is in Hz.
     pub fn new((low, high): (f64, f64), rate: f64) -> Self {
         let slope = if low > 0.0 { low.min(high - low) } else { high / 2.0 };
         let half = (HAMMING * rate / slope / 2.0).ceil() as usize;
@@ -37,27 +37,27 @@ impl Band {
         }
     }
 
-    /// How many samples it reaches to either side.
+    /// Number of samples to either side that the filter reaches.
     pub fn half(&self) -> usize {
         self.weights.len() / 2
     }
 
-    /// True where what never changes passes.
+    /// True if a constant passes.
     pub fn holds_rest(&self) -> bool {
         self.range.0 == 0.0
     }
 
-    /// The share of white noise that passes, as a standard deviation.
+    /// Standard deviation of filtered white noise, relative to that of its input.
     pub fn of_noise(&self) -> f64 {
         self.weights.iter().map(|w| w * w).sum::<f64>().sqrt()
     }
 
-    /// From one sample to the next that tells something new.
+    /// Number of samples between independent values.
     pub fn stride(&self, rate: f64) -> usize {
         ((rate / (2.0 * (self.range.1 - self.range.0))) as usize).max(1)
     }
 
-    /// What passes of a signal, sample by sample; `periodic` where it goes on at its end as it began, silence else.
+    /// Filters a signal. A `periodic` signal repeats beyond its ends; any other signal is zero there.
     pub fn of(&self, samples: &[f64], periodic: bool) -> Vec<f64> {
         let (count, half) = (samples.len(), self.half());
         let length = if periodic { count } else { count + 2 * half };
@@ -79,7 +79,7 @@ impl Band {
     }
 }
 
-/// The ideal low pass at time `t` (s), per second.
+/// Impulse response of the ideal low-pass with cut-off `f` (Hz) at time `t` (s), 1/s.
 fn ideal(f: f64, t: f64) -> f64 {
     let angle = TAU * f * t;
     if angle == 0.0 { 2.0 * f } else { angle.sin() / (PI * t) }
@@ -89,7 +89,7 @@ fn ideal(f: f64, t: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// A tone inside passes as it is, without any delay; tones beside the band and a drift do not.
+    /// A tone in the band passes unchanged and without delay; tones outside the band and a drift do not pass.
     #[test]
     fn a_band_passes_what_is_in_it_and_nothing_else() {
         let rate = 200.0;
@@ -108,7 +108,7 @@ mod tests {
         assert!(most(&band.of(&inside, false), &inside) < 0.005);
         let outside = record(&|t| tone(0.5)(t) + tone(30.0)(t) + 5.0 + 0.3 * t);
         assert!(most(&band.of(&outside, false), &vec![0.0; 4000]) < 0.03);
-        // Forty periods in the record: it has no ends.
+        // The record holds whole periods, so it has no ends.
         let tone = record(&tone(2.0 * 5.0));
         let all = band.of(&tone, true);
         assert!(all.iter().zip(&tone).all(|(a, b)| (a - b).abs() < 0.005));

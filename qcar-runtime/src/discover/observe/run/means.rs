@@ -1,36 +1,36 @@
-//! A record as weighted means around given instants, so that few values say all that matters of it.
+//! Weighted means of a record at given instants, which reduce it to few values.
 //!
-//! The weight is a Hann pulse, `h(t) = (1 + cos(π t/T)) / 2T` for `|t| < T`: a low-pass that has lost half its gain at
-//! `1/2T` and all of it at `1/T`, and whose shifted copies sum to one, so that a constant stays what it is. Means that
-//! lie `T` apart have a sixth of their noise in common. They can be asked for at any instant, which shifts a record by
-//! any part of a sample.
+//! The weight is a Hann pulse, `h(t) = (1 + cos(π t/T)) / 2T` for `|t| < T`. It is a low-pass with half its gain at
+//! `1/2T` and none at `1/T`. Its shifted copies sum to one, so a constant is preserved. The noise of means at a
+//! distance `T` has a correlation of one sixth. Means can be taken at any instant, which shifts a record by any
+//! fraction of a sample.
 
 use std::f64::consts::PI;
 
 use nalgebra::Complex;
 
-/// Samples on each side of a mean, below which its pulse no longer tells a signal from its alias: that of 50 Hz is then
-/// let through by 0.1 %.
+/// Smallest number of samples on each side of a mean. With fewer, the pulse does not suppress aliases; with this number
+/// it passes 0.1 % of the alias of 50 Hz.
 const FEWEST: usize = 4;
 
-/// Means of records of one sample rate.
+/// Means of records with one sample rate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Means {
-    /// Hz.
+    /// Sample rate, Hz.
     rate: f64,
-    /// Samples on each side of a mean.
+    /// Number of samples on each side of a mean.
     reach: usize,
-    /// From the angle of a pulse at one sample to that at the next.
+    /// Rotation of the pulse angle from one sample to the next.
     turn: Complex<f64>,
 }
 
 impl Means {
-    /// Means over `half` s to each side, in whole samples and at least `FEWEST` of them.
+    /// Means over `half` s to each side, rounded to whole samples, at least `FEWEST`. `rate` is in Hz.
     pub fn new(rate: f64, half: f64) -> Self {
         Self::reaching(rate, ((half * rate).round() as usize).max(FEWEST))
     }
 
-    /// The same means of a record that has no more samples than they need.
+    /// Means of the same width at the lowest sample rate that they allow.
     pub fn sparse(&self) -> Self {
         Self::reaching(FEWEST as f64 / self.half(), FEWEST)
     }
@@ -48,17 +48,17 @@ impl Means {
         self.reach as f64 / self.rate
     }
 
-    /// Hz.
+    /// Sample rate, Hz.
     pub fn rate(&self) -> f64 {
         self.rate
     }
 
-    /// The means around every sample that has all its neighbours.
+    /// Means at every sample whose pulse lies inside the record.
     pub fn inside(&self, samples: &[f64]) -> impl Iterator<Item = f64> {
         (self.reach..samples.len().saturating_sub(self.reach)).map(|k| self.at(samples, k as f64 / self.rate).0)
     }
 
-    /// The mean around `t` (s after the first sample), and its derivative by `t`. What lies beyond the ends is zero.
+    /// Mean at `t` (s after the first sample) and its derivative by `t`. Samples beyond the ends count as zero.
     pub fn at(&self, samples: &[f64], t: f64) -> (f64, f64) {
         let (place, reach) = (t * self.rate, self.reach as f64);
         let first = (place - reach).ceil().max(0.0) as usize;
@@ -90,7 +90,7 @@ mod tests {
                 all.map(|(y, k)| y * weight(t - f64::from(k) / rate).unwrap_or(0.0))
                     .sum()
             };
-            // Within the record, and where the pulse hangs over either end of it.
+            // Pulses inside the record and across either end of it.
             for t in [0.3 * half, 3.37 * half, samples.len() as f64 / rate - 0.21 * half] {
                 let (found, expected) = (means.at(&samples, t), (sum(&pulse, t), sum(&slope, t)));
                 assert!((found.0 - expected.0).abs() < 1e-11, "{found:?}, not {expected:?}");

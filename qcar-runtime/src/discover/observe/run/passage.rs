@@ -1,37 +1,38 @@
-//! A ride over an obstacle.
+//! A passage over an obstacle.
 
 use super::means::Means;
 use crate::road::Road;
 use crate::tyre::Tyre;
 
-/// A ride over an obstacle at constant speed.
+/// A passage over an obstacle at constant speed.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passage {
-    /// What was driven over.
+    /// Road profile with the obstacle.
     pub road: Road,
-    /// m/s.
+    /// Speed, m/s.
     pub speed: f64,
-    /// What rolled.
+    /// The tyre.
     pub tyre: Tyre,
     /// Static load of the tyre, N.
     pub load: f64,
-    /// How long the evidence lasts, s after the wheel's centre was above x = 0.
+    /// Duration of the evidence, s after the wheel centre passes x = 0.
     pub duration: f64,
-    /// How a ride is sampled and read.
+    /// Sampling of the record by weighted means.
     pub means: Means,
-    /// The most steps in which a second of it may be simulated.
+    /// Most integration steps for each simulated second.
     pub most_steps: f64,
-    /// Points a sample at which its derivatives are stepped, of a linear axle: see [`variation`](crate::simulate::variation).
+    /// For a linear axle, points of a sample at which its derivatives are stepped: see
+    /// [`variation`](crate::simulate::variation).
     pub points_a_sample: usize,
 }
 
-/// Derivatives of a ride that are good to a hundredth of the signal,
+/// Points of a sample for derivatives with an error of a hundredth of the signal.
 pub const FINE_POINTS: usize = 2;
-/// and to a twentieth, in half the time: enough where the fit is not the last one.
+/// Points of a sample for derivatives with an error of a twentieth, in half the time: enough for all but the last fit.
 pub const COARSE_POINTS: usize = 1;
 
-/// The most steps for a second of a ride.
+/// Most steps for a second of a single passage.
 pub const PATIENT: f64 = 1e5;
-/// The same among many. Five hundred to two thousand are enough for what cars have; dry friction that a search has made next
-/// to none, and as stiff as ever, takes ten times as many.
+/// Most steps for a second of a passage in a search over many candidates. Realistic cars need 500 to 2000. Dry friction
+/// with a vanishing force and the same stiffness takes ten times as many.
 pub const HURRIED: f64 = 4e3;

@@ -1,10 +1,10 @@
-//! What is known of the states of a model at some samples of a record.
+//! Known states of a model at some samples of a record.
 
 use crate::campaign::Quantity;
 use crate::model::{State, StateKind};
 use crate::transmissibility::Point;
 
-/// What sensors saw at one sample of a record.
+/// Sensor readings at one sample of a record.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Restart {
     /// Number of the sample.
@@ -13,18 +13,18 @@ pub struct Restart {
     pub seen: Vec<(Point, f64)>,
 }
 
-/// How far a model may be, when a record begins, from where sensors saw it or, where none did, from rest: standard
-/// deviations, SI.
+/// Standard deviations of the initial states of a record, SI: from what a sensor shows, or from rest without one.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Spread {
-    /// Of what a sensor of position or velocity saw.
+    /// For states that a sensor of position or velocity shows.
     pub seen: Vec<(Point, f64)>,
-    /// Of other positions, velocities and forces, as far as the record tells how large they become; zero where it does not.
+    /// For other positions, velocities and forces, from their size in the record; zero if the record does not show it.
     pub unseen: [f64; 3],
 }
 
 impl Spread {
-    /// Of a state of the model; `None` where nothing is known of its size. Angles are taken on a lever of a metre.
+    /// Standard deviation of a state of the model; `None` if its size is unknown. An angle is taken on a lever of one
+    /// metre.
     pub fn sigma(&self, state: &State) -> Option<f64> {
         let seen = self
             .seen
@@ -43,7 +43,7 @@ impl Spread {
     }
 }
 
-/// True where a sensor shows a state itself.
+/// True if a sensor measures the state itself.
 pub fn is_seen(state: &State, point: &Point) -> bool {
     let kind = match point.quantity {
         Quantity::Displacement => StateKind::Position,

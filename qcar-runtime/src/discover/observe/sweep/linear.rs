@@ -1,4 +1,4 @@
-//! Sweeps of a linear model: its frequency response is the first harmonic, and there are no others.
+//! Predicts sweeps by a linear model: the first harmonic is the frequency response, and there are no others.
 
 use nalgebra::Complex;
 

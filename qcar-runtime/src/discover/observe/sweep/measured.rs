@@ -1,4 +1,4 @@
-//! A sweep as evidence: the first, second and third harmonic of every sensor over the amplitude of the pad.
+//! Reads a sweep: the first three harmonics of every sensor over the amplitude of the pad.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -14,29 +14,28 @@ use crate::model::About;
 use crate::transmissibility::harmonics::{HarmonicLine, Neighbourhood, Passage, Swept};
 use crate::transmissibility::{Point, signal};
 
-/// Harmonics of a sweep that are evidence: even ones tell of asymmetry, odd ones of what grows less or more than in
-/// proportion.
+/// Number of harmonics in the evidence: even ones show asymmetry, odd ones show laws that are not proportional.
 pub const ORDERS: usize = 3;
 
-/// Wide enough for eight unknowns a line, and narrow enough to follow a mode.
+/// Neighbourhood of a line: wide enough for eight unknowns and narrow enough to resolve a mode.
 pub const AROUND: Neighbourhood = Neighbourhood {
     lines: 10,
     width: 0.035,
 };
 
-/// Lines closer than this share of a frequency say the same twice.
+/// Smallest relative distance of frequencies; closer lines repeat the same information.
 const GROWTH: f64 = 0.05;
 
-/// Lines closer than this part of the neighbourhood say the same twice, lines of the spectrum.
+/// Smallest distance of frequencies in spectral lines; closer neighbourhoods repeat the same information.
 const APART: f64 = 6.0;
 
-/// Of the first harmonic: what the estimator itself may be off (see [`Estimator::LOCAL`](crate::transmissibility::Estimator)),
-/// and what differs between the sides of a car.
+/// Relative error of the first harmonic from the estimator (see
+/// [`Estimator::LOCAL`](crate::transmissibility::Estimator)) and from differences between the sides of a car.
 const FLOOR: f64 = 0.002;
 
-/// Of the first harmonic, what the mean over two sides differs by from one side of mean parameters: where stiffnesses are
-/// 1.5 % apart, resonances are 0.75 % apart, and with a damping ratio of 5 % the mean of two peaks is lower than one by
-/// half the square of 0.75 / 2 / 5, at its flanks by as much as that again.
+/// Relative difference of the first harmonic between the mean of two sides and one side with mean parameters. If
+/// stiffnesses differ by 1.5 %, resonances differ by 0.75 %. With a damping ratio of 5 %, the mean of two peaks is lower
+/// than one peak by half the square of 0.75 / 2 / 5, and the flanks differ by as much again.
 const OF_SIDES: f64 = 0.005;
 
 impl Evidence {
@@ -112,7 +111,7 @@ impl Evidence {
     }
 }
 
-/// What is wrong with a sweep whose sensors are at none or at several of the motions that drive the model.
+/// Problem of a sweep whose sensors measure none or several of the motions that drive the model.
 fn not_one(about: &About, pads: &[Point], file: PathBuf) -> Problem {
     let (place, name) = (Place::Line(1), |point: &Point| point.to_string());
     if pads.is_empty() {
@@ -133,7 +132,7 @@ fn not_one(about: &About, pads: &[Point], file: PathBuf) -> Problem {
     Problem::new(file, place, found, "one that drives the model", remedy)
 }
 
-/// Whether a sensor answers at all: chance lifts one value in eight thousand above three standard deviations.
+/// True if the response is significant: noise alone puts one value in eight thousand above three standard deviations.
 fn stands_clear(series: &Series) -> bool {
     const CLEAR: f64 = 3.0;
     const SHARE: f64 = 0.05;
@@ -142,9 +141,9 @@ fn stands_clear(series: &Series) -> bool {
     clear as f64 > SHARE * series.value.len() as f64
 }
 
-/// Frequencies whose neighbourhoods overlap little: evenly spaced below, by equal ratios above.
+/// Frequencies whose neighbourhoods overlap little: equally spaced at low frequencies, in equal ratios above.
 fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
-    /// The ends of a sweep are faded in and out, and beyond them there are no lines to tell noise from response.
+    /// The ends of a sweep are faded, and beyond them no lines separate noise from response.
     const INSIDE: f64 = 1.2;
     let next = |f: &f64| Some(f + (GROWTH * f).max(APART * spacing));
     std::iter::successors(Some(first * INSIDE), next)
@@ -152,8 +151,8 @@ fn grid((first, last): (f64, f64), spacing: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Of `frequency`, those whose multiple a record at `rate` still holds well; every other one for a multiple, whose
-/// response is asked for at wider steps.
+/// The frequencies whose harmonic of this order lies well below half the sample `rate` (Hz). A higher harmonic uses
+/// every second frequency.
 fn answered(frequency: &[f64], order: usize, rate: f64) -> Vec<f64> {
     let highest = 0.2 * rate;
     let step = if order == 1 { 1 } else { 2 };
@@ -198,7 +197,7 @@ fn series(run: usize, sensor: &Point, order: usize, (at, lines): (Vec<f64>, Vec<
     }
 }
 
-/// The median over five neighbours: a variance from few lines is itself uncertain.
+/// Median over five neighbours: a variance from few lines is itself uncertain.
 fn smooth(variance: &[f64]) -> Vec<f64> {
     const HALF: usize = 2;
     (0..variance.len())

@@ -1,4 +1,4 @@
-//! Sweeps of a nonlinear model: at every frequency the harmonics of its periodic response at the measured amplitude.
+//! Predicts sweeps by a nonlinear model: harmonics of its periodic response at each frequency and measured amplitude.
 
 use nalgebra::Complex;
 
@@ -9,10 +9,10 @@ use crate::response::parameters::Values;
 use crate::response::periodic::{Cycle, Drive, Periodic};
 use crate::response::signal::output_of;
 
-/// Harmonics of the balance: those that are measured and enough above for their laws to settle.
+/// Harmonics of the harmonic balance: the measured ones, and enough above them for convergence.
 const HARMONICS: usize = 5;
 
-/// Of a run that was driven harder by the factor `louder` than its reference shows.
+/// Predicts a sweep by harmonic balance. `louder` is the factor of the true excitation on that of the reference.
 pub fn sweep(
     model: &dyn Model,
     values: &Values,
@@ -61,7 +61,7 @@ pub fn sweep(
     Ok(readings.iter().map(predict).collect())
 }
 
-/// For each free parameter those that move with it.
+/// For each free parameter, the positions of all parameters tied to it, itself included.
 fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
     let with = |free: &Free| {
         (0..about.parameters.len())
@@ -71,13 +71,13 @@ fn groups(about: &About, values: &Values, free: &[Free]) -> Vec<Vec<usize>> {
     free.iter().map(with).collect()
 }
 
-/// How a series is read from the cycles.
+/// How a series is read from the periodic responses.
 struct Reading<'a> {
     place: usize,
     series: &'a Series,
-    /// Place in `y`.
+    /// Position of the output.
     output: usize,
-    /// Of jω, from the output to the sensor.
+    /// Power of jω from the output to the sensor.
     power: i32,
 }
 

@@ -1,10 +1,10 @@
-//! What a swept sine shows beyond the steady harmonics at each of its frequencies.
+//! The non-steady part of a sweep: the harmonics that the estimator reads from it, minus the steady harmonics.
 //!
-//! A sweep never settles: friction remembers where it was, and lightly damped modes ring on. A balance of few harmonics
-//! cuts off what sharp laws do. And near the ends of a sweep the estimator takes a little of one harmonic for another. All
-//! are small against the response and change little with the parameters. So the measured motion of the pad is replayed
-//! through the model, the responses are read from it by the estimator that read the measurement, and how much they differ
-//! from the steady harmonics is added to these wherever a search goes.
+//! A sweep never reaches a steady state: friction has memory, and lightly damped modes ring on. A balance of few
+//! harmonics truncates sharp laws. Near the ends of a sweep the estimator mixes harmonics slightly. These errors are
+//! small against the response and change little with the parameters. So the measured motion of the pad is replayed
+//! through the model, and the estimator of the measurement reads the responses. The difference from the steady
+//! harmonics is added to every prediction of a search.
 
 use std::borrow::Cow;
 
@@ -24,15 +24,15 @@ use crate::spectrum::{synthesize, transform};
 use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
 
-/// A sweep is faded in and out beyond its band by this factor, and friction remembers its slow parts; what lies farther
-/// out is noise of the pad's sensor.
+/// Factor by which the used band extends the band of a sweep on both sides. The faded ends of the sweep lie there, and
+/// friction remembers its slow parts. The signal farther out is noise of the pad's sensor.
 const BEYOND: f64 = 4.0;
 
-/// For each series what the sweeps of the runs of one role add to the steady harmonics; nothing for series of other runs,
-/// and of sweeps whose record is not at hand.
+/// Non-steady part of each series for the runs of one role. It is empty for series of other runs and for sweeps whose
+/// record is not available.
 ///
 /// # Errors
-/// Where the model lacks what was measured.
+/// Fails if the model lacks a measured quantity.
 pub fn unsteady(
     model: &dyn Model,
     values: &Values,
@@ -53,7 +53,7 @@ pub fn unsteady(
     Ok(added)
 }
 
-/// Places of series with their differences.
+/// Positions of series with their non-steady parts.
 type Differences = Vec<(usize, Vec<Complex<f64>>)>;
 
 fn of_run(
@@ -76,7 +76,7 @@ fn of_run(
         .iter()
         .map(|p| signal_of(about, &evidence.series[p.series].sensor));
     let sensors: Vec<Signal> = sensors.collect();
-    // A sensor has a series for each harmonic, of one and the same signal.
+    // A sensor has one series for each harmonic, all read from the same signal.
     let different = each_once(&sensors);
     let shown = if about.linear {
         driven.answered(model, values, &different)?
@@ -96,7 +96,7 @@ fn of_run(
     Ok(differences.collect())
 }
 
-/// Each signal in the order in which it is first asked for.
+/// The signals without duplicates, in order of first use.
 fn each_once(signals: &[Signal]) -> Vec<Signal> {
     let mut different: Vec<Signal> = Vec::new();
     for signal in signals {
@@ -107,7 +107,7 @@ fn each_once(signals: &[Signal]) -> Vec<Signal> {
     different
 }
 
-/// What the sensors of a sweep would have recorded, sample by sample, from rest on.
+/// Sample-by-sample signals of the sensors of a sweep, starting from rest.
 pub fn replayed(
     model: &dyn Model,
     values: &Values,
@@ -123,21 +123,21 @@ pub fn replayed(
     Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
-/// What the pad did in a sweep, from rest.
+/// Motion of the pad in a sweep, starting from rest.
 struct Driven<'a> {
     excitation: usize,
     reference: &'a Point,
     samples: Cow<'a, [f64]>,
-    /// Reads responses to the measured motion, which was `louder` times smaller.
+    /// Estimator of responses to the measured motion, before the factor `louder`.
     swept: &'a Swept,
     rate: f64,
-    /// Hz: what lies outside is not motion but noise.
+    /// Lowest and highest frequency, Hz; the signal outside is noise.
     band: (f64, f64),
 }
 
 impl<'a> Driven<'a> {
-    /// The pad of a run that was driven harder by the factor `louder` than its reference shows; `None` where the run is no
-    /// sweep, or its record is not at hand.
+    /// The pad of a run; `louder` is the factor of the true excitation on that of the reference. `None` if the run is
+    /// no sweep or its record is not available.
     fn of(model: &dyn Model, evidence: &'a Evidence, run: usize, louder: f64) -> Result<Option<Self>, PredictError> {
         let Stimulus::Sweep {
             reference,
@@ -165,7 +165,7 @@ impl<'a> Driven<'a> {
         }))
     }
 
-    /// What sensors then show of a nonlinear model.
+    /// Sensor signals of a nonlinear model, by time integration.
     fn replayed(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
         let recorded = Recorded {
             excitation: self.excitation,
@@ -187,8 +187,8 @@ impl<'a> Driven<'a> {
             .signals)
     }
 
-    /// The same of a linear model: its frequency response does it at once. What rings on after the record's end would
-    /// stand at its beginning, were the record not continued by silence; what a sensor reads at rest is silence too.
+    /// Sensor signals of a linear model, by its frequency response. The record is padded with zeros, since ringing
+    /// after its end would otherwise wrap around to its beginning. The mean of the record is removed first.
     fn answered(&self, model: &dyn Model, values: &Values, sensors: &[Signal]) -> Result<Vec<Vec<f64>>, SignalError> {
         let length = 2 * self.samples.len();
         let at_rest = self.samples.iter().sum::<f64>() / self.samples.len() as f64;
@@ -217,7 +217,7 @@ impl<'a> Driven<'a> {
     }
 }
 
-/// The values of a series in the spectrum of a replayed signal.
+/// Values of a series from the spectrum of a replayed signal.
 fn seen(swept: &Swept, spectrum: &[Complex<f64>], series: &Series) -> Vec<Complex<f64>> {
     let Kind::Harmonic(order) = series.kind else {
         unreachable!("a sweep has no other series")

@@ -1,4 +1,4 @@
-//! A time history as evidence: the responses themselves, sample by sample.
+//! Reads a time history: sample-by-sample responses.
 
 use nalgebra::Complex;
 
@@ -13,11 +13,11 @@ use crate::mean::deviation;
 use crate::model::About;
 use crate::transmissibility::{Point, signal};
 
-/// Share of a record at each of its ends near which inputs are not known that a band limit needs.
+/// Share of a record at each end that is not compared, because the band limit of the inputs is inaccurate there.
 const ENDS: f64 = 0.02;
-/// Values of a series: more tell the same, since neighbours in time are alike.
+/// Largest number of values of a series; neighbours in time are similar, so more values add nothing.
 const MOST: usize = 2000;
-/// Share of a response's RMS value that no calibration and no model of a real system gets right.
+/// Smallest relative error of any calibration and any model of a real system, as a share of the response's RMS.
 const FLOOR: f64 = 0.005;
 
 impl Evidence {
@@ -82,7 +82,7 @@ impl Evidence {
             recorded.push((sensor, samples));
             noises.push(noise);
         }
-        // Where a motion repeats its beginning is its end.
+        // A periodic motion ends as it begins.
         let (spread, restarts) = if periodic {
             (Spread::default(), Vec::new())
         } else {
@@ -112,8 +112,7 @@ impl Evidence {
     }
 }
 
-/// The samples of a record that are compared: some, evenly, without those that are cut at its ends; `None` where hardly
-/// any is left.
+/// Evenly spaced samples of a record without `cut` samples at each end; `None` if too few are left.
 fn inside(samples: usize, cut: usize, stride: usize) -> Option<impl Iterator<Item = usize> + Clone> {
     const FEWEST: usize = 20;
     let left = samples.saturating_sub(2 * cut);
@@ -137,10 +136,10 @@ fn too_short(history: &History, recording: &Recording, reach: usize) -> InputErr
     Problem::new(&history.file, Place::File, found, expected, remedy).into()
 }
 
-/// Whether a motion can repeat: something drives it, and something holds every mass.
+/// Checks that a motion can be periodic: it has an excitation, and every mass is held.
 ///
 /// # Errors
-/// Where it cannot.
+/// Fails if the motion cannot be periodic.
 fn repeats(about: &About, campaign: &Campaign, run: &crate::campaign::Run, is_free: bool) -> Result<(), InputError> {
     let adrift = (0..about.states.len()).find(|&state| drifts(about, state));
     let why = match adrift {
@@ -176,5 +175,5 @@ fn series(
     series
 }
 
-/// Values in half a period of a record's mean frequency: they hold its first eight harmonics, and more say the same.
+/// Values in half a mean period of a record: they resolve its first eight harmonics, and more add nothing.
 const IN_HALF_A_PERIOD: f64 = 8.0;

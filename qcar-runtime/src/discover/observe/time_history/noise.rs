@@ -1,8 +1,10 @@
-//! The noise of a sensor in a record, from what is surely nothing else.
+//! Estimates the noise of a sensor from the part of a record that contains nothing else.
 //!
-//! The best witness is what differs between the periods of a record that repeats; next, what a sensor shows while nothing
-//! moves; else the highest frequencies, at which little does. A drift or a step from one end to the other would leak into
-//! these: so the straight line goes first, and a window keeps the rest where it is (Bendat and Piersol, Random data, 4th
+//! The best source is the difference between the periods of a periodic record. The next is the signal while nothing
+//! moves. Otherwise the highest frequencies are used, where the signal is small. A drift or a step between the ends
+//! would leak into these frequencies, so a straight line is removed and a window is applied (Bendat and Piersol, Random
+//! data, 4th edition, section 11.5; for periods Pintelon and Schoukens, System identification, 2nd edition, section
+//! 2.6).
 //! edition, section 11.5; for periods Pintelon and Schoukens, System identification, 2nd edition, section 2.6).
 
 use std::f64::consts::LN_2;
@@ -10,21 +12,20 @@ use std::f64::consts::LN_2;
 use crate::mean::rms;
 use crate::spectrum::{Trend, Window, transform};
 
-/// Share of the spectrum, its highest part, that is taken for noise.
+/// Highest share of the spectrum, which counts as noise.
 const HIGHEST: f64 = 0.1;
-/// Parts in which a record is looked at for rest,
+/// Number of parts of a record that are tested for rest.
 const PARTS: usize = 20;
-/// and the fewest samples of one.
+/// Fewest samples of a part.
 const FEWEST: usize = 20;
-/// What a signal scatters by while it rests, over what it does in the whole record.
+/// Scatter of a signal at rest, relative to its scatter over the whole record.
 const REST: f64 = 0.005;
-/// Share of the inputs' power that does not repeat where a record has several periods.
+/// Largest share of the inputs' power that does not repeat in a record with several periods.
 const REPEATS: f64 = 1e-4;
-/// The most periods in which a record is taken apart.
+/// Largest number of periods in a record.
 const MOST_PERIODS: usize = 64;
 
-/// Standard deviation of a response's noise, by the samples of it and of the inputs; `periodic` where the record is made
-/// of whole periods.
+/// Standard deviation of the noise of a response. `periodic` states that the record consists of whole periods.
 pub fn noise(samples: &[f64], inputs: &[&[f64]], periodic: bool) -> f64 {
     let of_periods = periodic.then(|| periods(inputs)).filter(|&count| count > 1);
     of_periods
@@ -33,7 +34,7 @@ pub fn noise(samples: &[f64], inputs: &[&[f64]], periodic: bool) -> f64 {
         .unwrap_or_else(|| highest(samples))
 }
 
-/// What differs between so many periods: the lines of the spectrum that none of them alone has.
+/// Noise from the difference between `count` periods: the spectral lines that are no harmonics of a period.
 fn between_periods(samples: &[f64], count: usize) -> f64 {
     let lines = transform(samples);
     let others = lines.iter().enumerate().filter(|(k, _)| !k.is_multiple_of(count));
@@ -43,7 +44,7 @@ fn between_periods(samples: &[f64], count: usize) -> f64 {
     (power / f64::from(number) / samples.len() as f64).sqrt()
 }
 
-/// How many periods the inputs have in their record: the most that leave nothing of them.
+/// Number of periods in the record: the largest number for which the inputs repeat.
 fn periods(inputs: &[&[f64]]) -> usize {
     let spectra: Vec<Vec<f64>> = inputs
         .iter()
@@ -59,8 +60,8 @@ fn periods(inputs: &[&[f64]]) -> usize {
     (2..=MOST_PERIODS).rev().find(repeat).unwrap_or(1)
 }
 
-/// What a sensor scatters by about straight lines in those parts of a record in which neither it nor an input moves;
-/// `None` without such a part.
+/// Noise about straight lines in the parts of a record in which neither the sensor nor an input moves; `None` without
+/// such a part.
 fn at_rest(samples: &[f64], inputs: &[&[f64]]) -> Option<f64> {
     let length = samples.len() / PARTS;
     if length < FEWEST {
@@ -72,7 +73,7 @@ fn at_rest(samples: &[f64], inputs: &[&[f64]]) -> Option<f64> {
     let resting = (0..PARTS)
         .map(|part| part * length)
         .filter(|&first| rests(samples, first) && inputs.iter().all(|input| rests(input, first)));
-    // A line takes two of the samples' freedoms.
+    // A straight line uses two degrees of freedom.
     let free = (length as f64 / (length as f64 - 2.0)).sqrt();
     let own: Vec<f64> = resting
         .map(|first| free * scatter(&samples[first..][..length], Trend::Linear))
@@ -81,14 +82,14 @@ fn at_rest(samples: &[f64], inputs: &[&[f64]]) -> Option<f64> {
     (!own.is_empty()).then(|| (power / own.len() as f64).sqrt())
 }
 
-/// Root of the mean square about the trend.
+/// Root mean square about the trend.
 fn scatter(samples: &[f64], trend: Trend) -> f64 {
     let mut about = samples.to_vec();
     trend.remove(&mut about);
     rms(&about)
 }
 
-/// The standard deviation of white noise with the power of the highest part of the spectrum.
+/// Standard deviation of white noise with the power of the highest part of the spectrum.
 fn highest(samples: &[f64]) -> f64 {
     let mut weighted = samples.to_vec();
     Trend::Linear.remove(&mut weighted);
@@ -98,7 +99,7 @@ fn highest(samples: &[f64]) -> f64 {
     let first = ((1.0 - HIGHEST) * lines.len() as f64) as usize;
     let mut power: Vec<f64> = lines[first..].iter().map(|line| line.norm_sqr()).collect();
     let middle = power.len() / 2;
-    // Powers of lines of noise are distributed exponentially: their median is ln 2 of their mean.
+    // The power of noise lines has an exponential distribution: its median is ln 2 times its mean.
     let mean = *power.select_nth_unstable_by(middle, f64::total_cmp).1 / LN_2;
     (mean / weights.iter().map(|w| w * w).sum::<f64>()).sqrt()
 }
@@ -111,7 +112,7 @@ mod tests {
     const SAMPLES: usize = 20_000;
     const NOISE: f64 = 0.01;
 
-    /// Uniform numbers of this standard deviation by a linear congruence.
+    /// Uniform random numbers with this standard deviation from a linear congruential generator.
     fn random(sigma: f64) -> impl FnMut() -> f64 {
         let mut state = 7_u64;
         move || {
@@ -147,19 +148,19 @@ mod tests {
         }
     }
 
-    /// Hum of the mains is not at the highest frequencies, but stays while nothing moves.
+    /// Mains hum is not at the highest frequencies, but remains while nothing moves.
     #[test]
     fn what_a_sensor_shows_at_rest_is_its_noise() {
         let drive = |t: f64| if t < 0.3 { 0.0 } else { (9.7 * TAU * t).sin() };
         let hum = |t: f64| 2f64.sqrt() * NOISE * (333.0 * TAU * t).sin();
         let measured = record(|t| 20.0 * drive(t) + hum(t));
         is_found(noise(&measured, &[&record(drive)], false));
-        // Where the input never rests, a crest of the response is no rest either.
+        // If the input never rests, a peak of the response is not at rest either.
         let sine = record(|t| (TAU * t).sin());
         assert!(at_rest(&sine, &[&sine]).is_none());
     }
 
-    /// Noise that falls with frequency is ten times smaller at the highest.
+    /// Noise that falls with frequency is ten times smaller at the highest frequencies.
     #[test]
     fn what_differs_between_periods_is_noise_at_all_frequencies() {
         let drive = record(|t| (24.0 * TAU * t).sin() + (56.0 * TAU * t).cos());

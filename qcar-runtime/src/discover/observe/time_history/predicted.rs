@@ -1,4 +1,4 @@
-//! Time histories: the model is driven by what was recorded, and its sensors are read at the same instants.
+//! Predicts time histories: recorded inputs drive the model, and its sensors are read at the recorded times.
 
 use nalgebra::Complex;
 use rayon::prelude::*;
@@ -13,14 +13,15 @@ use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
 use crate::transmissibility::Point;
 
-/// Change of a parameter for its difference, relative to its value or, near zero, to a part of its range: the root of
-/// what rounding leaves of a replay.
+/// Parameter change for a finite difference, relative to its value: about the square root of the rounding error of a
+/// replay.
 const DIFFERENCE: f64 = 1e-5;
+/// Share of the range that replaces the value of a parameter near zero.
 const PART_OF_RANGE: f64 = 1e-3;
-/// The same of a state at the beginning of a record, relative to how far it may be from where it was seen.
+/// Change of an initial state for a finite difference, relative to its prior standard deviation.
 const OF_SPREAD: f64 = 1e-4;
 
-/// What the sensors of a run show, differentiated along `free` and, where `begun`, along the states at its beginning.
+/// Predicts the sensors of a run with derivatives by the `free` parameters and, if `begun`, by the initial states.
 pub fn history(
     model: &dyn Model,
     values: &Values,
@@ -108,7 +109,7 @@ pub fn history(
     Ok(series.iter().enumerate().map(predict).collect())
 }
 
-/// What the sensors of a run would have recorded, sample by sample, of the band that is compared.
+/// Sample-by-sample signals of the sensors of a run, filtered by the compared band.
 pub fn replayed(
     model: &dyn Model,
     values: &Values,
@@ -125,10 +126,10 @@ pub fn replayed(
     Ok(sensors.into_iter().cloned().zip(shown).collect())
 }
 
-/// A signal at a place between its samples, and its derivative by the sample: the cubic through two of them on either
-/// side (Catmull and Rom); beyond its ends it stays as it is there.
+/// A signal at a fractional sample `place`, and its derivative by the sample: a cubic through two samples on either
+/// side (Catmull and Rom). Beyond its ends the signal is constant.
 fn between(signal: &[f64], place: f64) -> (f64, f64) {
-    // Times are no exact multiples of the sample's length, and most places are samples.
+    // Most places are samples, but times are not exact multiples of the sample interval.
     const ROUNDING: f64 = 1e-6;
     let place = if (place - place.round()).abs() < ROUNDING {
         place.round()
@@ -143,7 +144,7 @@ fn between(signal: &[f64], place: f64) -> (f64, f64) {
     (value, (slope + t * (2.0 * curvature + 3.0 * t * twist)) / 2.0)
 }
 
-/// The replay of a run, read by some sensors.
+/// Prepares the replay of a run for some sensors.
 fn prepare<'a>(
     model: &'a dyn Model,
     evidence: &'a Evidence,
@@ -190,14 +191,14 @@ fn prepare<'a>(
     Ok(Replay::new(model, recorded, how, restarts.collect(), readings))
 }
 
-/// Where the states of the model begin elsewhere than they were seen, and by how much.
+/// States that begin away from their measured value, with the difference.
 fn begin(about: &About, begun: &[(String, f64)]) -> Vec<(usize, f64)> {
     let place = |name: &str| about.states.iter().position(|state| state.name == name);
     let begun = begun.iter().filter_map(|(name, by)| Some((place(name)?, *by)));
     begun.collect()
 }
 
-/// The states whose beginning is not known exactly, and how far it may be from where they were seen.
+/// States with an uncertain initial value, with its standard deviation.
 fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
     let states = about.states.iter().enumerate();
     states
@@ -205,7 +206,7 @@ fn unknown(about: &About, spread: &Spread) -> Vec<(usize, f64)> {
         .collect()
 }
 
-/// The states that were seen, with their values.
+/// States that a sensor shows, with their values.
 fn states(about: &About, seen: &[(Point, f64)]) -> Vec<(usize, f64)> {
     let place = |point: &Point| about.states.iter().position(|state| is_seen(state, point));
     seen.iter()

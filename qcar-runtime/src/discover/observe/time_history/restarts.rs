@@ -1,9 +1,10 @@
-//! From where a model sets out when it is driven by a record, and where it is set right on the way.
+//! Initial states of a model that a record drives, and its restarts within the record.
 //!
-//! The place of a mass that nothing holds remembers every force that ever acted on it: the smallest error of a force
-//! ends as a drift. A fit lives on that, since nothing tells the parameters better. A run that judges does not: there
-//! such a mass is put back to where its sensor saw it at the beginning of each of [`WINDOWS`] windows, and within a
-//! window the model is on its own (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world congress, 1984).
+//! The position of a mass that nothing holds depends on every force in the past: the smallest force error ends as a
+//! drift. A fit uses this drift, since nothing determines the parameters better. In a held-out run the drift would hide
+//! everything else. There such a mass is reset to its measured position at the beginning of each of [`WINDOWS`]
+//! windows, and the model runs freely within a window (multiple shooting: Bock, H. G., Plitt, K. J., IFAC world
+//! congress, 1984).
 
 use std::f64::consts::TAU;
 
@@ -13,13 +14,15 @@ use crate::model::{About, Matrix, StateKind};
 use crate::spectrum::{Trend, transform};
 use crate::transmissibility::Point;
 
-/// The offset of a sensor that tells where a record begins, over the RMS value of what it reads.
+/// Offset of a sensor that shows an initial state, relative to the RMS of its readings.
 const OFFSET: f64 = 0.1;
-/// How much farther than its record shows a motion may begin: next to nothing is known before.
+/// Factor on the size of a motion in its record, for the prior standard deviation of an initial state: it is nearly
+/// uninformative.
 const WIDE: f64 = 3.0;
 
 impl Spread {
-    /// Of a record with these responses, the noise of each, and these inputs.
+    /// Standard deviations of the initial states, from a record with these responses, their noise, and these inputs;
+    /// `rate` in Hz.
     pub(super) fn of(recorded: &[(Point, Vec<f64>)], noise: &[f64], inputs: &[(Point, Vec<f64>)], rate: f64) -> Self {
         let shows = |point: &Point| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
         let seen = recorded.iter().zip(noise).filter(|((point, _), _)| shows(point));
@@ -47,13 +50,14 @@ impl Spread {
     }
 }
 
-/// The farthest from the mean.
+/// Largest distance from the mean.
 fn excursion(y: &[f64]) -> f64 {
     let mean = y.iter().sum::<f64>() / y.len() as f64;
     y.iter().map(|y| (y - mean).abs()).fold(0.0, f64::max)
 }
 
-/// The frequency (Hz) below which half of a signal's power is, noise and trend aside; at least a line of the spectrum.
+/// Frequency (Hz) below which half of a signal's power lies, without noise and trend; at least one line of the
+/// spectrum.
 fn middle(y: &[f64], rate: f64) -> f64 {
     let mut about = y.to_vec();
     Trend::Linear.remove(&mut about);
@@ -67,10 +71,10 @@ fn middle(y: &[f64], rate: f64) -> f64 {
     line.unwrap_or(0).max(1) as f64 * rate / y.len() as f64
 }
 
-/// Windows of a record.
+/// Number of windows of a held-out record.
 const WINDOWS: usize = 20;
 
-/// Where a model begins that is driven by a record with these responses, and where it is set right.
+/// Initial states and restarts of a model for a record with these responses; `rate` in Hz.
 pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate: f64) -> Vec<Restart> {
     let moving =
         |(point, _): &&(Point, Vec<f64>)| matches!(point.quantity, Quantity::Displacement | Quantity::Velocity);
@@ -94,19 +98,19 @@ pub fn restarts(about: &About, role: Role, responses: &[(Point, Vec<f64>)], rate
     std::iter::once(start).chain(again).collect()
 }
 
-/// True of the sensor that shows where a mass is that no link holds.
+/// True for a sensor that shows the position of a mass that no link holds.
 fn shows_drift(about: &About, point: &Point) -> bool {
     let state = about.states.iter().position(|state| is_seen(state, point));
     state.is_some_and(|state| drifts(about, state))
 }
 
-/// True of the position of a mass on which nothing depends: no link holds it.
+/// True for the position of a mass that no link holds: nothing depends on it.
 pub fn drifts(about: &About, state: usize) -> bool {
     let matters = |entry: &crate::model::Entry| entry.matrix == Matrix::A && usize::from(entry.column) == state;
     about.states[state].kind == StateKind::Position && !about.matrices.iter().any(matters)
 }
 
-/// Position and velocity there; this is the slope of the straight line through the samples around.
+/// Position and velocity at a sample. The velocity is the gradient of a straight line through the samples around.
 fn at_sample(point: &Point, y: &[f64], sample: usize, rate: f64) -> [(Point, f64); 2] {
     const AROUND: usize = 5;
     let around = AROUND.min(y.len() - 1 - sample).min(sample);

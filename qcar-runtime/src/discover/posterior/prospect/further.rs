@@ -1,4 +1,4 @@
-//! What else could be measured: the evidence with a sensor, a run, more drive or a dynamometer added.
+//! Possible further measurements: the evidence with a sensor, a run, a higher level or a dynamometer added.
 
 use nalgebra::Complex;
 
@@ -10,25 +10,27 @@ use crate::mean::rms;
 use crate::model::{Link, Model, Output, SignalKind};
 use crate::transmissibility::Point;
 
-/// Evidence to which something was added.
+/// Evidence with one measurement added.
 pub struct Measurement {
     pub kind: Added,
-    /// In words.
+    /// Description.
     pub what: String,
     pub evidence: Evidence,
 }
 
-/// Peak velocities (m/s) of the sines of a dynamometer, half their stroke (m), and the uncertainty of a force in parts of their RMS value.
+/// Peak velocities of the dynamometer sines, m/s.
 const SPEEDS: [f64; 7] = [0.05, 0.13, 0.26, 0.39, 0.52, 0.79, 1.05];
+/// Amplitude of the dynamometer sines, m.
 const AMPLITUDE: f64 = 0.05;
+/// Relative uncertainty of the dynamometer forces.
 const UNCERTAINTY: f64 = 0.01;
-/// A stroke that tells how far a law remembers.
+/// Factor on the amplitude of a second dynamometer test: it separates laws with inner states.
 const SHORTER: f64 = 0.1;
 
-/// All that could be added to what was fitted.
+/// All measurements that could be added to the fitted evidence.
 ///
 /// # Errors
-/// Where the model says nothing of it.
+/// Fails if the model cannot predict a measurement.
 pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Result<Vec<Measurement>, PredictError> {
     let mut found = Vec::new();
     for run in 0..fitted.runs.len() {
@@ -67,12 +69,12 @@ pub fn measurements(refit: &Refit, model: &dyn Model, fitted: &Evidence) -> Resu
     found.into_iter().map(expected).collect()
 }
 
-/// True of a run whose prediction is of a steady sine, and so can be asked for at any level.
+/// True for a run with a steady sine, which can be predicted at any level.
 fn is_steady(stimulus: &Stimulus) -> bool {
     matches!(stimulus, Stimulus::Sweep { .. } | Stimulus::Sine { .. })
 }
 
-/// With a run once more, driven so many times as hard: its noise stays what it is, and ratios to the drive have less of it.
+/// Repeats a run at `times` its level. The noise stays the same, so ratios to the excitation have less of it.
 fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
     let mut more = fitted.clone();
     let own = &fitted.runs[run];
@@ -96,7 +98,7 @@ fn again(fitted: &Evidence, run: usize, times: f64) -> Evidence {
     more
 }
 
-/// Whether the law of a link has inner states, so that its force depends on how far it has come.
+/// True if the law of a link has inner states, so that its force depends on the stroke.
 fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
     let links = model.about().links.iter();
     let place = links
@@ -106,7 +108,7 @@ fn remembers(model: &dyn Model, link: &str, axis: Axis) -> bool {
     alone.is_some_and(|alone| !alone.about().states.is_empty())
 }
 
-/// With the table of a dynamometer once more, driven at the same speeds with shorter strokes.
+/// Repeats a dynamometer table at the same speeds with shorter strokes.
 fn shorter(fitted: &Evidence, run: usize) -> Evidence {
     let mut more = again(fitted, run, 1.0);
     if let Some(Stimulus::Dynamometer { amplitude, .. }) = more.runs.last_mut().map(|run| &mut run.stimulus) {
@@ -115,8 +117,9 @@ fn shorter(fitted: &Evidence, run: usize) -> Evidence {
     more
 }
 
-/// With a sensor at an output, in every sweep and record that has sensors along its axis and none there; as noisy as those of its kind
-/// in the same run. None where no run is without.
+/// Adds a sensor at an output to every sweep and record that has a sensor along the same axis but not this one. Its
+/// noise is that of a sensor of the same quantity in the run, or else of any sensor there. `None` if no run gets the
+/// sensor.
 fn with_sensor(fitted: &Evidence, output: &Output) -> Option<(String, Evidence)> {
     let signal = &output.signal;
     let (quantity, word) = match signal.kind {
@@ -156,7 +159,7 @@ fn with_sensor(fitted: &Evidence, output: &Output) -> Option<(String, Evidence)>
     (more.series.len() > fitted.series.len()).then_some((what, more))
 }
 
-/// Whether the law of a link has a parameter that was fitted.
+/// True if the law of a link has a fitted parameter.
 fn says_something(refit: &Refit, link: &Link) -> bool {
     let mut free = refit.free.iter();
     free.any(|free| link.parameters.iter().any(|&own| usize::from(own) == free.parameter))
@@ -197,7 +200,7 @@ fn with_dynamometer(fitted: &Evidence, link: &Link) -> Evidence {
     more
 }
 
-/// With what the fitted model predicts of all that is new.
+/// Replaces the values of all new series by the predictions of the fitted model.
 fn expected(refit: &Refit, model: &dyn Model, fitted: &Evidence, mut more: Evidence) -> Result<Evidence, PredictError> {
     let new: Vec<usize> = more.series[fitted.series.len()..]
         .iter()
@@ -215,7 +218,7 @@ fn expected(refit: &Refit, model: &dyn Model, fitted: &Evidence, mut more: Evide
             .series
             .iter()
             .any(|other| other.run == series.run && other.sensor.quantity == series.sensor.quantity);
-        // Of another quantity than those that there are, a sensor has their relative noise.
+        // A sensor of a quantity that the run lacks has the relative noise of the sensor that it was copied from.
         if series.run < fitted.runs.len() && !same || series.kind == Kind::Speed {
             let times = after / before.max(f64::MIN_POSITIVE);
             series

@@ -23,7 +23,7 @@ fn value(k: usize, place: f64, scale: f64) -> Value {
     }
 }
 
-/// Values at these places of one run.
+/// Values of one run at these positions.
 fn group(places: &[f64], scale: f64) -> Group {
     let key = Key {
         sensor: sensor(),
@@ -52,7 +52,7 @@ fn group(places: &[f64], scale: f64) -> Group {
     )
 }
 
-/// The covariance written out, by a dense factorisation.
+/// The dense covariance as a reference.
 #[test]
 fn whitening_is_the_inverse_root_of_the_covariance() {
     let places: Vec<f64> = (0..30)
@@ -75,12 +75,12 @@ fn whitening_is_the_inverse_root_of_the_covariance() {
     assert!((group.log_determinant() - determinant).abs() < 1e-9, "{determinant}");
 }
 
-/// Draws from the model itself give back the discrepancy that they were drawn with, and none where there is none.
+/// Data drawn from the Gaussian process give back the discrepancy of the draw, and zero if the draw has none.
 #[test]
 fn discrepancy_is_learnt_from_its_own_draws() {
     let places: Vec<f64> = (0..400).map(|k| 0.1 * f64::from(k)).collect();
     let mut group = group(&places, 20.0);
-    // A fixed sequence of normal numbers, by Box and Muller's method from a golden-ratio sequence.
+    // Reproducible normal numbers: the Box-Muller method on a golden-ratio sequence.
     let uniform = |k: usize, base: f64| (0.5 + base * (k + 1) as f64).fract();
     let normal = |k: usize| {
         let (a, b) = (uniform(k, 0.618_033_988_75), uniform(k, 0.754_877_666_25));
@@ -96,7 +96,7 @@ fn discrepancy_is_learnt_from_its_own_draws() {
     assert!((group.tau / truth - 1.0).abs() < 0.25, "{}, not {truth}", group.tau);
 }
 
-/// Three sensors that one force moves prove no more than one of them.
+/// Three sensors that one force moves carry the evidence of one sensor.
 #[test]
 fn sensors_of_one_force_count_as_one() {
     let places: Vec<f64> = (0..20).map(|k| 0.3 * f64::from(k)).collect();
