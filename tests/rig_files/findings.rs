@@ -82,6 +82,24 @@ fn a_sensor_that_hangs_upside_down_is_said() {
     );
 }
 
+/// The rig's file has g; one channel was recorded in m/s^2.
+#[test]
+fn a_sensor_in_another_unit_than_its_other_side_is_said() {
+    let scale = |sweep: &mut Group| {
+        samples(sweep, "FL_Hub_Acc_Z")
+            .iter_mut()
+            .for_each(|value| *value *= 9.80665)
+    };
+    only(
+        &notices(scale),
+        &[
+            "sweep_0.mf4, `wheel_left_z`",
+            "times as large as `wheel_right_z`, which moves alike",
+            "`unit` or `scale`",
+        ],
+    );
+}
+
 #[test]
 fn sensors_that_were_swapped_are_said() {
     let swap = |sweep: &mut Group| {
