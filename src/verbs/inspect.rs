@@ -13,7 +13,7 @@ use crate::terminal::prose;
 use crate::verbs::Format;
 
 // Units that samples contradict.
-mod doubt;
+pub(super) mod doubt;
 // What is told of a channel when its samples are gone.
 mod course;
 // A file gone through, channel by channel.

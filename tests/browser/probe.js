@@ -48,6 +48,8 @@
     found.alarms = document.querySelectorAll('.failure').length;
     found.faint = faint();
     found.dashes = dashes();
+    found.legends = legends();
+    found.renamed = renamed();
     found.tables = [...document.querySelectorAll('.table')].map((own) => own.getAttribute('aria-label'));
     found.headings = [...document.querySelectorAll('h3')].map((heading) => heading.textContent);
     found.captions = [...document.querySelectorAll('figcaption')].map((caption) => caption.textContent);
@@ -151,6 +153,23 @@
       all[role] = [...new Set([...(all[role] || []), path.getAttribute('stroke-dasharray') || ''])];
     }
     return all;
+  }
+
+  // What the legends of each kind of figure list.
+  function legends() {
+    const all = {};
+    for (const label of document.querySelectorAll('[data-figure] tr.u-series .u-label')) {
+      const kind = label.closest('[data-figure]').dataset.figure;
+      all[kind] = [...new Set([...(all[kind] || []), label.textContent])];
+    }
+    return all;
+  }
+
+  // Captions that begin with a capital letter in place of that of a name, such as K_tire.
+  function renamed() {
+    const captions = [...document.querySelectorAll('figcaption')].filter((own) => /^[a-z]+[_.]/.test(own.textContent));
+    const isChanged = (own) => getComputedStyle(own, '::first-letter').textTransform === 'uppercase';
+    return captions.filter(isChanged).map((own) => own.textContent);
   }
 
   // The first figure and the first table as files, and the table for the clipboard.

@@ -4,7 +4,9 @@ The result has the problems that validation finds and, by both kinds of simulati
 """
 
 import json
+import re
 import sys
+import zipfile
 
 from fmpy import read_model_description, simulate_fmu
 from fmpy.validation import validate_fmu
@@ -23,7 +25,15 @@ def simulate(kind, **options):
     return {name: found[name].tolist() for name in signals}
 
 
+def promises():
+    """What the description says of directional derivatives; FMPy does not read this of FMI 3.0."""
+    with zipfile.ZipFile(unit) as archive:
+        text = archive.read("modelDescription.xml").decode()
+    return re.findall(r'providesDirectionalDerivatives?="(\w+)"', text)
+
+
 answer = {
+    "promises": promises(),
     "problems": [str(problem) for problem in validate_fmu(unit)],
     "model_exchange": simulate("ModelExchange", solver="CVode", relative_tolerance=1e-11),
     "co_simulation": simulate("CoSimulation"),

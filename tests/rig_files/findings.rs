@@ -82,6 +82,24 @@ fn a_sensor_that_hangs_upside_down_is_said() {
     );
 }
 
+/// The rig's file has g; one channel was recorded in m/s^2.
+#[test]
+fn a_sensor_in_another_unit_than_its_other_side_is_said() {
+    let scale = |sweep: &mut Group| {
+        samples(sweep, "FL_Hub_Acc_Z")
+            .iter_mut()
+            .for_each(|value| *value *= 9.80665)
+    };
+    only(
+        &notices(scale),
+        &[
+            "sweep_0.mf4, `wheel_left_z`",
+            "times as large as `wheel_right_z`, which moves alike",
+            "`unit` or `scale`",
+        ],
+    );
+}
+
 #[test]
 fn sensors_that_were_swapped_are_said() {
     let swap = |sweep: &mut Group| {
@@ -152,4 +170,30 @@ fn plain_tables_are_checked_too() {
         said.contains("rig.csv, `body_left_z`, 0.000 s to 4.990 s: every sample is 0.5 m/s^2: the channel is dead"),
         "{said}"
     );
+}
+
+/// Gravity of 1 m/s^2, and a wheel that travels by metres.
+#[test]
+fn units_that_samples_contradict_are_said() {
+    let keys = "unit = \"m/s^2\"";
+    let wheel = channel("wheel", "unit = \"m\"").replace("acceleration", "displacement");
+    let sweep = "[[run]]\nkind = \"sweep\"\nfile = \"rig.csv\"\nrole = \"fit\"\npeak_velocity = 0.1\nstart_frequency = 1\n\
+                 end_frequency = 10\nspacing = \"linear\"\nsample_rate = 100\n";
+    let said = |mean: f64, travel: f64| {
+        let rows = (0..500).map(|k| {
+            let (time, swing) = (f64::from(k) / 100.0, (0.3 * f64::from(k)).sin());
+            format!("{time:.2},{swing:.5},{:.5},{:.5}\n", mean + 0.1 * swing, travel * swing)
+        });
+        let table = "time,pad_left_z,body_left_z,wheel_left_z\n".to_string() + &rows.collect::<String>();
+        let sections = channel("pad", keys) + &channel("body", keys) + &wheel + sweep;
+        qcar(folder(&sections, ("rig.csv", table.as_bytes())).path(), "check .").1
+    };
+    let (sound, doubtful) = (said(0.0, 0.012), said(1.0, 12.0));
+    assert!(!sound.contains("unit"), "{sound}");
+    for part in [
+        "rig.csv, `body_left_z`: a mean of 1.00 m/s^2 is that of a sensor at rest in g",
+        "rig.csv, `wheel_left_z`: -12.000 to 12.000 m is more than a part of a car travels",
+    ] {
+        assert!(doubtful.contains(part), "no `{part}` in {doubtful}");
+    }
 }

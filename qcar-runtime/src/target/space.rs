@@ -62,8 +62,11 @@ const ANCHORS: usize = 16;
 /// Rounds in which a box that is good enough grows by so little that it soon is not, at most.
 const FINAL_ROUNDS: usize = 30;
 const FINAL_GROWTH: f64 = 0.004;
-/// All designs that are evaluated are no more than so many times those that judge a box.
-const MOST_JUDGED: usize = 150;
+/// Designs that confirm a box are so many times those that judge it as it grows: the fewer they are, the more of them must be good, and
+/// the smaller is the box.
+const CONFIRMING: usize = 4;
+/// All designs that are evaluated are no more than so many times those that confirm a box.
+const MOST_CONFIRMED: usize = 40;
 
 /// A box in places of the knobs.
 type Sides = Vec<[f64; 2]>;
@@ -99,12 +102,14 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     let judges = settings
         .samples
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
+    let confirming = CONFIRMING * judges;
+    let needed = needed(confirming, settings.probability);
     let mut best = None;
     for round in 0..FINAL_ROUNDS {
         told(settings.rounds + round, rounds);
         let drawn = turned_out(&real, &sides, judges, &mut random);
         evaluated += drawn.len();
-        if judged(&real, &sides, &drawn, evaluated).at_least >= settings.probability {
+        if judged(&real, &sides, &drawn, evaluated).probability >= needed {
             best = Some(sides.clone());
             grow(&mut sides, FINAL_GROWTH);
         } else if best.is_some() {
@@ -120,7 +125,7 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
     Some(confirmed(
         &real,
         best.unwrap_or(sides),
-        (settings.probability, judges),
+        (settings.probability, confirming),
         evaluated,
         &mut random,
     ))
@@ -130,15 +135,15 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
 fn confirmed(
     task: &Task<'_>,
     mut sides: Sides,
-    (probability, judges): (f64, usize),
+    (probability, confirming): (f64, usize),
     mut evaluated: usize,
     random: &mut SplitMix,
 ) -> Space {
     loop {
-        let drawn = turned_out(task, &sides, judges, random);
+        let drawn = turned_out(task, &sides, confirming, random);
         evaluated += drawn.len();
         let judged = judged(task, &sides, &drawn, evaluated);
-        if judged.at_least >= probability || evaluated > MOST_JUDGED * judges {
+        if judged.at_least >= probability || evaluated > MOST_CONFIRMED * confirming {
             return judged;
         }
         sides = shrunk(&sides);
@@ -302,6 +307,14 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> 
     }
 }
 
+/// The share of good ones, of so many, that shows a probability with 95 % confidence.
+fn needed(count: usize, probability: f64) -> f64 {
+    let enough = (0..=count)
+        .rev()
+        .take_while(|&good| tail(good, count, probability) < 0.05);
+    enough.last().unwrap_or(count) as f64 / count as f64
+}
+
 /// The probability at which so many or more good ones of all are found once in twenty times (Clopper and Pearson, Biometrika
 /// 26, 1934).
 fn lower_bound(good: usize, count: usize) -> f64 {
@@ -329,7 +342,7 @@ fn log_choose(n: usize, k: usize) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::lower_bound;
+    use super::{lower_bound, needed};
 
     /// Where none is bad, p^n = 0.05.
     #[test]
@@ -339,5 +352,16 @@ mod tests {
             assert!((lower_bound(count, count) - exact).abs() < 1e-9);
         }
         assert_eq!(lower_bound(0, 10), 0.0);
+    }
+
+    /// The more designs there are, the fewer of them must be good.
+    #[test]
+    fn what_is_needed_is_just_enough() {
+        for (count, probability) in [(480, 0.95), (400, 0.9), (2400, 0.99)] {
+            let share = needed(count, probability);
+            let good = (share * count as f64).round() as usize;
+            assert!(lower_bound(good, count) >= probability && lower_bound(good - 1, count) < probability);
+            assert!(share < needed(count / 4, probability));
+        }
     }
 }

@@ -1,4 +1,4 @@
-//! The runs of a campaign, and the flaws of their samples.
+//! The runs of a campaign, the flaws of their samples, and units that these contradict.
 
 use std::path::Path;
 
@@ -7,6 +7,7 @@ use qcar_runtime::error::InputError;
 
 use crate::failure::Failure;
 use crate::table::{Table, number};
+use crate::verbs::inspect::doubt::{Does, doubt};
 
 /// Significant digits.
 const DIGITS: usize = 6;
@@ -23,6 +24,7 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
             said.push(sentence);
         }
     }
+    said.extend(doubts(&campaign)?);
     let well = !findings.iter().any(|finding| finding.fatal);
     let verdict = match (well, said.is_empty()) {
         (true, true) => "ok".to_string(),
@@ -34,6 +36,28 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
         well,
         format!("{}: {verdict}\n{}{said}", folder.display(), runs(&campaign)?),
     ))
+}
+
+/// Sensors whose samples contradict the unit that they are said to have.
+fn doubts(campaign: &Campaign) -> Result<Vec<String>, InputError> {
+    let mut said = Vec::new();
+    for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {
+        let history = campaign.history(run)?;
+        said.extend(history.signals.iter().filter_map(|(channel, samples)| {
+            let what = doubt(channel.quantity.unit(), does(samples))?;
+            Some(format!("{}, `{}`: {what}", run.name, channel.name))
+        }));
+    }
+    Ok(said)
+}
+
+fn does(samples: &[f64]) -> Option<Does> {
+    let end = |of: fn(f64, f64) -> f64| samples.iter().copied().reduce(of);
+    Some(Does {
+        mean: samples.iter().sum::<f64>() / samples.len() as f64,
+        min: end(f64::min)?,
+        max: end(f64::max)?,
+    })
 }
 
 fn runs(campaign: &Campaign) -> Result<String, InputError> {

@@ -1,4 +1,4 @@
-//! Sensors that are wired or mounted wrongly, found by comparison with the other side of the car: in a sweep both sides move nearly alike.
+//! Sensors that are wired or mounted wrongly, or in another unit than is said, found by comparison with the other side of the car: in a sweep both sides move nearly alike.
 
 use super::super::contents::{Channel, Run, Side};
 use super::super::finding::Finding;
@@ -8,6 +8,10 @@ use super::super::history::History;
 const ALIKE: f64 = 0.5;
 /// By how much a sensor must resemble another place more than its own to be called swapped.
 const CLEARLY: f64 = 0.1;
+/// What the unit of one sensor is to that of another for which it may be taken: g to m/s², and m to mm or kN to N.
+const MISTAKEN: [f64; 2] = [9.80665, 1000.0];
+/// The ratio of two sensors is one of these within this part of it: no axle is so uneven.
+const UNEVEN: f64 = 0.25;
 
 /// The sensors of one place on the left and on the right.
 struct Pair<'a> {
@@ -16,7 +20,7 @@ struct Pair<'a> {
     correlation: f64,
 }
 
-/// Sensors of a sweep that move against their other side, and those that resemble another place there.
+/// Sensors of a sweep that move against their other side, those that resemble another place there, and those whose size is that in another unit.
 pub(super) fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
     let pairs = pairs(history);
     let duration = (history.len() - 1) as f64 / history.sample_rate;
@@ -34,6 +38,7 @@ pub(super) fn of_sides(run: &Run, history: &History) -> Vec<Finding> {
     for (at, pair) in pairs.iter().enumerate() {
         let swapped = pairs[at + 1..].iter().filter(|other| are_swapped(pair, other));
         found.extend(swapped.map(|other| finding(pair, swapped_with(pair, other))));
+        found.extend(in_other_units(pair).map(|what| finding(pair, what)));
     }
     found
 }
@@ -79,6 +84,20 @@ fn swapped_with(a: &Pair, b: &Pair) -> String {
         "resembles `{}` more than `{}`, and `{}` the other way round: two sensors of one side seem to be swapped",
         names[1].1, names[0].1, names[1].0
     )
+}
+
+/// What is to be said where both sides are alike but for the ratio of two units.
+fn in_other_units(pair: &Pair) -> Option<String> {
+    let [left, right] =
+        [pair.left.1, pair.right.1].map(|samples| about_line(samples).iter().map(|v| v * v).sum::<f64>());
+    let ratio = (left / right).sqrt();
+    let is_mistaken = |factor: &f64| (ratio.max(1.0 / ratio) / factor - 1.0).abs() < UNEVEN;
+    (pair.correlation.abs() > ALIKE && MISTAKEN.iter().any(is_mistaken)).then(|| {
+        format!(
+            "is {ratio:.3} times as large as `{}`, which moves alike: `unit` or `scale` of one of them seems to be wrong",
+            pair.right.0.name
+        )
+    })
 }
 
 /// How alike two signals are, about the lines through them: an offset or a drift is no motion.
