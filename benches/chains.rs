@@ -16,7 +16,7 @@ use std::process::Command;
 const LENGTHS: [usize; 4] = [10, 20, 40, 80];
 
 /// Verbs with what they are asked for; CHAIN stands for the model, and CAMPAIGN for one that it is driven by.
-const ASKED: [&str; 11] = [
+const ASKED: [&str; 12] = [
     "check CHAIN",
     "show CHAIN --stage equations",
     "show CHAIN --stage matrices",
@@ -27,6 +27,7 @@ const ASKED: [&str; 11] = [
     "frf CHAIN",
     "frf CHAIN --format json",
     "simulate CAMPAIGN/sweep",
+    "simulate CAMPAIGN/history",
     "simulate CAMPAIGN/cleat",
 ];
 

@@ -1,6 +1,6 @@
 //! The complete model of thesis section 3.3 in the time domain, and replays of what a rig has done.
 //!
-//! [`ride`] drives a model whose tyre rolls over a road at constant speed (figure 3.2); [`replay`] drives it by recorded
+//! [`ride`] drives a model whose tyre rolls over a road at constant speed (figure 3.2); [`Replay`] drives it by recorded
 //! inputs. Positions of a model are displacements from the design position, in which the car stands at rest: every link
 //! of the suspension carries its static preload there, and its law says what it gives beyond it, as K&C curves do. So
 //! gravity and preloads cancel out, and what moves the car is the force of the tyre less its static load.
@@ -36,20 +36,15 @@ mod variation;
 mod cleat;
 // Those of the thesis.
 mod standard;
-// A recorded signal between its samples.
-mod wave;
-// What a rig has done to a model.
-mod recorded;
-// A model to which that is done.
-mod replay;
+// A model driven by records.
+pub mod replay;
 
 pub use abreast::{Ridden, rides_abreast};
 pub use car::{Car, Variant};
 pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
-pub use recorded::{Between, Record, Recorded};
 pub use recorder::Kept;
-pub use replay::{Replay, replay};
+pub use replay::{Between, Reading, Recorded, Replay, replay};
 pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};

@@ -17,8 +17,6 @@ mod dataset;
 mod views;
 // What a model says of a series.
 mod prediction;
-// A model driven by what was recorded.
-mod replay;
 // Swept sines: the first harmonics at each frequency.
 mod sweep;
 // Rides over an obstacle: their impact and after-shake.

@@ -60,9 +60,7 @@ pub enum SimulateError {
         excitation: usize,
         count: usize,
     },
-    #[error("excitation `{name}` is a motion; its record must be a displacement, velocity or acceleration")]
-    MotionByForce { name: String },
-    #[error("excitation `{name}` is a force; its record must be a force")]
+    #[error("excitation `{name}` is a force; its record must be a force, of power 0")]
     ForceByMotion { name: String },
     #[error(
         "the motion `{name}` cannot be held between samples, since its velocity would be infinite; \
