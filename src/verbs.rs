@@ -8,52 +8,30 @@ use clap_complete::engine::ArgValueCompleter;
 use crate::completion;
 use crate::parameters::Setting;
 
-// The verbs themselves.
-pub mod completions;
-// A model file: begun,
-pub mod new;
-// checked,
+// The verbs, in the order in which `qcar --help` lists them.
 pub mod check;
-// examined,
-pub mod show;
-// beside another,
-pub mod diff;
-// with effects of the catalogue
-pub mod effects;
-// in it.
-pub mod patch;
-// What a model says: its matrices
-pub mod matrices;
-// its frequency response,
-pub mod frf;
-// and all of it for other tools.
-pub mod export;
-// What was measured: the channels of a file
-pub mod inspect;
-// and the campaign that they make,
-pub mod import;
-// and K&C curves,
-pub mod kc;
-// a model fitted to it,
-pub mod fit;
-// what else would tell its parameters,
-pub mod plan;
-// to one whose answer is known,
-pub mod score;
-// driven over its roads,
-pub mod simulate;
-// over cleats with many parameter sets,
-pub mod explore;
-// what its metrics depend on,
-pub mod sensitivity;
-// what it must be for them to be as they are wanted,
-pub mod target;
-// and what it lacks.
-pub mod discover;
-// All of that at once,
-pub mod study;
-// or of two sides.
 pub mod compare;
+pub mod completions;
+pub mod diff;
+pub mod discover;
+pub mod effects;
+pub mod explore;
+pub mod export;
+pub mod fit;
+pub mod frf;
+pub mod import;
+pub mod inspect;
+pub mod kc;
+pub mod matrices;
+pub mod new;
+pub mod patch;
+pub mod plan;
+pub mod score;
+pub mod sensitivity;
+pub mod show;
+pub mod simulate;
+pub mod study;
+pub mod target;
 
 /// A model and the values of its parameters.
 #[derive(Args)]

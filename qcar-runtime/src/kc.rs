@@ -9,7 +9,7 @@
 //! [`value_for`] takes them apart with a model.
 
 mod regression;
-// What a model has for gradients.
+// A model's own gradients on the K&C rig.
 mod rig;
 
 pub use regression::Estimate;

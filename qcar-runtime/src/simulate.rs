@@ -6,35 +6,35 @@
 //! gravity and preloads cancel out, and what moves the car is the force of the tyre less its static load.
 
 mod failure;
-// What both kinds of simulation are held to.
+// Accuracy of a simulation.
 mod settings;
-// Signals between the samples of a smooth motion.
+// Interpolation between the samples of a smooth motion.
 mod gap;
-// Signals sampled without aliases.
+// Sampling through an anti-alias filter.
 mod sampling;
-// Where a model comes to rest.
+// The static equilibrium of a model.
 mod equilibrium;
-// A model on its tyre.
+// A model with its tyre and static load.
 mod car;
-// What moves it while the tyre rolls over a road.
+// The equations of motion while the tyre rolls over a road.
 mod rolling;
-// What is faster for a linear axle.
+// Faster integration of linear axles.
 mod shortcut;
-// What is recorded meanwhile.
+// The signals recorded during a ride.
 mod recorder;
 // Rides over a road.
 mod ride;
-// Several smooth motions in step,
+// Integration of several smooth motions with common steps.
 mod formation;
-// and rides that go on so.
+// Several rides integrated together.
 mod abreast;
-// How they change with the parameters,
+// Derivatives of rides by parameters.
 mod tangent;
-// and how those of linear axles do, faster.
+// The same for linear axles, faster.
 mod variation;
-// Those that a campaign has measured.
+// The cleat runs of a campaign.
 mod cleat;
-// Those of the thesis.
+// The cleat runs of the thesis.
 mod standard;
 // A model driven by records.
 pub mod replay;

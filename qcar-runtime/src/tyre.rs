@@ -14,11 +14,11 @@
 //! As a resisting force of the stretch: `a s - b s² + c v` for `s < 0`.
 
 mod series;
-// What they are of.
+// The unloaded circle of the tyre.
 mod circle;
-// Where the road is inside the circle.
+// Intervals in which the road is inside the circle.
 mod patches;
-// What the circle sweeps as it moves.
+// The area that the circle sweeps as it moves.
 mod sweep;
 // The three geometries.
 mod area;
@@ -26,7 +26,7 @@ mod point;
 mod radial;
 // From geometry to force.
 mod force;
-// Several wheels at once.
+// Several wheels together.
 mod abreast;
 
 pub(crate) use abreast::{Pieces, Wheels};

@@ -4,36 +4,36 @@
 //! Everything that an effect says about the model is bound to the model as it was before: `l.damper` is the coefficient
 //! that stood there, and stays what it was when the term is replaced.
 
-// Trees with other names in them.
+// Syntax trees with names replaced.
 mod rewrite;
-// The model as a tree.
+// The syntax tree of the model that is patched.
 mod base;
-// What expressions are worth in it.
+// Values of expressions at the model's parameters.
 mod ask;
-// What all its parts do.
+// Outputs that show what every part of a model does.
 mod watch;
-// How far and how hard a place is moved.
+// Amplitudes of travel and force at a place.
 mod scale;
-// What a link connects.
+// The two ends of a link.
 mod stretch;
-// What stands in its law.
+// The terms of a link's law.
 mod terms;
-// What the parts of a model do.
+// The role of each link: tyre, suspension, mount.
 mod roles;
-// Where an effect may apply.
+// The places where an effect applies.
 mod place;
-// What its names mean there.
+// The meaning of an effect's names at a place.
 mod bind;
-// Its changes.
+// The effect's statements, applied to the tree.
 mod apply;
 mod tidy;
-// Its curves.
+// Curves of an effect: tables with points to estimate.
 mod curve;
-// Its numbers.
+// Start values and ranges of an effect's parameters.
 mod start;
-// What it must say.
+// Checks of the text of an effect.
 mod rules;
-// Two models side by side.
+// The differences between two models.
 pub mod difference;
 
 pub use ask::Values;

@@ -5,33 +5,33 @@
 //! of a sensor, such as its calibration, is not in it: see [`noise`](super::noise). Each kind of run has a module of
 //! its own, which reads what was measured and predicts the same of a model.
 
-// Sensors in the words of a model.
+// The signal of the model that a sensor measures.
 mod sensor;
-// Runs, and what drove them.
+// Runs and their excitation.
 mod run;
-// Values of one sensor in one run.
+// The values of one sensor in one run.
 mod series;
-// All of them: the data set.
+// All series of a campaign.
 mod dataset;
-// The same in part.
+// Selections of the data set.
 mod views;
-// What a model says of a series.
+// A model's prediction of a series, with its derivatives.
 mod prediction;
-// Swept sines: the first harmonics at each frequency.
+// Sweeps: harmonics at each frequency.
 mod sweep;
-// Rides over an obstacle: their impact and after-shake.
+// Cleat runs: impact and after-shake.
 mod cleat;
-// Any other excitation: the responses themselves.
+// Time histories under any other excitation.
 mod time_history;
-// The K&C rig: slow cycles and sines.
+// K&C cycles, slow ones and sines.
 mod kc;
-// A link alone: forces over its speed.
+// The force of a single link over its speed.
 mod dynamometer;
-// Runs through which a parameter changes.
+// Runs during which a parameter changes slowly.
 mod drift;
 // From a campaign to a data set.
 mod read;
-// From a model to predictions.
+// Predictions of all series by a model.
 mod predict;
 
 pub use dataset::Evidence;

@@ -7,9 +7,9 @@
 mod input;
 // How the readings of a linear model depend on its initial states.
 mod initial;
-// A model with one set of parameters, or with several.
+// A model with one parameter set, or with eight.
 mod sets;
-// From one node to the next.
+// Steps of the Runge-Kutta method, with step control.
 mod stepper;
 
 pub use input::{Between, Recorded};

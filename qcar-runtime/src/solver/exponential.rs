@@ -5,7 +5,7 @@
 //! corrects the step and judges it. M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19 (2010),
 //! section 2.5, with the correction of the predictor-corrector pairs in Hairer, Nørsett, Wanner, III.1.
 
-// Several of them at once.
+// Several systems integrated together.
 mod abreast;
 
 use std::array;

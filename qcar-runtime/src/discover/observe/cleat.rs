@@ -1,8 +1,8 @@
 //! Rides over an obstacle: their impact and after-shake.
 
-// What was measured.
+// The measured series.
 mod measured;
-// What a model says.
+// The predicted series.
 mod predicted;
 
 pub use predicted::passage;

@@ -1,8 +1,8 @@
 //! A dynamometer: one link alone, without the masses and links around it.
 
-// Forces as they were measured.
+// The measured forces.
 mod measured;
-// What a model says of them.
+// The predicted forces.
 mod predicted;
 
 pub use predicted::forces;

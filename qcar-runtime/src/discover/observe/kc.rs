@@ -1,12 +1,12 @@
 //! The K&C rig: slow cycles and sines.
 
-// A slow cycle as it was measured.
+// The measured series of a slow cycle.
 mod travel;
-// A sine as it was measured.
+// The measured series of a sine.
 mod sine;
-// What the rig moves in a model, and what follows.
+// A model on the K&C rig: prescribed motion and resulting force.
 mod bench;
-// What a model says of both.
+// The predicted series of both.
 mod predicted;
 
 pub use predicted::travel;

@@ -1,10 +1,10 @@
 //! The runs of a campaign, and what drove them.
 
-// Which frequencies of a record are compared.
+// The frequency band of a record that is compared.
 mod band;
-// From where a model sets out, and where one that drifts is set right.
+// Initial states, and resets of states that drift.
 mod restart;
-// A record as weighted means.
+// A record reduced to weighted means.
 mod means;
 // A ride over an obstacle.
 mod passage;

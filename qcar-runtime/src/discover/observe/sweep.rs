@@ -1,12 +1,12 @@
 //! Swept sines: the first harmonics at each frequency.
 
-// What was measured.
+// The measured series.
 mod measured;
-// What a linear model says.
+// The predicted series of a linear model.
 mod linear;
-// What a nonlinear model says.
+// The predicted series of a nonlinear model.
 mod nonlinear;
-// What a sweep shows beyond its steady harmonics, since it never settles.
+// The difference between a sweep as driven and its steady harmonics.
 mod unsteady;
 
 pub use linear::sweep as linear;

@@ -1,12 +1,12 @@
 //! Any other excitation: the responses themselves.
 
-// What a sensor shows beside the motion.
+// The noise of a sensor.
 mod noise;
-// From where a model sets out, and how well that is known.
+// Initial states with their uncertainty, and resets of states that drift.
 mod restarts;
-// What was measured.
+// The measured series.
 mod measured;
-// What a model says.
+// The predicted series.
 mod predicted;
 
 pub use predicted::{history, replayed};
