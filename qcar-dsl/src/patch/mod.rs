@@ -36,6 +36,8 @@ mod rules;
 // The differences between two models.
 pub mod difference;
 
+use std::borrow::Cow;
+
 pub use ask::Values;
 pub(crate) use base::Base;
 use bind::Bindings;
@@ -183,21 +185,23 @@ impl Patch {
 
     /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.
     pub fn places(&self, model: &Checked) -> Vec<String> {
-        let patched = self.candidates(model, &|_| None).into_iter();
-        let mut places: Vec<String> = patched.map(|patched| patched.place).collect();
-        places.dedup();
-        places
+        let values: Values = &|_| None;
+        let base = Base::of(model);
+        let roles = Roles::of(&base, values);
+        let forms = self.own_forms();
+        let applies = |place: &Place| {
+            forms
+                .iter()
+                .any(|form| form.made(model, &base, &roles, place, values).is_ok())
+        };
+        let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
+        places.filter(applies).map(|place| place.label).collect()
     }
 
     /// The model with the effect at each place where it applies, in the order of the model's text, and in each form:
     /// where the pattern fits, the model has all that the effect asks for, and the compiler accepts what comes out.
     pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
-        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
-        let forms = if forms.is_empty() {
-            std::slice::from_ref(self)
-        } else {
-            &forms
-        };
+        let forms = self.own_forms();
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
@@ -206,6 +210,16 @@ impl Patch {
             made.filter_map(Result::ok).collect()
         };
         places.iter().flat_map(at).collect()
+    }
+
+    /// The effect in each of its forms; the effect itself if it has none.
+    fn own_forms(&self) -> Cow<'_, [Patch]> {
+        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
+        if forms.is_empty() {
+            Cow::Borrowed(std::slice::from_ref(self))
+        } else {
+            Cow::Owned(forms)
+        }
     }
 
     /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken
