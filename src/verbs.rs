@@ -8,30 +8,52 @@ use clap_complete::engine::ArgValueCompleter;
 use crate::completion;
 use crate::parameters::Setting;
 
-// The verbs, in the order in which `qcar --help` lists them.
-pub mod check;
-pub mod compare;
+// Completion scripts of shells.
 pub mod completions;
-pub mod diff;
-pub mod discover;
-pub mod effects;
-pub mod explore;
-pub mod export;
-pub mod fit;
-pub mod frf;
-pub mod import;
-pub mod inspect;
-pub mod kc;
-pub mod matrices;
+// A first model file, campaign folder or workbook.
 pub mod new;
-pub mod patch;
-pub mod plan;
-pub mod score;
-pub mod sensitivity;
+// Mistakes of a model or campaign.
+pub mod check;
+// The stages of a model as text.
 pub mod show;
+// Differences between two models.
+pub mod diff;
+// The catalogue of effects.
+pub mod effects;
+// A model with an effect added.
+pub mod patch;
+// Matrices with their derivatives.
+pub mod matrices;
+// Frequency responses.
+pub mod frf;
+// A model for other tools.
+pub mod export;
+// The channels of a measured file.
+pub mod inspect;
+// A first campaign from measured files.
+pub mod import;
+// Gradients of K&C curves.
+pub mod kc;
+// Parameters fitted to a campaign.
+pub mod fit;
+// Further measurements that would determine the parameters better.
+pub mod plan;
+// Fitted parameters beside the true ones.
+pub mod score;
+// Rides and replays.
 pub mod simulate;
-pub mod study;
+// Metrics of many parameter sets.
+pub mod explore;
+// Sensitivity of metrics to parameters.
+pub mod sensitivity;
+// Designs that meet targets.
 pub mod target;
+// The effect that a model lacks.
+pub mod discover;
+// All verbs on one campaign, and a report.
+pub mod study;
+// Two parameter sets, models or campaigns beside each other.
+pub mod compare;
 
 /// A model and the values of its parameters.
 #[derive(Args)]
