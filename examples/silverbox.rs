@@ -19,8 +19,7 @@ use std::path::Path;
 
 use qcar::catalogue;
 use qcar::parameters;
-use qcar_runtime::model::SignalKind;
-use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
+use qcar_runtime::simulate::{Between, Reading, Recorded, replay};
 use serde_json::Value;
 
 /// Hz.
@@ -90,14 +89,26 @@ fn columns(file: &str) -> Result<[Vec<f64>; 2], Box<dyn Error>> {
 fn respond(model: &str, values: &Path, force: &[f64]) -> Result<Vec<f64>, Box<dyn Error>> {
     let model = catalogue::load(model).map_err(|failure| format!("{failure:?}"))?;
     let values = parameters::resolve(model.about(), [values], &[])?;
-    let record = Record {
+    let recorded = Recorded {
         excitation: 0,
-        kind: SignalKind::Force,
+        power: 0,
         samples: force,
     };
-    let recorded = Recorded::new(model.about(), &[record], RATE, Between::BandLimited)?;
-    let mut replayed = replay(&*model, values.as_slice(), &recorded, &Settings::default())?;
-    Ok(replayed.outputs.swap_remove(0))
+    let how = Between {
+        rate: RATE,
+        band_limited: true,
+        band: (0.0, RATE),
+        periodic: false,
+        samples: force.len(),
+    };
+    let mut replayed = replay(
+        &*model,
+        values.as_slice(),
+        vec![recorded],
+        how,
+        vec![Reading::Output(0)],
+    )?;
+    Ok(replayed.swap_remove(0))
 }
 
 fn mean(values: &[f64]) -> f64 {

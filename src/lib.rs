@@ -3,45 +3,45 @@
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
 pub mod failure;
-// Reading and writing.
+// Reading and writing of files.
 pub mod files;
-// How wide a terminal is, and whether it shows colours.
+// Width and colours of the terminal.
 pub mod terminal;
 // The units in which results are shown.
 pub mod units;
-// Results as text tables,
+// Results as text tables.
 pub mod table;
-// as JSON,
+// Results as JSON.
 pub mod json;
-// as figures,
+// Results as figures.
 pub mod figure;
-// as time histories of simulations,
+// Results as time histories.
 pub mod histories;
-// and as one page with everything.
+// Results as one HTML page.
 pub mod report;
 // Results as workbooks.
 pub mod spreadsheet;
-// Results as columns of numbers.
+// Results as Parquet tables.
 pub mod parquet;
-// Cancelled work
+// Cancellation of long work.
 pub mod stopping;
-// stops at its next progress report.
+// Progress bars, where cancelled work stops.
 pub mod progress;
-// What happens to files and progress on Ctrl-C.
+// Handling of Ctrl-C.
 pub mod interruption;
 // Parameter values from files and flags.
 pub mod parameters;
-// Parameter sets that would make an inertia zero or negative.
+// Parameter sets for which a mass is zero or negative.
 pub mod inertias;
-// Roads as a user names them.
+// Names of roads on the command line.
 pub mod roads;
 // Models by name or path.
 pub mod catalogue;
 // Effects that a model may lack.
 pub mod effects;
-// Names that a shell completes.
+// Names for the completion of a shell.
 pub mod completion;
-// Amplitudes of the parts of a model in a campaign.
+// Amplitudes of a model's parts in a campaign.
 pub mod scales;
 // Models with effects added.
 pub mod workshop;
@@ -53,7 +53,7 @@ pub mod state_space;
 pub mod export;
 // The verbs of the command line.
 pub mod verbs;
-// The list of them.
+// The command line.
 pub mod cli;
 
 /// The guide for users of the library, whose code runs as tests.

@@ -1,8 +1,8 @@
 //! Parameter values: from a file, from `--set`, from the model's defaults.
 
-// What a file gives.
+// Values in a parameter file.
 mod file;
-// What a fit gives.
+// Values in the results of a fit.
 mod fitted;
 
 use std::collections::BTreeMap;

@@ -4,9 +4,9 @@
 //! after its last whole group, which no general writer of the format does, since it keeps the places of its groups in memory.
 //! The format: <https://parquet.apache.org/docs/file-format/>.
 
-// How the format writes its own records.
+// The encoding of metadata (Thrift compact protocol).
 mod thrift;
-// The records: of a page, and of the file at its end.
+// Metadata of pages and of the file.
 mod records;
 
 use std::io::{self, Write};

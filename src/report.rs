@@ -5,7 +5,7 @@ use serde::Serialize;
 use crate::json::inert;
 use crate::units;
 
-// Numbers as a page needs them.
+// Numbers rounded for the page.
 pub mod rounded;
 
 const TEMPLATE: &str = include_str!("report/page.html");

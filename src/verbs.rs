@@ -8,51 +8,51 @@ use clap_complete::engine::ArgValueCompleter;
 use crate::completion;
 use crate::parameters::Setting;
 
-// The verbs themselves.
+// Completion scripts of shells.
 pub mod completions;
-// A model file: begun,
+// A first model file, campaign folder or workbook.
 pub mod new;
-// checked,
+// Mistakes of a model or campaign.
 pub mod check;
-// examined,
+// The stages of a model as text.
 pub mod show;
-// beside another,
+// Differences between two models.
 pub mod diff;
-// with effects of the catalogue
+// The catalogue of effects.
 pub mod effects;
-// in it.
+// A model with an effect added.
 pub mod patch;
-// What a model says: its matrices
+// Matrices with their derivatives.
 pub mod matrices;
-// its frequency response,
+// Frequency responses.
 pub mod frf;
-// and all of it for other tools.
+// A model for other tools.
 pub mod export;
-// What was measured: the channels of a file
+// The channels of a measured file.
 pub mod inspect;
-// and the campaign that they make,
+// A first campaign from measured files.
 pub mod import;
-// and K&C curves,
+// Gradients of K&C curves.
 pub mod kc;
-// a model fitted to it,
+// Parameters fitted to a campaign.
 pub mod fit;
-// what else would tell its parameters,
+// Further measurements that would determine the parameters better.
 pub mod plan;
-// to one whose answer is known,
+// Fitted parameters beside the true ones.
 pub mod score;
-// driven over its roads,
+// Rides and replays.
 pub mod simulate;
-// over cleats with many parameter sets,
+// Metrics of many parameter sets.
 pub mod explore;
-// what its metrics depend on,
+// Sensitivity of metrics to parameters.
 pub mod sensitivity;
-// what it must be for them to be as they are wanted,
+// Designs that meet targets.
 pub mod target;
-// and what it lacks.
+// The effect that a model lacks.
 pub mod discover;
-// All of that at once,
+// All verbs on one campaign, and a report.
 pub mod study;
-// or of two sides.
+// Two parameter sets, models or campaigns beside each other.
 pub mod compare;
 
 /// A model and the values of its parameters.

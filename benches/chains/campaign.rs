@@ -1,4 +1,4 @@
-//! Campaigns that drive a chain: one by a record of its road, one over a cleat.
+//! Campaigns that drive a chain: by a sweep of its road, by any other record of it, and over a cleat.
 
 use std::fmt::Write;
 use std::fs;
@@ -8,13 +8,20 @@ use std::path::Path;
 const SAMPLES: usize = 1000;
 const RATE: f64 = 500.0;
 
-/// Writes the campaigns `sweep` and `cleat` for the chain in a folder.
+/// Writes the campaigns `sweep`, `history` and `cleat` for the chain in a folder.
 pub fn write(folder: &Path, masses: usize) {
-    sweep(&folder.join("sweep"), masses);
+    let swept = "peak_velocity = 0.1\nstart_frequency = 0.5\nend_frequency = 19.0\nspacing = \"linear\"\n";
+    driven(&folder.join("sweep"), masses, ("sweep", swept));
+    driven(
+        &folder.join("history"),
+        masses,
+        ("time_history", "band_limited = true\n"),
+    );
     cleat(&folder.join("cleat"), masses);
 }
 
-fn sweep(folder: &Path, masses: usize) {
+/// By a record of its road, as a run of a kind with these keys.
+fn driven(folder: &Path, masses: usize, (kind, keys): (&str, &str)) {
     let mut record = "time,road,top\n".to_string();
     for sample in 0..SAMPLES {
         let time = sample as f64 / RATE;
@@ -23,10 +30,8 @@ fn sweep(folder: &Path, masses: usize) {
     }
     put(folder, "record.csv", &record);
     let channels = [channel("road", "road_below"), channel("top", &format!("q{masses}"))].concat();
-    let run = format!(
-        "[[run]]\nkind = \"sweep\"\nfile = \"record.csv\"\nrole = \"fit\"\nsample_rate = {RATE}\npeak_velocity = 0.1\nstart_frequency = 0.5\n\
-         end_frequency = 19.0\nspacing = \"linear\"\n"
-    );
+    let run =
+        format!("[[run]]\nkind = \"{kind}\"\nfile = \"record.csv\"\nrole = \"fit\"\nsample_rate = {RATE}\n{keys}");
     put(folder, "campaign.toml", &format!("{}{channels}{run}", head("")));
 }
 

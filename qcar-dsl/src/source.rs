@@ -1,4 +1,4 @@
-//! Where text comes from, and places in it.
+//! Source texts, and positions in them.
 
 /// A place in a source, as plain data, so that models and reports can be sent to other threads.
 ///

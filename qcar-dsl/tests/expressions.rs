@@ -4,19 +4,7 @@ use proptest::prelude::*;
 use qcar_dsl::expr::{CoordinateId, Differential, Expr, Function, Graph, Leaves, Substitution, Symbol};
 
 use super::common;
-
-const FUNCTIONS: [Function; 10] = [
-    Function::Abs,
-    Function::Sign,
-    Function::Sqrt,
-    Function::Exp,
-    Function::Ln,
-    Function::Sin,
-    Function::Cos,
-    Function::Tan,
-    Function::Atan,
-    Function::Tanh,
-];
+use super::common::programs::FUNCTIONS;
 
 /// An expression as it is written, before any identity.
 #[derive(Clone, Debug)]

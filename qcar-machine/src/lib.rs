@@ -4,7 +4,7 @@
 //! the program, one instruction each and none fused, and functions are those of Rust: the bits are those of the interpreter, but that no
 //! two ways of computing need agree on which not-a-number is none.
 
-// For one point or many.
+// Shapes of a program: for one point, eight sets, or rows of points.
 mod shape;
 // Where leaves are read.
 #[cfg(target_arch = "x86_64")]
@@ -27,7 +27,7 @@ mod code;
 // On other processors, where there are none.
 #[cfg(not(target_arch = "x86_64"))]
 mod elsewhere;
-// A model by them.
+// A model whose programs are machine code.
 mod machine;
 
 pub use machine::Machine;

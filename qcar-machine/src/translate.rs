@@ -1,6 +1,6 @@
 //! A straight-line program as machine code: the operations in their order, each as its instruction.
 
-// Before and after them.
+// Entry, exit and stack frame of a function.
 mod frame;
 
 use qcar_dsl::expr::Function;

@@ -3,3 +3,5 @@
 mod both;
 mod models;
 mod programs;
+#[path = "../../qcar-dsl/tests/common/programs.rs"]
+mod random;

@@ -4,7 +4,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 use proptest::prelude::*;
-use qcar_dsl::expr::{Curve, Function, Graph, Symbol};
+use qcar_dsl::expr::{Function, Symbol};
 use qcar_dsl::program::{Op, Program, Value};
 use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
@@ -12,64 +12,9 @@ use qcar_model::{LANES, Lanes, Model, Points};
 
 use super::both::Both;
 use super::models::compiled;
+use super::random::{KINDS, PREPARED, prepared, program, steps};
 
-/// Constants that are prepared, of which a program reads some.
-const PREPARED: usize = 50;
 const POINTS: usize = 13;
-const FUNCTIONS: [Function; 10] = [
-    Function::Abs,
-    Function::Sign,
-    Function::Sqrt,
-    Function::Exp,
-    Function::Ln,
-    Function::Sin,
-    Function::Cos,
-    Function::Tan,
-    Function::Atan,
-    Function::Tanh,
-];
-
-/// An operation by its kind, and by how far back in the program its arguments stand.
-type Step = (usize, [prop::sample::Index; 3]);
-
-/// Leaves and numbers, then operations of all kinds between each other; every third is a result.
-fn program(symbols: &[Symbol], prepared: &[u32], numbers: &[f64], steps: &[Step]) -> Program {
-    let mut ops: Vec<Op> = symbols.iter().copied().map(Op::Input).collect();
-    ops.extend(prepared.iter().copied().map(Op::Prepared));
-    ops.extend(numbers.iter().copied().map(Op::Constant));
-    let mut curves = Vec::new();
-    for &(kind, places) in steps {
-        let [a, b, c] = places.map(|place| Value(place.index(ops.len()) as u32));
-        ops.push(match kind {
-            0 => Op::Neg(a),
-            1 => Op::Add(a, b),
-            2 => Op::Sub(a, b),
-            3 => Op::Mul(a, b),
-            4 => Op::Div(a, b),
-            5 => Op::Pow(a, b),
-            6 => Op::Min(a, b),
-            7 => Op::Max(a, b),
-            8 => Op::Select(a, b, c),
-            kind if kind < 9 + FUNCTIONS.len() => Op::Call(FUNCTIONS[kind - 9], a),
-            kind => {
-                curves.push(curve([b, c, a, c, a, b]));
-                Op::Table((kind - 9 - FUNCTIONS.len()) as u8, a, curves.len() as u32 - 1)
-            }
-        });
-    }
-    let outputs = (0..ops.len() as u32).rev().step_by(3).map(Value).collect();
-    Program { ops, outputs, curves }
-}
-
-/// A curve through three points, by its ordinates and slopes.
-fn curve(entries: [Value; 6]) -> Curve<Value> {
-    let mut g = Graph::default();
-    let zero = g.constant(0.0);
-    let points = Curve::monotone(&mut g, &[-1.0, 0.2, 1.5], vec![zero; 3]);
-    let mut entries = entries.into_iter();
-    points.map(|_| entries.next().unwrap())
-}
-
 /// A mass on a tyre, with another program for its equations of motion.
 fn with_derivative(program: impl FnOnce(&[Symbol]) -> Program) -> Compiled {
     let mut compiled = compiled(Path::new("../models/axles/quarter_car.axle"));
@@ -121,23 +66,23 @@ proptest! {
 
     #[test]
     fn every_operation_has_the_bits_of_the_interpreter(
-        prepared in prop::collection::vec(0..PREPARED as u32, 1..20),
+        prepared in prepared(20),
         numbers in prop::collection::vec(-3.0..3.0f64, 0..4),
-        steps in prop::collection::vec((0..23usize, any::<[prop::sample::Index; 3]>()), 1..400),
+        steps in steps(KINDS, 400),
         given in given(),
     ) {
-        let compiled = with_derivative(|symbols| program(symbols, &prepared, &numbers, &steps));
+        let compiled = with_derivative(|symbols| program(symbols, &prepared, &numbers, &steps, 3));
         judge(&compiled, &given);
     }
 
     /// Without calls, which would empty the registers again and again.
     #[test]
     fn so_has_arithmetic_alone(
-        prepared in prop::collection::vec(0..PREPARED as u32, 1..20),
-        steps in prop::collection::vec((0..5usize, any::<[prop::sample::Index; 3]>()), 1..900),
+        prepared in prepared(20),
+        steps in steps(5, 900),
         given in given(),
     ) {
-        let compiled = with_derivative(|symbols| program(symbols, &prepared, &[2.5], &steps));
+        let compiled = with_derivative(|symbols| program(symbols, &prepared, &[2.5], &steps, 3));
         judge(&compiled, &given);
     }
 }

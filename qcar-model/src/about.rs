@@ -1,4 +1,4 @@
-//! What there is to know of a model without evaluating it: names, places and sparsity.
+//! The description of a model: names, units, indices and sparsity.
 
 use std::borrow::Cow;
 

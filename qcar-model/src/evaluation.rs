@@ -1,4 +1,4 @@
-//! Where a model is evaluated, and where its results go.
+//! Arguments and results of an evaluation.
 
 /// What a tyre that rolls over a profile gives to its model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

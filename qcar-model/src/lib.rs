@@ -4,11 +4,11 @@
 //! All quantities are SI. Slices have the lengths that [`About`] states; a shorter one is a caller's bug and panics
 //! once, at the top of the call, so that no bounds check is left in the straight-line code below it.
 
-// What there is to know of a model.
+// The description of a model.
 mod about;
-// What it is evaluated at.
+// Arguments and results of an evaluation.
 mod evaluation;
-// What an effect's parameters are to it.
+// Roles of the parameters of an effect.
 mod role;
 
 pub use about::{

@@ -1,4 +1,4 @@
-//! What a parameter of an effect is to it.
+//! Roles of the parameters of an effect.
 
 /// What a parameter is to its effect.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,25 +7,25 @@
 mod unit;
 // A file of columns of numbers.
 mod table;
-// How evenly times come.
+// Regularity of a time base.
 mod steps;
 // Flaws of samples, as they are reported.
 mod finding;
-// What was read of a run.
+// A run as it was read, with its findings.
 mod reading;
-// What a campaign lists, as types.
+// The types of a campaign.
 mod contents;
-// TOML read key by key, all problems gathered.
+// Keys of a TOML table, with all problems collected.
 mod fields;
-// Which channel of a measured file a sensor is.
+// How a sensor is taken from a channel of a measured file.
 mod tap;
-// What samples show to be wrong.
+// Checks of the samples of one channel.
 mod samples;
 // Runs from files of rigs and other programs.
 mod recorded;
 // Time histories of runs.
 mod history;
-// What they show to be wrong beside each other.
+// Checks across the channels of a run.
 mod findings;
 // The values, curves and cleats of a vehicle in a workbook.
 pub mod workbook;
@@ -35,9 +35,9 @@ mod manifest;
 mod curve;
 // Forces of a link over its speed.
 mod dynamometer;
-// Roads.
+// Roads as heights over distance.
 mod profile;
-// The answer that some campaigns are published with.
+// The true parameters of simulated campaigns.
 mod truth;
 
 pub use contents::{

@@ -3,17 +3,17 @@
 //! A [`Design`] says which sets. It knows each of them by its number alone, and a row of results depends on nothing else: so
 //! any part of an ensemble can be computed anywhere, by any number of threads, with the same bits.
 
-// The order of strata.
+// A random order of the strata.
 mod permutation;
-// Points that fill a cube evenly.
+// Sobol points, which fill a cube evenly.
 mod sobol;
-// Parameter sets that are as probable as a fit says.
+// Parameter sets drawn from the posterior of a fit.
 mod posterior;
-// Which parameter sets.
+// The parameter sets of an ensemble.
 mod design;
-// What is measured of each.
+// The metrics of one parameter set.
 mod metrics;
-// All of it.
+// The table of the ensemble.
 mod rows;
 
 pub use design::{Axis, Design, Scheme};

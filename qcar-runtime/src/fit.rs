@@ -3,37 +3,37 @@
 //! [`Setup::new`] checks a [`Plan`] against model and measurement; whatever is wrong comes out there. [`Setup::fit`]
 //! is total: it searches from several starts and returns a [`Fit`], also where little could be determined.
 
-// What is fitted to.
+// Measured ratios with their weights.
 pub mod observation;
-// Which ratios of the measured signals to take.
+// The ratios of measured signals that are fitted.
 pub mod channels;
-// From the runs of a campaign to what is fitted.
+// From the runs of a campaign to measured ratios.
 pub mod measure;
-// What the engineer decides: starts, bounds, weights.
+// Choices of the engineer: starts, bounds, weights.
 pub mod plan;
 // The residual of thesis section 3.5.2.1.
 mod cost;
-// Plan, model and measurement checked against each other.
+// Consistency of plan, model and measurement.
 mod setup;
-// Several starts over the bounds.
+// Fits from several starts within the bounds.
 mod search;
-// From the Jacobian at the optimum to honest error bars.
+// Standard errors from the Jacobian at the optimum.
 mod uncertainty;
 // The fit percentage of thesis section 3.5.2.4.
 pub mod quality;
 // The result as values to print or to serialise.
 pub mod report;
-// Intervals of parameters by their profiles.
+// Intervals by profile likelihood.
 pub mod profile;
-// The errors that a fit is expected to have.
+// Standard errors to expect from a measurement.
 mod forecast;
-// What a run says of a place,
+// The information of a run about one sensor.
 mod record;
-// as it is and as it would be,
+// The same of a run that was not measured.
 mod supposed;
-// what else could be measured,
+// Sensors, runs and levels that could be measured in addition.
 mod candidate;
-// and what it would say.
+// The information that each of them would add.
 pub mod prospect;
 
 pub use observation::{Level, Observation};

@@ -9,7 +9,7 @@
 //! [`value_for`] takes them apart with a model.
 
 mod regression;
-// What a model has for gradients.
+// A model's own gradients on the K&C rig.
 mod rig;
 
 pub use regression::Estimate;
@@ -64,17 +64,30 @@ impl<'a> From<&'a DynamicCurve> for SineSamples<'a> {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum KcError {
-    #[error("the columns of the curve have {first} and {second} values; expected one length")]
+    #[error("columns of {first} and {second} values")]
     Lengths { first: usize, second: usize },
-    #[error("the curve has {found} samples in its linear range, expected at least {expected}; record a whole cycle")]
+    #[error("{found} samples in the linear range of the curve")]
     TooFew { found: usize, expected: usize },
-    #[error("the curve does not determine its gradients; expected travel in both directions")]
+    #[error("travel in one direction only")]
     OneWay,
     #[error(
-        "the force does not increase with the displacement: its slope is {slope:.3e} N/m with a standard error of {error:.1e}; \
-         expected both positive in compression, or forwards"
+        "a force that does not increase with the displacement: slope {slope:.3e} N/m, standard error {error:.1e} N/m"
     )]
     NoSlope { slope: f64, error: f64 },
+}
+
+impl KcError {
+    /// What a curve with gradients has instead.
+    pub fn expected(&self) -> String {
+        match self {
+            KcError::Lengths { .. } => "columns of one length".to_string(),
+            KcError::TooFew { expected, .. } => format!("at least {expected}, from a whole cycle"),
+            KcError::OneWay => "travel in both directions".to_string(),
+            KcError::NoSlope { .. } => {
+                "displacement and force that increase together, both positive in compression or forwards".to_string()
+            }
+        }
+    }
 }
 
 /// Share of the travel, in its middle, that counts as linear.

@@ -10,12 +10,12 @@
 mod normal;
 // The step that minimises the quadratic model within the trust region.
 mod region;
-// What bounds do to a step.
+// Reflection of a step at the bounds.
 mod reflect;
 
-// What the Jacobian at the optimum says about the parameters.
+// Covariance and rank from the Jacobian at the optimum.
 pub mod information;
-// What the cost says about one of them, all others refitted.
+// Profile of the cost over one parameter, with all others refitted.
 pub mod profile;
 
 use nalgebra::{DMatrix, DVector};

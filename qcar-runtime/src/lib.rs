@@ -10,7 +10,7 @@ pub use qcar_model as model;
 pub mod mean;
 // Dense matrices of a model at rest.
 pub mod matrices;
-// Loops for every instruction set.
+// Loops compiled for each instruction set.
 mod vectors;
 // Support for generated models.
 pub mod generated;
@@ -18,17 +18,17 @@ pub mod generated;
 pub mod error;
 // Suggestions for misspelt names.
 pub mod spelling;
-// Random numbers, the same everywhere.
+// Random numbers that are the same on every machine.
 pub mod random;
-// Files that are read no further than a limit.
+// Reading of files up to a limit of size.
 pub mod bounded;
-// How far long work is.
+// Progress reports of long work.
 pub mod progress;
-// The measurement as it lies on disk.
+// The measured campaign on disk.
 pub mod campaign;
 // Which part of a model is the wheel, its road and its body.
 pub mod roles;
-// From time histories to transmissibilities.
+// Fourier transforms of time histories.
 pub mod spectrum;
 // Sweeps to transmissibilities, with their uncertainty.
 pub mod transmissibility;
@@ -46,17 +46,17 @@ pub mod road;
 pub mod tyre;
 // Time integration.
 pub mod solver;
-// The whole model over a cleat, and replays of the rig.
+// Rides over roads, and replays of records.
 pub mod simulate;
 // Peak and after-shake errors, comfort metrics.
 pub mod compare;
 // Metrics of thousands of parameter sets over rides.
 pub mod ensemble;
-// Numbers that say how an axle feels, and their derivatives.
+// Metrics of comfort, load and travel, with their derivatives.
 pub mod metric;
-// How these depend on the parameters.
+// Sensitivity of metrics to parameters.
 pub mod sensitivity;
-// Designs for which these meet targets.
+// Designs whose metrics meet targets.
 pub mod target;
 // Gradients of K&C curves.
 pub mod kc;

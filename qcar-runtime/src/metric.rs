@@ -3,17 +3,17 @@
 //! A [`Metric`] is spelled the same wherever it is asked for: `body_x.peak`, `wheel_z.vdv`, `tyre.dynamic_load`,
 //! `suspension.travel`, `pad_to_body.peak`, `mode.1.damping`. A [`Ground`] measures them of a model.
 
-// A model that tells of the travel of its suspension.
+// A model with the suspension's travel as an additional output.
 mod watched;
-// Which there are.
+// The list of metrics.
 mod name;
-// What one says of a record.
+// The metrics of a time history.
 mod record;
 // Vibrations and their derivatives.
 mod vibration;
-// What is driven over.
+// Roads and the speeds at which they are driven.
 mod course;
-// All metrics of a model.
+// All metrics of a model over all roads.
 mod ground;
 
 pub use course::{Course, SEED};

@@ -1,14 +1,14 @@
 //! The model seen as the measurement sees it: ratios of two signals over frequency, with their parameter Jacobian.
 
-// Every parameter has a value, and ties are followed.
+// Values of all parameters, including those tied to others.
 pub mod parameters;
-// Where a measured signal is found among the rows of a response.
+// The row of a response that holds a measured signal.
 pub mod signal;
 // The response of a nonlinear model about an operating point.
 mod linearized;
 // The periodic response of a nonlinear model to a sine.
 pub mod periodic;
-// Ratios as complex numbers, for people and for other programs.
+// Ratios as complex numbers.
 pub mod ratio;
 // Ratios as logarithms, for the fit.
 pub mod logarithm;

@@ -4,9 +4,9 @@
 mod local;
 // Shares of the variance over a range.
 mod sobol;
-// What is not known of parameters, and of metrics for it,
+// Intervals of uncertain parameters, and of the metrics that follow.
 mod interval;
-// and what it may turn out as.
+// Distributions of metrics under uncertain parameters.
 mod chance;
 
 pub use chance::Chance;

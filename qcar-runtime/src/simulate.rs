@@ -1,55 +1,50 @@
 //! The complete model of thesis section 3.3 in the time domain, and replays of what a rig has done.
 //!
-//! [`ride`] drives a model whose tyre rolls over a road at constant speed (figure 3.2); [`replay`] drives it by recorded
+//! [`ride`] drives a model whose tyre rolls over a road at constant speed (figure 3.2); [`Replay`] drives it by recorded
 //! inputs. Positions of a model are displacements from the design position, in which the car stands at rest: every link
 //! of the suspension carries its static preload there, and its law says what it gives beyond it, as K&C curves do. So
 //! gravity and preloads cancel out, and what moves the car is the force of the tyre less its static load.
 
 mod failure;
-// What both kinds of simulation are held to.
+// Accuracy of a simulation.
 mod settings;
-// Signals between the samples of a smooth motion.
+// Interpolation between the samples of a smooth motion.
 mod gap;
-// Signals sampled without aliases.
+// Sampling through an anti-alias filter.
 mod sampling;
-// Where a model comes to rest.
+// The static equilibrium of a model.
 mod equilibrium;
-// A model on its tyre.
+// A model with its tyre and static load.
 mod car;
-// What moves it while the tyre rolls over a road.
+// The equations of motion while the tyre rolls over a road.
 mod rolling;
-// What is faster for a linear axle.
+// Faster integration of linear axles.
 mod shortcut;
-// What is recorded meanwhile.
+// The signals recorded during a ride.
 mod recorder;
 // Rides over a road.
 mod ride;
-// Several smooth motions in step,
+// Integration of several smooth motions with common steps.
 mod formation;
-// and rides that go on so.
+// Several rides integrated together.
 mod abreast;
-// How they change with the parameters,
+// Derivatives of rides by parameters.
 mod tangent;
-// and how those of linear axles do, faster.
+// The same for linear axles, faster.
 mod variation;
-// Those that a campaign has measured.
+// The cleat runs of a campaign.
 mod cleat;
-// Those of the thesis.
+// The cleat runs of the thesis.
 mod standard;
-// A recorded signal between its samples.
-mod wave;
-// What a rig has done to a model.
-mod recorded;
-// A model to which that is done.
-mod replay;
+// A model driven by records.
+pub mod replay;
 
 pub use abreast::{Ridden, rides_abreast};
 pub use car::{Car, Variant};
 pub use cleat::{Cleat, tyre, tyre_of};
 pub use failure::SimulateError;
-pub use recorded::{Between, Record, Recorded};
 pub use recorder::Kept;
-pub use replay::{Replay, replay};
+pub use replay::{Between, Reading, Recorded, Replay, replay};
 pub use ride::{Drive, Ride, end_of_ride, ride, rides};
 pub use sampling::AntiAlias;
 pub use settings::{Method, Settings};

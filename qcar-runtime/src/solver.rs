@@ -8,21 +8,21 @@
 //! Nothing is allocated after an integrator has been built.
 
 mod step;
-// Where an event lies on a step.
+// The time of an event within a step.
 mod events;
-// How long the next step may be.
+// Step-size control.
 mod control;
 mod fastest;
-// The two methods.
+// Explicit Runge-Kutta methods, adaptive and fixed.
 mod dormand_prince;
 pub(crate) mod rk4;
-// For what is linear but for its forces: exponentials of matrices,
+// Exponentials of matrices.
 mod matrix;
-// polynomials through past forces,
+// Polynomials through past forces.
 mod polynomial;
-// and steps.
+// Exponential integrator: linear parts are integrated exactly.
 mod exponential;
-// Many of them at once, under forces that are known.
+// Many linear systems at once, under known forces.
 mod hold;
 
 pub use dormand_prince::{DormandPrince, Settings};

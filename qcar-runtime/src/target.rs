@@ -1,19 +1,19 @@
 //! Design for targets: the design of least cost that meets all targets, the front between metrics, and the box of
 //! parameter intervals in which all targets hold.
 
-// What is wanted, and what may move.
+// The targets, and the parameters that may change.
 mod task;
-// An axle as such a task sees it.
+// The metrics of an axle with their derivatives.
 mod axle;
-// A quadratic programme of which only what is not linear is separable.
+// A quadratic programme with separable nonlinear terms.
 mod quadratic;
 // The design of least cost.
 mod search;
-// Designs of which none is better in everything.
+// The Pareto front between metrics.
 mod front;
-// The largest box of good designs,
+// The largest box of designs that meet all targets.
 mod space;
-// and what lies around it.
+// Slices through the design space around that box.
 mod cut;
 
 pub use axle::{Axle, Move};

@@ -14,15 +14,15 @@ use crate::campaign::{Axis, Channel, History, Quantity, Recording, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::spectrum::{Segments, Trend, Window};
 
-// What all estimators return at a frequency.
+// An estimate at one frequency.
 mod line;
-// The whole record, by local rational functions.
+// Estimates from the whole record by local rational functions.
 mod local;
-// The multiples of a sweep's frequency, apart from each other.
+// Estimates of each harmonic of a sweep.
 pub mod harmonics;
-// Segment averages.
+// Averages over segments.
 mod averaged;
-// At which frequencies.
+// The frequencies of the estimates.
 mod band;
 
 pub use band::logarithmic;

@@ -1,4 +1,4 @@
-//! Contact geometry of a rolling tyre: what the road does to the circle of an unloaded tyre.
+//! Contact geometry of a rolling tyre: the intersection of the road with the circle of the unloaded tyre.
 //!
 //! The geometry answers with an equivalent deflection (that on a flat road with the same contact), with its rate split
 //! into growth and shrinkage, and with the directions in which each part pushes. How strongly it pushes is the law of
@@ -14,11 +14,11 @@
 //! As a resisting force of the stretch: `a s - b s² + c v` for `s < 0`.
 
 mod series;
-// What they are of.
+// The unloaded circle of the tyre.
 mod circle;
-// Where the road is inside the circle.
+// Intervals in which the road is inside the circle.
 mod patches;
-// What the circle sweeps as it moves.
+// The area that the circle sweeps as it moves.
 mod sweep;
 // The three geometries.
 mod area;
@@ -26,7 +26,7 @@ mod point;
 mod radial;
 // From geometry to force.
 mod force;
-// Several wheels at once.
+// Several wheels together.
 mod abreast;
 
 pub(crate) use abreast::{Pieces, Wheels};
@@ -44,7 +44,7 @@ pub struct Tyre {
     geometry: Geometry,
     rates: Rates,
     static_deflection: f64,
-    /// What turns the change of a contact at the static deflection into a rate.
+    /// Factor from the change of a contact at the static deflection to a rate.
     static_rate: f64,
 }
 
@@ -59,7 +59,7 @@ pub enum Geometry {
     Radial,
 }
 
-/// At which deflection the change of the contact is turned into the rate of the equivalent deflection.
+/// The deflection at which a change of the contact is converted to the rate of the equivalent deflection.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rates {
     /// At the static deflection, whatever the contact: the ratio is a constant (thesis 3.3.2.2).
@@ -149,7 +149,7 @@ impl Tyre {
         self.geometry
     }
 
-    /// The same tyre feeling the road in another way.
+    /// The same tyre with another contact geometry.
     pub fn with_geometry(self, geometry: Geometry) -> Self {
         let tyre = Self { geometry, ..self };
         Self {
@@ -163,7 +163,7 @@ impl Tyre {
         2.0 * (self.static_deflection * (2.0 * self.radius - self.static_deflection)).sqrt()
     }
 
-    /// The contact of a wheel with a road; none where the circle is clear of the ground.
+    /// The contact of a wheel with a road; `None` if the circle is clear of the ground.
     ///
     /// Allocates nothing; takes a time that hardly depends on how finely the road is sampled
     /// (except [`Geometry::Radial`], which evaluates each piece of the road in the circle).
@@ -199,7 +199,7 @@ impl Tyre {
         self.radius * segment_deflection(area / (self.radius * self.radius))
     }
 
-    /// What turns the change of a contact into the rate of the equivalent deflection, which is `deflection` now.
+    /// Factor from the change of a contact to the rate of the equivalent deflection, at this `deflection`.
     #[inline(always)]
     fn rate(&self, deflection: f64) -> f64 {
         match self.rates {

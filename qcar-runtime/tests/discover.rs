@@ -1,10 +1,10 @@
 //! Evidence made from closed forms, with sensors that are wrong by known amounts, against refit and gap.
 
 use nalgebra::Complex;
-use qcar_runtime::campaign::{Axis, Quantity, Role};
+use qcar_runtime::campaign::{Axis, Role};
 use qcar_runtime::discover::locate::{Kappa, KappaRun, Shape, shape};
 use qcar_runtime::discover::noise::{Form, Nuisance};
-use qcar_runtime::discover::observe::{Evidence, Kind, Run, Series, Stimulus, predict};
+use qcar_runtime::discover::observe::{Evidence, Kind, Series, Stimulus, predict};
 use qcar_runtime::discover::posterior::refit_with;
 use qcar_runtime::discover::{Free, Gap, Place, Refit, Sweeps, kappa_map, refit};
 use qcar_runtime::model::{Clock, Model};
@@ -12,7 +12,9 @@ use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 use qcar_runtime::transmissibility::{Point, logarithmic};
 
+use super::support::random::Random;
 use super::support::strut::{Parts, Strut};
+use super::support::swept::{self, point};
 
 const PLAIN: Parts = Parts {
     powertrain: false,
@@ -20,26 +22,6 @@ const PLAIN: Parts = Parts {
 };
 const TRUTH: [f64; 9] = [400.0, 42.0, 6.0, 25e3, 1500.0, 600e3, 900.0, 240e3, 160.0];
 const NOISE: f64 = 0.004;
-
-fn point(location: &str) -> Point {
-    Point::new(location, Axis::Z, Quantity::Acceleration)
-}
-
-/// Standard normal numbers: twelve uniform ones by a linear congruence.
-struct Random(u64);
-
-impl Random {
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self
-                .0
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// Sweeps at two levels, one of them held out, of an axle whose sensors see `gain(location, f)` of its motions.
 fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Evidence {
@@ -49,21 +31,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
     let mut random = Random(7);
     let (mut runs, mut series) = (Vec::new(), Vec::new());
     for (run, (level, role)) in [(0.025, Role::Fit), (0.1, Role::HeldOut)].into_iter().enumerate() {
-        runs.push(Run {
-            name: format!("sweep_{run}"),
-            role,
-            level,
-            stimulus: Stimulus::Sweep {
-                reference: point("pad"),
-                signal: Vec::new(),
-                swept: None,
-                rate: 1000.0,
-                amplitude: frequency.iter().map(|f| level * std::f64::consts::TAU * f).collect(),
-                frequency: frequency.clone(),
-                time: vec![0.0; frequency.len()],
-                band: (0.5, 30.0),
-            },
-        });
+        runs.push(swept::run(run, level, role, &frequency));
         for location in ["wheel", "body"] {
             let h = ratio(
                 model,
@@ -95,13 +63,7 @@ fn evidence(model: &Strut, p: &[f64], gain: impl Fn(&str, f64) -> f64) -> Eviden
             });
         }
     }
-    Evidence {
-        runs,
-        series,
-        two_sided: false,
-        notices: Vec::new(),
-        numbers: Default::default(),
-    }
+    swept::evidence(runs, series)
 }
 
 fn resolve(model: &Strut, p: &[f64]) -> Values {

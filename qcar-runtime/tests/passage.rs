@@ -17,6 +17,7 @@ use qcar_runtime::road::Road;
 use qcar_runtime::simulate::{Drive, Settings, Variant, ride};
 
 use super::roller::{K_STOP, LOAD, OUTPUTS, RADIUS, Roller, STATIC_DEFLECTION, car, parameters};
+use super::support::random::Random;
 
 const RATE: f64 = 1000.0;
 const NOISE: f64 = 0.05;
@@ -30,22 +31,6 @@ const RUNS: [(&str, &str, f64, f64); 3] = [
 ];
 /// Parameters of the suspension that a fit looks for.
 const FREE: [&str; 6] = ["k_tire", "c_tire", "k_z", "c_z", "k_x", "c_x"];
-
-/// Standard normal numbers: twelve uniform ones by a linear congruence.
-struct Random(u64);
-
-impl Random {
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self
-                .0
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
-            (self.0 >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
-}
 
 /// What is wrong with the recorder: its clock is late by so many samples, the wheel's sensor reads so much too high, and
 /// its sensors of both axes are late by so many samples more.

@@ -1,8 +1,8 @@
 //! Harmonic balance against closed forms, time integration and differences.
 
-use qcar_runtime::model::{Model, Quantity, SignalKind};
+use qcar_runtime::model::Model;
 use qcar_runtime::response::periodic::{Drive, Periodic};
-use qcar_runtime::simulate::{Between, Record, Recorded, Settings, replay};
+use qcar_runtime::simulate::{Between, Reading, Recorded, replay};
 use std::f64::consts::TAU;
 
 use super::support::strut::{Parts, Strut};
@@ -96,14 +96,21 @@ fn a_replayed_sine_settles_to_the_cycle_of_harmonic_balance() {
     let pad: Vec<f64> = (0..periods * per_period)
         .map(|k| drive.amplitude * angle(k).cos())
         .collect();
-    let record = Record {
+    let recorded = Recorded {
         excitation: 0,
-        kind: SignalKind::Motion(Quantity::Acceleration),
+        power: 2,
         samples: &pad,
     };
-    let recorded = Recorded::new(model.about(), &[record], rate, Between::BandLimited).unwrap();
-    let replayed = replay(&model, &P, &recorded, &Settings::default()).unwrap();
-    for (found, samples) in (0..2).map(|output| cycle.output(output)).zip(&replayed.outputs) {
+    let how = Between {
+        rate,
+        band_limited: true,
+        band: (0.0, rate),
+        periodic: false,
+        samples: pad.len(),
+    };
+    let outputs = (0..2).map(Reading::Output).collect();
+    let replayed = replay(&model, &P, vec![recorded], how, outputs).unwrap();
+    for (found, samples) in (0..2).map(|output| cycle.output(output)).zip(&replayed) {
         let last = &samples[samples.len() - per_period as usize..];
         for (order, expected) in found.iter().enumerate().skip(1).take(3) {
             let sum = |part: fn(f64) -> f64| {

@@ -1,20 +1,22 @@
 //! What a search answers on evidence in closed form, with a catalogue of masses on mounts that are told apart by their ranges.
 
 use nalgebra::Complex;
-use qcar_runtime::campaign::{Axis, Quantity, Role};
+use qcar_runtime::campaign::{Axis, Role};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::answer::{Discovery, Verdict};
 use qcar_runtime::discover::candidate::{Added, Candidate, Change, ParameterRole, Workshop};
 use qcar_runtime::discover::noise::Form;
-use qcar_runtime::discover::observe::{Kind, Run, Series, Stimulus, signal_of};
+use qcar_runtime::discover::observe::{Kind, Series, signal_of};
 use qcar_runtime::discover::posterior::{Given, Setting};
 use qcar_runtime::discover::select::discover;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
-use qcar_runtime::transmissibility::{Point, logarithmic};
+use qcar_runtime::transmissibility::logarithmic;
 
+use crate::support::random::Random;
 use crate::support::strut::{Parts, Strut};
+use crate::support::swept::{self, point};
 
 const STRENGTH: ParameterRole = ParameterRole::Strength { vanishes_at: 0.0 };
 
@@ -136,21 +138,6 @@ fn delayed() -> Candidate {
     }
 }
 
-fn point(location: &str) -> Point {
-    Point::new(location, Axis::Z, Quantity::Acceleration)
-}
-
-/// Standard normal numbers: twelve uniform ones by a linear congruence.
-fn normal(state: &mut u64) -> f64 {
-    let mut uniform = || {
-        *state = state
-            .wrapping_mul(6364136223846793005)
-            .wrapping_add(1442695040888963407);
-        (*state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-}
-
 /// Sweeps of the axle with a mass on its body, whose body's sensor is late (s), at these levels.
 fn evidence(late: f64, levels: &[(f64, Role)]) -> Evidence {
     let model = Strut::new(WITH_MASS);
@@ -158,30 +145,16 @@ fn evidence(late: f64, levels: &[(f64, Role)]) -> Evidence {
     let named = about.parameters.iter().map(|own| own.name.to_string());
     let values = Values::resolve(about, &named.zip(TRUTH).collect(), &Default::default()).expect("all are given");
     let frequency = logarithmic(0.6, 28.0, 60);
-    let mut state = 7;
+    let mut random = Random(7);
     let (mut runs, mut series) = (Vec::new(), Vec::new());
     for (run, (level, role)) in levels.iter().copied().enumerate() {
-        runs.push(Run {
-            name: format!("sweep_{run}"),
-            role,
-            level,
-            stimulus: Stimulus::Sweep {
-                reference: point("pad"),
-                signal: Vec::new(),
-                swept: None,
-                rate: 1000.0,
-                amplitude: frequency.iter().map(|f| level * std::f64::consts::TAU * f).collect(),
-                frequency: frequency.clone(),
-                time: vec![0.0; frequency.len()],
-                band: (0.5, 30.0),
-            },
-        });
+        runs.push(swept::run(run, level, role, &frequency));
         for location in ["wheel", "body"] {
             let [numerator, denominator] = [location, "pad"].map(|own| signal_of(about, &point(own)));
             let exact = ratio(&model, &values, 0, &numerator, &denominator, &frequency).expect("it has the sensors");
             let delay = if location == "body" { late } else { 0.0 };
             let value = exact.value.iter().zip(&frequency).map(|(h, &f)| {
-                let noise = Complex::new(normal(&mut state), normal(&mut state)) * NOISE / std::f64::consts::SQRT_2;
+                let noise = Complex::new(random.normal(), random.normal()) * NOISE / std::f64::consts::SQRT_2;
                 h * Complex::from_polar(1.0, -std::f64::consts::TAU * f * delay) * (1.0 + noise)
             });
             let value: Vec<Complex<f64>> = value.collect();
@@ -197,13 +170,7 @@ fn evidence(late: f64, levels: &[(f64, Role)]) -> Evidence {
             });
         }
     }
-    Evidence {
-        runs,
-        series,
-        two_sided: false,
-        notices: Vec::new(),
-        numbers: Default::default(),
-    }
+    swept::evidence(runs, series)
 }
 
 const LEVELS: [(f64, Role); 3] = [(0.025, Role::Fit), (0.05, Role::Fit), (0.1, Role::HeldOut)];

@@ -5,9 +5,9 @@
 
 // The text above the data.
 mod header;
-// What the columns of the data are.
+// The meaning of the data columns.
 mod columns;
-// The data themselves.
+// The grid of heights.
 mod grid;
 // Distance, height and banking of the reference line.
 mod line;

@@ -1,4 +1,4 @@
-//! Which channel of a recording a name or a pattern means.
+//! Channels of a recording by name or pattern.
 
 use std::collections::BTreeSet;
 

@@ -6,41 +6,41 @@
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
 pub mod error;
-// Values as narrow as they are stored.
+// Samples in the type in which they are stored.
 pub mod samples;
-// What all formats are read into.
+// A channel, whatever the format of its file.
 pub mod signal;
-// Which of its channels a name means.
+// Channels by name or pattern.
 pub mod find;
-// Their samples at one rate.
+// Resampling to one rate.
 pub mod resample;
-// What is wrong with them.
+// Flaws of samples.
 pub mod health;
 // The bytes of a file, in memory or on the disk.
 pub mod content;
-// Checked access to them.
+// Checked access to the bytes of a file.
 mod bytes;
-// Which texts are units.
+// Spellings of units.
 mod units;
-// What they are in SI.
+// Conversion of units to SI.
 pub mod si;
-// Names, units and columns of a table, whatever it is stored in.
+// Names, units and columns of a table in any format.
 mod table;
-// One module a format.
+// Text tables.
 mod csv;
-// Of ASAM.
+// ASAM MDF.
 pub mod mdf;
-// Of SDRC.
+// UFF dataset 58.
 mod uff;
-// Of MTS.
+// MTS RPC III.
 mod rpc;
-// Of LabVIEW.
+// LabVIEW TDMS.
 mod tdms;
-// Of MATLAB.
+// MATLAB MAT.
 pub mod mat;
-// Of Excel.
+// Excel workbooks.
 mod excel;
-// Of ASAM, for roads.
+// OpenCRG roads.
 mod crg;
-// The door: which format it is, and its channels.
+// Detection of the format, and reading of the channels.
 pub mod read;

@@ -1,14 +1,14 @@
 //! MAT-files of MATLAB: versions 5 to 7, and 7.3, which is HDF5.
 
-// What both kinds of file hold.
+// Values that all versions share.
 mod value;
 // Versions 5 to 7.
 mod v5;
 // Version 7.3.
 mod hdf5;
-// Version 5, written.
+// Writing of version 5.
 pub mod write;
-// Channels, from the shapes in which programs store them.
+// From variables to channels, for the layouts that programs write.
 mod layout;
 
 use crate::bytes::{Bytes, field};

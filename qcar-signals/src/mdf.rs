@@ -3,19 +3,19 @@
 //! Source: ASAM MDF 4.1 and 3.3 as described in public; the layout of each block stands where it is read.
 
 mod conversion;
-// Where values lie in a record.
+// The position of a value in a record.
 mod field;
 // The blocks of version 4.
 mod block;
-// Blocks that are packed.
+// Compressed blocks.
 mod packed;
-// Records in pieces.
+// Records, read in pieces.
 mod data;
-// Groups and channels.
+// Groups and channels of version 4.
 mod v4;
 // Version 3.
 mod v3;
-// Version 4, written.
+// Writing of version 4.
 pub mod write;
 
 use std::collections::HashSet;

@@ -1,4 +1,4 @@
-//! What a unit is in SI: its size, and its powers of kilogram, metre and second.
+//! Units in SI: the factor, and the powers of kilogram, metre and second.
 
 use crate::units::{bare, is_unit};
 

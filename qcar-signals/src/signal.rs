@@ -1,4 +1,4 @@
-//! What all formats are read into: channels, each with a time base of its own.
+//! Channels, each with its own time base: the result of reading any format.
 
 use std::sync::Arc;
 

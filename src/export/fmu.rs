@@ -4,15 +4,15 @@
 
 // Text and attributes of XML.
 mod xml;
-// A tyre that rolls, as the sources read it.
+// The rolling tyre as C data.
 mod tyre;
-// What the variables are.
+// The variables of the unit.
 mod variables;
-// Which of them the results depend on.
+// The variables on which each result depends.
 mod dependencies;
 // modelDescription.xml.
 mod description;
-// The library, where there is a C compiler.
+// The shared library, compiled where there is a C compiler.
 mod library;
 
 use std::io::{Cursor, Write};

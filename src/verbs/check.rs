@@ -13,7 +13,7 @@ use crate::completion;
 use crate::failure::Failure;
 use crate::terminal::prose;
 
-// Of measurements.
+// Checks of a campaign.
 mod campaign;
 
 /// Check models for mistakes and suggest remedies, or campaigns for flaws of their samples

@@ -15,27 +15,27 @@ use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::verbs::frf::Frequencies;
 
-// What A and B are.
+// The two things that are compared.
 mod subject;
-// A model with values, and what was measured of it.
+// A model with its values and measurements.
 mod sides;
-// The values that differ.
+// Parameters whose values differ.
 mod moved;
-// Natural vibrations.
+// Modes.
 mod modes;
 // Transmissibilities.
 mod ratios;
-// Records of a passage, aligned.
+// Aligned records of cleat runs.
 mod records;
 // Cleat runs.
 mod passages;
 // Gradients of K&C curves.
 mod gradients;
-// All of it.
+// The whole comparison.
 mod gather;
-// For the page, and without the curves for programs.
+// The comparison for the report, and without curves for JSON.
 mod contents;
-// For people and spreadsheets.
+// The comparison as text and CSV.
 mod render;
 
 use subject::Subject;

@@ -28,21 +28,21 @@ use crate::terminal::prose;
 use crate::verbs::{Format, kc};
 use crate::workshop::{Bench, given};
 
-// Where something would explain the gap.
+// The places where an added stiffness would explain the residual.
 pub(crate) mod places;
-// The law that was learned where no effect explains the gap.
+// A learned law as an effect file.
 pub(crate) mod law;
-// One of the findings in words.
+// The verdict in words.
 mod finding;
-// The nuisances that were fitted, as text and JSON.
+// Fitted nuisance parameters as text and JSON.
 mod nuisances;
-// What was learned, as text and JSON.
+// A learned law as text and JSON.
 mod learned;
 // The answer as text and JSON.
 pub(crate) mod render;
-// The gap as a figure.
+// The residuals as a figure.
 mod figure;
-// What a search leaves that is stopped.
+// Results of a search that was stopped.
 mod unfinished;
 
 /// Find the effect that a campaign shows and its model lacks

@@ -16,23 +16,23 @@ use crate::parameters::{self, Beside};
 use crate::table::number;
 use crate::verbs::{ModelArguments, each_once, frf};
 
-// What varies.
+// The parameters that vary.
 mod vary;
-// Over which cleats.
+// The cleats.
 mod over;
-// On which of several machines.
+// The part of the ensemble that this machine computes.
 mod part;
-// Rows that were written before a run was stopped,
+// Rows of an earlier run that was stopped.
 mod kept;
-// as text
+// Rows as CSV.
 mod csv;
-// or in groups,
+// Rows as Parquet, in row groups.
 mod grouped;
-// and where all of them go.
+// The output file in either format.
 mod sink;
-// What they are of.
+// The description of an ensemble, by which a run is resumed.
 mod ledger;
-// All rows, one block after another.
+// All rows, block after block.
 mod filled;
 
 use ledger::Choice;

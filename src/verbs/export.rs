@@ -18,7 +18,7 @@ use crate::parameters;
 use crate::roads;
 use crate::state_space::{StateSpace, state_space};
 
-// The tyre and the profile of a unit that rolls.
+// The tyre and road of an FMU whose tyre rolls.
 mod on_tyre;
 
 /// Write a model with its values for other tools: C99, FMU, MATLAB, Modelica, JavaScript, tables

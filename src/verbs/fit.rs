@@ -30,9 +30,9 @@ use crate::progress::while_counting;
 use crate::terminal::prose;
 use crate::verbs::{Format, each_once};
 
-// What K&C curves say beside it.
+// Parameters that only a K&C curve determines.
 mod clamped;
-// What is odd, but no error.
+// Notes and warnings about a fit.
 mod notices;
 // The result as text and JSON.
 pub(crate) mod render;
@@ -40,7 +40,7 @@ pub(crate) mod render;
 pub(crate) mod files;
 // The result as a workbook.
 pub(crate) mod workbook;
-// All of that of a nonlinear model.
+// The fit of a nonlinear model.
 pub(crate) mod nonlinear;
 
 /// Fit a model to the sweeps and time histories of a campaign

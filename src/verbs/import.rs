@@ -12,13 +12,13 @@ use crate::terminal::prose;
 use clap::Args;
 use clap_complete::engine::ArgValueCompleter;
 
-// Names taken apart.
+// Parts of a channel's name.
 mod tokens;
 // Which sensor a channel is, by its name and unit.
 mod guess;
 // The sensors of a campaign.
 mod sensors;
-// What a sweep does, from its pad.
+// Properties of a sweep, from the motion of its pad.
 mod swept;
 // Which kind of run a file is.
 mod kind;

@@ -14,9 +14,9 @@ use crate::verbs::Format;
 
 // Units that samples contradict.
 pub(super) mod doubt;
-// What is told of a channel when its samples are gone.
+// Summary of a channel.
 mod course;
-// A file gone through, channel by channel.
+// A file read channel by channel.
 mod contents;
 
 pub(super) use contents::Contents;

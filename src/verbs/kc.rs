@@ -301,8 +301,8 @@ fn unusable(campaign: &Campaign, run: &Run, error: &KcError) -> InputError {
         file,
         Place::File,
         error.to_string(),
-        "a curve with gradients",
-        "record it again, or leave the run out",
+        error.expected(),
+        "correct the columns, record it again, or leave the run out",
     )
     .into()
 }

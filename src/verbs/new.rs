@@ -8,7 +8,7 @@ use crate::failure::{Failure, flag};
 
 // A model file and its parameters.
 mod axle;
-// A folder of measurements to come.
+// An empty campaign folder.
 pub(super) mod campaign;
 // The workbook of a vehicle.
 mod template;

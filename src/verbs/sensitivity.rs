@@ -20,15 +20,15 @@ use crate::table::Table;
 use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
-// The axle.
+// The axle with its values and roads.
 pub(crate) mod subject;
-// Names of metrics and parameters.
+// Metrics and parameters by name.
 pub(crate) mod chosen;
-// What is not known of the parameters.
+// Uncertainty of the parameters.
 pub(crate) mod doubts;
-// What they say.
+// All sensitivities.
 pub(crate) mod gather;
-// As text and CSV.
+// The result as text and CSV.
 pub(crate) mod render;
 // as figures,
 mod figure;

@@ -21,15 +21,15 @@ use crate::roads;
 use crate::terminal::prose;
 use crate::verbs::TableFormat;
 
-// Simulated beside measured.
+// Simulated and measured cleat runs compared.
 pub(crate) mod compared;
 // Sweeps and time histories, replayed.
 mod records;
-// The same drawn.
+// Figures of sweeps and time histories.
 mod figure;
 // The result as text, JSON and CSV.
 pub(crate) mod render;
-// Power spectral densities of what roads do.
+// Power spectral densities of rides.
 mod spectra;
 // Rides over roads without a measured run.
 mod ground;

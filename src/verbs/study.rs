@@ -17,29 +17,29 @@ use crate::verbs::Format;
 mod gather;
 // The masses and links of a model.
 pub(crate) mod axle;
-// Cycles of the K&C rig.
+// K&C cycles.
 mod loops;
-// What a model shows in sweeps.
+// The predicted ratios of the sweeps.
 pub(crate) mod swept;
 // Measured and modelled ratios.
 pub(crate) mod rig;
-// Natural vibrations.
+// Mode shapes.
 pub(crate) mod shapes;
-// Cleat runs, their errors and variants.
+// Cleat runs with their errors and variants.
 mod track;
 // Records over time.
 mod records;
-// Where the gap is, and what explains it.
+// The residuals and their explanation.
 mod gap;
-// The answer in a few numbers.
+// The result in a few numbers.
 mod summary;
-// What was used.
+// Inputs and versions of the study.
 mod record;
 // The numbers as a workbook.
 mod workbook;
-// The model as a program of the page.
+// The model as JavaScript for the report.
 mod program;
-// All of it for the page, and without the curves for programs.
+// The study for the report, and without curves for JSON.
 mod contents;
 
 /// Fit, simulate and discover at once, and write a report

@@ -18,19 +18,19 @@ use crate::terminal::prose;
 use crate::verbs::Format;
 use crate::verbs::sensitivity::subject::{Beneath, Subject};
 
-// What is wanted.
+// The targets file.
 mod file;
-// As a task.
+// The targets as an optimisation task.
 mod plan;
-// How sure that is.
+// The probability that targets hold.
 mod sure;
-// What it gives.
+// The result.
 mod gather;
-// As text and as values for other verbs.
+// The result as text and CSV.
 mod render;
-// As a workbook.
+// The result as a workbook.
 mod workbook;
-// As a page.
+// The result for the report.
 mod contents;
 
 use contents::Contents;

@@ -213,8 +213,11 @@ fn a_curve_without_slope_or_in_another_unit_is_refused() {
         head + &lines.map(scale).collect::<String>() + "\n"
     };
     let cases = [
-        (scaled(1.0, 0.0), "the force does not increase with the displacement"),
-        (scaled(1.0, -1.0), "the force does not increase with the displacement"),
+        (scaled(1.0, 0.0), "a force that does not increase with the displacement"),
+        (
+            scaled(1.0, -1.0),
+            "a force that does not increase with the displacement",
+        ),
         (scaled(1e3, 1.0), "found a stiffness of 31"),
         (scaled(1e-5, 1.0), "write displacements in m"),
     ];

@@ -6,11 +6,11 @@
 
 // Texts as comments and literals.
 mod text;
-// What functions stand on.
+// Definitions that all functions use.
 mod support;
-// One function.
+// A program as a C function.
 mod function;
-// Sizes, places and declarations.
+// Sizes, indices and declarations.
 mod header;
 // Names, units and sparsity as data.
 mod data;

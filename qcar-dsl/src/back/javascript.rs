@@ -2,7 +2,7 @@
 //!
 //! Every statement is one operation of a program, in its order. A function takes arrays or numbers and gives a new array.
 
-// One function.
+// A program as a JavaScript function.
 mod function;
 
 use crate::back::straight::Straight;

@@ -1,6 +1,6 @@
 //! The matrices of a model as a function of MATLAB, which GNU Octave reads too.
 
-// One statement an operation.
+// Operations as MATLAB statements.
 mod statements;
 
 use std::borrow::Cow;

@@ -1,20 +1,20 @@
 //! Equations and programs as other people and programs read them.
 
-// How an expression is written.
+// Notation of expressions.
 pub mod notation;
-// Equations as an engineer writes them.
+// Equations of motion in an engineer's notation.
 pub mod equations;
-// Programs as functions, in no language yet.
+// The functions of a model, whatever the language.
 pub mod straight;
-// Printed as Rust.
+// Rust.
 pub mod rust;
-// Printed as C.
+// C99.
 pub mod c;
-// The matrices as a function of MATLAB.
+// MATLAB.
 pub mod matlab;
-// Functions of JavaScript.
+// JavaScript.
 pub mod javascript;
-// A flat model of Modelica.
+// Modelica.
 pub mod modelica;
-// For people: equations, matrices, LaTeX, dot.
+// Output for people: equations, matrices, LaTeX, dot.
 pub mod show;

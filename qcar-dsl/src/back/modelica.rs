@@ -1,6 +1,6 @@
 //! A compiled model as a flat model of Modelica.
 
-// How it is spelled.
+// Identifiers and expressions of Modelica.
 mod spelling;
 
 use qcar_model::About;

@@ -10,11 +10,11 @@ mod about;
 mod names;
 // The parameters as a type.
 mod parameters;
-// A piece as a function.
+// A piece of a program as a Rust function.
 mod function;
 // Sizes and functions over typed vectors.
 mod typed;
-// The trait.
+// The implementation of the trait.
 mod seam;
 
 use crate::program::schedule::Compiled;

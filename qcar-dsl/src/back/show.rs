@@ -4,7 +4,7 @@
 mod dot;
 // Nonzeros row by row.
 mod matrices;
-// Both for a paper.
+// Equations and matrices for a paper.
 mod latex;
 
 use crate::back::equations::{Equation, Sheet};

@@ -10,14 +10,14 @@ use crate::front::syntax::File;
 use crate::model::{CoordinateKind, Model};
 use crate::source::{Source, Span};
 
-// Numbers to try a model with.
+// Parameter sets at which a model is tried.
 pub(crate) mod sample;
-// What parameters can make of an expression.
+// The range of an expression over the parameters' ranges.
 mod extremes;
-// Small dense matrices.
+// Ranks of small dense matrices.
 pub(crate) mod rank;
 pub(crate) mod solve;
-// Laws about a point.
+// Derivatives of laws at a point.
 pub(crate) mod slopes;
 mod stiffness;
 // The rules.
@@ -28,9 +28,9 @@ mod kinetic;
 mod nodes;
 mod passive;
 mod pushed;
-// The rule of passive links, for several that use each other.
+// Passivity of links whose laws use each other.
 mod coupled;
-// Text or tokens to a checked model.
+// From text or tokens to a checked model.
 mod text;
 
 use slopes::{Slopes, slopes};

@@ -1,26 +1,26 @@
 //! Graph to equations, matrices and responses. All of it is total: a checked model has them.
 
-// What is at which place of the vectors.
+// The order of states, inputs and outputs.
 pub mod vectors;
-// Sparse symmetric systems solved symbolically.
+// Symbolic elimination of sparse symmetric systems.
 pub mod elimination;
 // Sums with common factors taken out.
 pub mod combination;
-// The force of a link in its own terms.
+// The force of a link as an expression of stretch and rate.
 pub mod law;
-// Graph to equations.
+// From the model graph to equations of motion.
 pub mod motion;
-// Equations to matrices and their parameter Jacobians.
+// From equations to matrices and their parameter Jacobians.
 pub mod linear;
 // Complex expressions.
 pub mod complex;
-// What a link is at one frequency.
+// The dynamic stiffness of a link.
 pub mod stiffness;
 // Frequency response by sparse elimination.
 pub mod response;
-// Names for what stands at each place.
+// Names of entries, for people.
 pub mod describe;
-// What outputs can see.
+// Identifiability: parameters that the outputs cannot determine.
 pub mod visible;
-// A part of a model on its own.
+// A single link as a model of its own.
 pub mod alone;

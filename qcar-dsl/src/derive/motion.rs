@@ -6,11 +6,11 @@
 //! Massless nodes are no stiff penalty masses. The balance of a node that a damper holds is solved for its velocity,
 //! and its position is a state; the balance of a node that only springs hold is solved for its position.
 
-// What can roll.
+// Tyres that may roll.
 mod tyre;
-// Balances without mass.
+// Force balances of massless nodes.
 mod nodes;
-// Balances with mass.
+// Newton's equations of masses.
 mod newton;
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -6,13 +6,13 @@
 //! link's ends, times the stretch that the excitation causes. A large model with fewer parameters than outputs is solved for the
 //! derivative of all amplitudes by each parameter instead.
 
-// What force inputs push.
+// Loads by force inputs.
 mod load;
-// What a parameter changes.
+// Derivatives of the dynamic stiffness by a parameter.
 mod change;
-// What outputs make of amplitudes.
+// Outputs as linear functions of the amplitudes.
 mod functional;
-// What moves under which forces.
+// Amplitudes under unit loads.
 mod compliance;
 
 use std::collections::BTreeMap;

@@ -1,4 +1,4 @@
-//! Which symbol of the equations stands at which place of the vectors `x` and `u`, and in which unit, and that of `y`.
+//! The order of the vectors `x`, `u` and `y`: the symbol and unit of each entry.
 
 use crate::expr::{CoordinateId, Symbol};
 use crate::units::Unit;

@@ -1,11 +1,11 @@
 //! Identifiability: a parameter that changes no response, or only together with others, cannot be estimated
 //! from any measurement. Decided by the rank of the derivatives of all responses at pseudo-random points.
 
-// Values with their derivatives.
+// Values with their derivatives by parameters.
 mod seen;
-// Laws by their forces.
+// Identifiability of laws whose parameters need not change a slope.
 mod forces;
-// Outputs and channels by their responses.
+// Responses of a model, with their derivatives by the parameters.
 mod responses;
 
 use std::collections::BTreeSet;

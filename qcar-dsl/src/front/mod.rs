@@ -1,11 +1,11 @@
 //! Text to the graph of a model: read as a tree, its options taken, its elements expanded, its names resolved.
 
 pub mod syntax;
-// Comes after the tree that it builds.
+// From text to the syntax tree.
 pub mod parse;
-// The tree as canonical text.
+// From the syntax tree to canonical text.
 pub mod print;
-// Tree to graph: options taken, elements expanded, names resolved, units checked.
+// From the syntax tree to the model graph: options, elements, names and units resolved.
 pub mod resolve;
 // One member of a family as a file of its own.
 pub mod canonical;

@@ -4,37 +4,39 @@
 //! Everything that an effect says about the model is bound to the model as it was before: `l.damper` is the coefficient
 //! that stood there, and stays what it was when the term is replaced.
 
-// Trees with other names in them.
+// Syntax trees with names replaced.
 mod rewrite;
-// The model as a tree.
+// The syntax tree of the model that is patched.
 mod base;
-// What expressions are worth in it.
+// Values of expressions at the model's parameters.
 mod ask;
-// What all its parts do.
+// Outputs that show what every part of a model does.
 mod watch;
-// How far and how hard a place is moved.
+// Amplitudes of travel and force at a place.
 mod scale;
-// What a link connects.
+// The two ends of a link.
 mod stretch;
-// What stands in its law.
+// The terms of a link's law.
 mod terms;
-// What the parts of a model do.
+// The role of each link: tyre, suspension, mount.
 mod roles;
-// Where an effect may apply.
+// The places where an effect applies.
 mod place;
-// What its names mean there.
+// The meaning of an effect's names at a place.
 mod bind;
-// Its changes.
+// The effect's statements, applied to the tree.
 mod apply;
 mod tidy;
-// Its curves.
+// Curves of an effect: tables with points to estimate.
 mod curve;
-// Its numbers.
+// Start values and ranges of an effect's parameters.
 mod start;
-// What it must say.
+// Checks of the text of an effect.
 mod rules;
-// Two models side by side.
+// The differences between two models.
 pub mod difference;
+
+use std::borrow::Cow;
 
 pub use ask::Values;
 pub(crate) use base::Base;
@@ -183,21 +185,23 @@ impl Patch {
 
     /// The labels of the places of a model where the effect applies in any form, in the order of the model's text.
     pub fn places(&self, model: &Checked) -> Vec<String> {
-        let patched = self.candidates(model, &|_| None).into_iter();
-        let mut places: Vec<String> = patched.map(|patched| patched.place).collect();
-        places.dedup();
-        places
+        let values: Values = &|_| None;
+        let base = Base::of(model);
+        let roles = Roles::of(&base, values);
+        let forms = self.own_forms();
+        let applies = |place: &Place| {
+            forms
+                .iter()
+                .any(|form| form.made(model, &base, &roles, place, values).is_ok())
+        };
+        let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
+        places.filter(applies).map(|place| place.label).collect()
     }
 
     /// The model with the effect at each place where it applies, in the order of the model's text, and in each form:
     /// where the pattern fits, the model has all that the effect asks for, and the compiler accepts what comes out.
     pub fn candidates(&self, model: &Checked, values: Values) -> Vec<Patched> {
-        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
-        let forms = if forms.is_empty() {
-            std::slice::from_ref(self)
-        } else {
-            &forms
-        };
+        let forms = self.own_forms();
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
@@ -206,6 +210,16 @@ impl Patch {
             made.filter_map(Result::ok).collect()
         };
         places.iter().flat_map(at).collect()
+    }
+
+    /// The effect in each of its forms; the effect itself if it has none.
+    fn own_forms(&self) -> Cow<'_, [Patch]> {
+        let forms: Vec<Patch> = self.forms().filter_map(|form| self.in_form(form)).collect();
+        if forms.is_empty() {
+            Cow::Borrowed(std::slice::from_ref(self))
+        } else {
+            Cow::Owned(forms)
+        }
     }
 
     /// The model with the effect at a place, given by its label, in its usual form. Starts and ranges that depend on the model are taken

@@ -1,10 +1,10 @@
 //! Programs interpreted at run time: the operations of the generated code, in an order of their own.
 
-// What it reads.
+// The arguments of a program.
 pub mod given;
-// Which operation comes after which.
+// The order in which operations are evaluated.
 mod order;
-// One program.
+// A program prepared for evaluation.
 mod code;
 
 use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};

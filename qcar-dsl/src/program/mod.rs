@@ -4,9 +4,9 @@
 //! The same program is printed as Rust and interpreted at run time, operation by operation, so that both
 //! give the same bits. Whole powers are products already, and a divisor that serves twice is a reciprocal.
 
-// Expressions in order.
+// From expressions to a sequence of operations.
 pub mod schedule;
-// Interpreted at run time.
+// The interpreter, which implements the trait of a model.
 pub mod evaluate;
 
 use crate::expr::{Curve, Function, Symbol};

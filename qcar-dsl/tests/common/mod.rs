@@ -1,5 +1,6 @@
 //! Models built by hand, so that the stages after `check` are judged without a text.
 
+pub mod programs;
 pub mod random;
 pub mod reference;
 

@@ -9,7 +9,7 @@ use super::reading::Missing;
 use super::samples::of_samples;
 use crate::error::{InputError, Place, Problem};
 
-// Both sides of the car beside each other.
+// Comparison of the left and right sensors of a place.
 mod sides;
 
 /// What the sensors of both sides of a sweep say of each other.

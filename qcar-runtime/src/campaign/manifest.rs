@@ -12,11 +12,11 @@ use crate::error::{InputError, Place, Problem};
 use runs::{Known, is_table, run};
 use sensors::sensors;
 
-// What its workbook adds.
+// Entries of the campaign's workbook.
 mod workbook;
-// Its channels.
+// `[[channel]]` sections.
 mod sensors;
-// Its tests.
+// `[[run]]` sections.
 mod runs;
 
 /// The columns of a quasi-static curve, m and N.

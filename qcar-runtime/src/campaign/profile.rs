@@ -8,7 +8,7 @@ use super::manifest::{ROAD, SLOPE};
 use super::recorded::{BESIDE_MANIFEST, recording};
 use crate::error::{InputError, Place, Problem};
 
-// Which channels of a measured file are a profile.
+// The channels of distance and height in a measured file.
 mod measured;
 
 /// A road profile as sampled. It goes on flat beyond its ends.

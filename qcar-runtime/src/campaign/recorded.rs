@@ -9,17 +9,17 @@ use channel::Channel;
 use together::Together;
 use window::Span;
 
-// Each file read once.
+// Measured files, each read once.
 mod files;
-// Samples that come unevenly.
+// Samples at uneven times.
 mod uneven;
-// Samples that come evenly.
+// Samples at a constant rate.
 mod even;
-// When a run begins and ends.
+// The beginning and end of a run.
 mod window;
-// Values in SI.
+// Conversion to SI.
 mod values;
-// What a tap makes of a channel.
+// A sensor's samples from the channel of its tap.
 mod channel;
 // All channels of a run at one rate.
 mod together;

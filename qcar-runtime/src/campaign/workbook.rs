@@ -11,7 +11,7 @@ use super::unit::Declared;
 use crate::error::{InputError, Place};
 use cells::Cells;
 
-// What named cells hold.
+// The contents of named cells.
 mod cells;
 
 /// The axles of a vehicle, as cells and columns begin with them.

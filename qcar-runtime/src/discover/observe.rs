@@ -9,7 +9,7 @@
 mod sensor;
 // Runs and their excitation.
 mod run;
-// Values of one sensor in one run.
+// The values of one sensor in one run.
 mod series;
 // The data set.
 mod dataset;
@@ -17,8 +17,6 @@ mod dataset;
 mod views;
 // Prediction of one series.
 mod prediction;
-// Replay of recorded inputs through a model.
-mod replay;
 // Swept sines: harmonics over frequency.
 mod sweep;
 // Cleat runs: impact and after-shake.

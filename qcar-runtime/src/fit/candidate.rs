@@ -8,7 +8,7 @@ use crate::model::{About, Model, Quantity, Signal, SignalKind};
 use crate::response::parameters::Values;
 use serde::Serialize;
 
-/// What is added.
+/// The kind of an additional measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Kind {
@@ -27,7 +27,7 @@ pub enum Kind {
 }
 
 impl Kind {
-    /// In a word.
+    /// Its name.
     pub fn word(self) -> &'static str {
         match self {
             Self::Sensor => "sensor",
@@ -40,18 +40,18 @@ impl Kind {
     }
 }
 
-/// Levels to which something was added.
+/// Levels with a measurement added.
 pub(super) struct Candidate {
     pub kind: Kind,
-    /// In words.
+    /// Description.
     pub what: String,
-    /// All that would be fitted.
+    /// All levels that would be fitted.
     pub levels: Vec<Level>,
-    /// What is new of it: of a sensor, its ratio to the excitation.
+    /// The additional information: for a sensor, its ratio to the excitation.
     pub added: Vec<Level>,
 }
 
-/// All that could be added to the fitted levels.
+/// All measurements that could be added to the fitted levels.
 pub(super) fn candidates<M: Model + ?Sized>(model: &M, values: &Values, levels: &[Level]) -> Vec<Candidate> {
     let fitted: Vec<&Level> = levels.iter().filter(|level| level.role == Role::Fit).collect();
     let runs: Vec<Run<'_, M>> = fitted
@@ -116,7 +116,7 @@ fn sensors<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>], fitted: &[&Lev
     found
 }
 
-/// A run for each excitation that drives no fitted run, with sensors where these have them along its axis, else at every mass.
+/// A run for each excitation that no fitted run uses, with the sensors of the fitted runs along its axis, or else one at every mass.
 fn excitations<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>]) -> Vec<(String, Level)> {
     let unused = (0..about.excitations.len()).filter(|own| runs.iter().all(|run| run.level.excitation != *own));
     let driven = |excitation: usize| {
@@ -127,7 +127,7 @@ fn excitations<M: Model + ?Sized>(about: &About, runs: &[Run<'_, M>]) -> Vec<(St
     unused.filter_map(driven).collect()
 }
 
-/// Where accelerations along an axis are measured, else all that the model has.
+/// The measured accelerations along an axis, or else all that the model has.
 fn places<M: ?Sized>(about: &About, runs: &[Run<'_, M>], axis: &str) -> Vec<Signal> {
     let records = runs.iter().flat_map(|run| &run.records).map(|record| &record.signal);
     let outputs = about.outputs.iter().map(|output| &output.signal);

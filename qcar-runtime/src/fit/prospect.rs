@@ -1,4 +1,4 @@
-//! What further measurements would tell about the parameters of a fit: a D-optimal choice among sensors, runs and levels.
+//! Information that further measurements would add about the parameters of a fit: a D-optimal choice among sensors, runs and levels.
 //!
 //! The criterion is the rise of the log determinant of the information about some parameters, all others being estimated, too
 //! (Atkinson, Donev & Tobias, "Optimum Experimental Designs, with SAS", 2007, chapters 10 and 11); what the ranges say is part of
@@ -16,12 +16,12 @@ use crate::error::InputError;
 use crate::model::Model;
 use crate::progress::{self, Told};
 
-/// What is known, and what could be.
+/// The present standard errors, and further measurements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prospects {
     /// Places in the model of the parameters that the plan wants fitted.
     pub parameters: Vec<usize>,
-    /// Their standard errors; `None` of what the fitted runs do not determine.
+    /// Their standard errors; `None` for a parameter that the fitted runs do not determine.
     pub errors: Vec<Option<f64>>,
     /// The most informative first.
     pub further: Vec<Prospect>,
@@ -30,9 +30,9 @@ pub struct Prospects {
 /// A further measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prospect {
-    /// Of which kind.
+    /// Its kind.
     pub kind: Kind,
-    /// In words.
+    /// Description.
     pub what: String,
     /// Rise of the log determinant of the information.
     pub rise: f64,
@@ -40,11 +40,11 @@ pub struct Prospect {
     pub errors: Vec<Option<f64>>,
 }
 
-/// What each further measurement would say, where `plan` has the fitted values for its start values; `matter` are names of the
-/// parameters that count, all where there are none. Measurement by measurement `told` hears how far it is.
+/// The information that each further measurement would add. The start values of `plan` must be the fitted values; `matter` names
+/// the parameters that count (all, if empty). `told` receives the progress.
 ///
 /// # Errors
-/// What [`super::Setup::new`] finds wrong.
+/// Those of [`super::Setup::new`].
 pub fn prospects<M: Model + ?Sized>(
     model: &M,
     plan: &Plan,

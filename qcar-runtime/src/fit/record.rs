@@ -1,21 +1,21 @@
-//! What a run tells, or would tell, about a place, and ratios of two places.
+//! The motion of a place relative to the excitation, measured or predicted, and ratios of two places.
 
 use super::observation::{Difference, Observation, Pair};
 use crate::model::{Channel, Signal};
 use nalgebra::Complex;
 
-/// What a run says of a place, or would say: its motion over that of the excitation.
+/// The motion of a place over that of the excitation, in a measured run or one that could be measured.
 #[derive(Clone)]
 pub(super) struct Record {
     pub signal: Signal,
     pub value: Vec<Complex<f64>>,
-    /// Relative, by noise.
+    /// Relative variance by noise.
     pub variance: Vec<f64>,
     pub differences: Vec<Difference>,
     pub sensors: usize,
 }
 
-/// The ratio of two records, of which none is the excitation itself.
+/// The ratio of two records; `None` stands for the excitation itself.
 pub(super) fn between(channel: &Channel, [far, near]: [Option<&Record>; 2], frequency: &[f64]) -> Observation {
     let value = |of: Option<&Record>, line: usize| of.map_or(Complex::from(1.0), |own| own.value[line]);
     let variance = |of: Option<&Record>, line: usize| of.map_or(0.0, |own| own.variance[line]);
@@ -41,7 +41,7 @@ pub(super) fn between(channel: &Channel, [far, near]: [Option<&Record>; 2], freq
     }
 }
 
-/// What two symmetric sensors say apart from each other of a ratio.
+/// Half the difference of a ratio between two symmetric sensors.
 fn apart(pair: Pair, far: Option<&Record>, near: Option<&Record>) -> Option<Difference> {
     let half = |of: Option<&Record>| {
         let own = of?.differences.iter().find(|own| own.pair == pair);

@@ -1,7 +1,7 @@
 //! A run as the fitted model expects it: with another sensor, another excitation, once more, or beyond its band.
 //!
-//! An added sensor is as noisy as those of its kind in the same run; one of another kind has their relative noise. What the model
-//! misses of the channels that there are, it is taken to miss of the others, too.
+//! An added sensor is assumed to have the noise of sensors of its kind in the same run, or else their relative noise. The
+//! model's misfit is assumed to be the same for all channels.
 
 use super::channels::{across_links, is_excitation};
 use super::observation::{Level, Observation};
@@ -12,21 +12,21 @@ use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
 use nalgebra::Complex;
 
-/// A run as the model sees it.
+/// A run as the model predicts it.
 pub(super) struct Run<'a, M: ?Sized> {
     model: &'a M,
     values: &'a Values,
-    /// Without observations.
+    /// The level of the run, without its observations.
     pub level: Level,
     pub source: Signal,
     pub frequency: Vec<f64>,
     pub records: Vec<Record>,
-    /// The relative variance of what the model misses beside noise.
+    /// Relative variance of the model's misfit, without noise.
     misfit: f64,
 }
 
 impl<'a, M: Model + ?Sized> Run<'a, M> {
-    /// None of a run that relates nothing to its excitation.
+    /// `None` for a run without a ratio to its excitation.
     pub fn new(model: &'a M, values: &'a Values, level: &Level) -> Option<Self> {
         let excitation = &model.about().excitations[level.excitation];
         let from_source = |own: &&Observation| is_excitation(excitation, &own.channel.denominator);
@@ -54,7 +54,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         Some(run)
     }
 
-    /// A run with another excitation, in which sensors record these signals; none where nothing of that moves.
+    /// A run with another excitation, in which sensors record these signals; `None` if none of them responds.
     pub fn driven(&self, excitation: usize, signals: Vec<Signal>) -> Option<Level> {
         let own = &self.model.about().excitations[excitation];
         let kind = if own.force {
@@ -85,7 +85,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         (!records.is_empty()).then(|| run.assembled(&records, &run.frequency))
     }
 
-    /// The mean square, over lines and places, of what is missed of logarithms, less what noise explains.
+    /// Mean square of the logarithmic residuals over lines and places, less the variance of noise.
     fn missed(&self) -> f64 {
         let lines = self.records.iter().flat_map(|record| {
             let model = self.response(&record.signal, &self.frequency).unwrap_or_default();
@@ -106,14 +106,14 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         found.ok().map(|found| found.value)
     }
 
-    /// Line by line the mean relative variance of the records.
+    /// Mean relative variance of the records at each line.
     fn usual_variance(&self) -> Vec<f64> {
         let mean =
             |line: usize| self.records.iter().map(|own| own.variance[line]).sum::<f64>() / self.records.len() as f64;
         (0..self.frequency.len()).map(mean).collect()
     }
 
-    /// What another sensor would record; none where the model has no such signal, or the run has it.
+    /// The record of another sensor; `None` if the model lacks its signal or the run already has it.
     pub fn sensor(&self, signal: &Signal) -> Option<Record> {
         let same = |own: &Signal| own.location == signal.location && quantity(own.kind) == quantity(signal.kind);
         let is_known = same(&self.source) || self.records.iter().any(|own| same(&own.signal));
@@ -125,13 +125,13 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         Some(self.expected(signal.clone(), value, variance, self.misfit))
     }
 
-    /// The level with a record beside its own.
+    /// The level with an additional record.
     pub fn beside(&self, record: &Record) -> Level {
         let records: Vec<Record> = self.records.iter().chain([record]).cloned().collect();
         self.assembled(&records, &self.frequency)
     }
 
-    /// A level of the ratio of one record to the excitation.
+    /// A level with the ratio of one record to the excitation as its only observation.
     pub fn alone(&self, record: &Record) -> Level {
         let channel = Channel {
             name: format!("{}_to_{}", self.source.location, record.signal.location).into(),
@@ -144,7 +144,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         }
     }
 
-    /// The relative variance of a sensor whose noise is that of the sensors of its kind.
+    /// Relative variance of a sensor that has the noise of other sensors of its kind.
     fn variance_of(&self, signal: &Signal, value: &[Complex<f64>]) -> Vec<f64> {
         let alike: Vec<&Record> = self
             .records
@@ -165,7 +165,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
             .collect()
     }
 
-    /// A record that is off by as much as noise and misfit make likely, to one side or the other.
+    /// A record with an error of the size of noise and misfit.
     fn expected(&self, signal: Signal, value: Vec<Complex<f64>>, variance: Vec<f64>, misfit: f64) -> Record {
         let mut random = SplitMix::new(seed(&signal));
         let mut sign = || if random.uniform() < 0.5 { -1.0 } else { 1.0 };
@@ -182,7 +182,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         }
     }
 
-    /// The run once more, with so much of its noise: what the model misses it misses again.
+    /// The run repeated with noise scaled by this factor; the model's misfit stays the same.
     pub fn again(&self, noise: f64) -> Level {
         let again = |own: &Record| {
             let model = self
@@ -203,7 +203,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         self.assembled(&self.records.iter().map(again).collect::<Vec<_>>(), &self.frequency)
     }
 
-    /// The run up to twice the end of its band, and from half its start on, as further levels.
+    /// Two more levels: the run from the end of its band to twice its end, and from half its start to its start.
     pub fn wider(&self) -> Vec<(String, Level)> {
         let (Some(&first), Some(&last)) = (self.frequency.first(), self.frequency.last()) else {
             return Vec::new();
@@ -226,9 +226,9 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         [up, down].into_iter().filter_map(level).collect()
     }
 
-    /// A record of a place on other lines, with the noise that it has at the end of its band.
+    /// A record at other frequencies, with the noise at the nearest end of its band.
     fn beyond(&self, own: &Record, frequency: &[f64], from: f64) -> Option<Record> {
-        /// Lines at an end whose noise is that beyond it.
+        /// Number of lines at an end of the band whose noise is used beyond it.
         const NEAR: usize = 10;
         let count = own.value.len();
         let lines = if from < self.frequency[0] {
@@ -246,7 +246,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
         })
     }
 
-    /// The channels that a fit would take of these records.
+    /// The channels that a fit would use of these records.
     pub fn assembled(&self, records: &[Record], frequency: &[f64]) -> Level {
         let signals: Vec<Signal> = [&self.source]
             .into_iter()
@@ -273,7 +273,7 @@ impl<'a, M: Model + ?Sized> Run<'a, M> {
     }
 }
 
-/// What a sensor measures, whatever derivative of a motion that is.
+/// The kind of sensor that records a signal; all derivatives of a motion count as one.
 pub(super) fn quantity(kind: SignalKind) -> &'static str {
     match kind {
         SignalKind::Motion(_) => "acceleration",
@@ -282,7 +282,7 @@ pub(super) fn quantity(kind: SignalKind) -> &'static str {
     }
 }
 
-/// Of the signs of a place, always the same.
+/// A seed that depends on the place of a signal alone.
 fn seed(signal: &Signal) -> u64 {
     let name = signal.location.bytes().chain(signal.axis.bytes());
     name.fold(14_695_981_039_346_656_037, |hash, byte| {

@@ -8,7 +8,7 @@ use crate::simulate::{Cleat, Drive, Standard};
 pub struct Course {
     /// Of the run.
     pub name: String,
-    /// What is driven over.
+    /// A road and the speed at which it is driven.
     pub road: Road,
     /// m/s.
     pub speed: f64,
@@ -122,7 +122,7 @@ impl Course {
     }
 }
 
-/// How a road is driven over, for a name: the speed to a thousandth of a km/h, and the duration where it is given.
+/// Suffix of a course's name: the speed to a thousandth of a km/h, and the duration if it is given.
 fn driven(speed: f64, duration: Option<f64>) -> String {
     let speed = (3600.0 * speed).round() / 1e3;
     let duration = duration.map_or_else(String::new, |duration| format!("_{duration}s"));

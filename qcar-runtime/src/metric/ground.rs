@@ -21,10 +21,10 @@ use crate::simulate::{
 };
 use crate::tyre::Tyre;
 
-/// Where metrics of a model are measured.
+/// The roads and channels on which the metrics of a model are computed.
 pub struct Ground<'a> {
     model: Watched<'a>,
-    /// The tyre and its static load, N; none where nothing rolls.
+    /// The tyre and its static load, N; `None` if no road is driven.
     tyre: Option<(Tyre, f64)>,
     courses: Vec<Course>,
     metrics: Vec<Metric>,
@@ -34,7 +34,7 @@ pub struct Ground<'a> {
     impossible: Option<Box<Impossible<'a>>>,
 }
 
-/// Why parameters are those of no axle; none where they may be.
+/// Why parameters are not physical; `None` if they are.
 type Impossible<'a> = dyn Fn(&[f64]) -> Option<String> + Send + Sync + 'a;
 
 /// Accelerations of a ride.
@@ -51,7 +51,7 @@ pub struct Trace {
 pub struct Reading {
     /// Place of the metric.
     pub metric: usize,
-    /// Place of the course, for what is ridden.
+    /// Index of the course, for metrics of rides.
     pub course: Option<usize>,
 }
 
@@ -83,9 +83,9 @@ pub enum MetricError {
 }
 
 impl<'a> Ground<'a> {
-    /// A ground on which nothing is measured yet; [`Ground::choose`] says what.
+    /// A ground without metrics; [`Ground::choose`] chooses them.
     ///
-    /// `values` tell how many vibrations there are.
+    /// `values` determine the number of vibrating modes.
     pub fn new(
         model: &'a dyn Model,
         values: &Values,
@@ -123,7 +123,7 @@ impl<'a> Ground<'a> {
         &self.metrics
     }
 
-    /// What is driven over.
+    /// The courses that are driven.
     pub fn courses(&self) -> &[Course] {
         &self.courses
     }
@@ -133,7 +133,7 @@ impl<'a> Ground<'a> {
         self.model.about()
     }
 
-    /// What is measured, in the order of all results.
+    /// The readings, in the order of all results.
     pub fn readings(&self) -> &[Reading] {
         &self.readings
     }
@@ -143,7 +143,7 @@ impl<'a> Ground<'a> {
         self.readings = readings;
     }
 
-    /// The readings of a metric: where it is ridden, on each course, or where it is of an impact, on each with an obstacle.
+    /// The readings of a metric: one for each course; for a metric of an impact, one for each course with an obstacle.
     pub fn readings_of(&self, metric: usize) -> Vec<Reading> {
         let of_impact = matches!(
             self.metrics[metric].what,
@@ -270,7 +270,7 @@ impl<'a> Ground<'a> {
         found.into_iter().map(|own| own.expect("each ride ends")).collect()
     }
 
-    /// What is read of rides, and what tells where an impact begins.
+    /// The outputs that readings need, and the one from which the onset of an impact is found.
     fn kept(&self) -> Kept {
         let is_kept = |output: usize| self.reads(output) || self.wheel == Some(output);
         let about = self.car_model().about();
@@ -349,7 +349,7 @@ impl<'a> Ground<'a> {
         found
     }
 
-    /// What each mass does on a course.
+    /// Accelerations of each mass on a course.
     ///
     /// # Errors
     /// As [`Ground::measure`].
@@ -365,7 +365,7 @@ impl<'a> Ground<'a> {
         })
     }
 
-    /// True where a reading is of an output.
+    /// True if a reading needs an output.
     fn reads(&self, output: usize) -> bool {
         let what = |reading: &Reading| self.metrics[reading.metric].what;
         self.readings
@@ -387,7 +387,7 @@ fn felt_first(about: &About, roles: &Roles) -> Option<usize> {
     roles.feeling().find_map(place)
 }
 
-/// What a ride gives.
+/// The results of a ride.
 struct Signals {
     values: Vec<Vec<f64>>,
     /// For each direction.
@@ -396,7 +396,7 @@ struct Signals {
     rate: f64,
 }
 
-/// What is known without a ride.
+/// Readings that need no ride.
 struct AtRest {
     vibrations: Vec<vibration::Vibration>,
 }

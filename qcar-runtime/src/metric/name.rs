@@ -1,24 +1,24 @@
-//! Which metrics a model has, and what they are called.
+//! The metrics of a model and their names.
 
 use crate::campaign::RoleNames;
 use crate::compare::Weighting;
 use crate::model::{About, Quantity, SignalKind};
 use crate::roles::Roles;
 
-/// A number that says how an axle feels.
+/// A metric of comfort, load, travel or vibration.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Metric {
     /// `body_x.peak`.
     pub name: String,
     /// SI.
     pub unit: &'static str,
-    /// What it is, in words.
+    /// Description.
     pub doc: String,
     /// How it is found.
     pub what: What,
 }
 
-/// What a metric is of.
+/// The subject of a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What {
     /// A record of a ride: the output with this place, or after the outputs the force of the tyre.
@@ -33,7 +33,7 @@ pub enum What {
     Damping(usize),
 }
 
-/// What is measured of a record.
+/// A number computed from a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measure {
     /// Largest magnitude within the impact.

@@ -7,13 +7,13 @@
 
 // Small matrices.
 mod product;
-// Fourier series by their samples.
+// Fourier series in terms of their samples.
 mod basis;
-// A model at such samples.
+// A model evaluated at the samples of one period.
 mod period;
-// The Jacobian of its balance without what is linear.
+// The nonlinear part of the balance's Jacobian.
 mod factors;
-// The balance at one excitation, and its solution.
+// The harmonic balance at one excitation, and its solution.
 mod balance;
 
 use std::collections::BTreeSet;

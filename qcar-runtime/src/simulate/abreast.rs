@@ -12,11 +12,11 @@ use super::ride::{Drive, Journey, Ride};
 use super::settings::Settings;
 use crate::model::{LANES, Model};
 
-/// Parameters of a car, and what it is driven over.
+/// Parameters of a car, and the road and speed of its ride.
 pub type Ridden<'a> = (&'a [f64], Drive<'a>);
 
-/// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done` hears of each by
-/// its number as soon as it is over. Of a ride all signals are empty but those that are `kept`.
+/// Simulates rides of cars that differ from one by their parameters, each as [`ride`](super::ride()) does; `done` receives
+/// each with its number as soon as it is complete. Signals that are not `kept` are empty.
 ///
 /// Each ride takes a lane as soon as one is free, so that memory does not grow with their number.
 pub fn rides_abreast<'a, M: Model + ?Sized>(
@@ -48,7 +48,7 @@ struct Abreast<'r, 'a, M: ?Sized, D> {
     kept: &'r Kept,
     done: D,
     waiting: Enumerate<slice::Iter<'r, Ridden<'a>>>,
-    /// For the records of rides to come.
+    /// Memory of complete records, for the rides to come.
     rooms: Vec<Vec<f64>>,
     formation: Option<Formation<'a, M>>,
     lanes: [Option<Lane<'a, M>>; LANES],
@@ -60,15 +60,16 @@ type Numbered<'a, M> = (usize, Journey<'a, M>);
 /// A ride in the formation.
 struct Lane<'a, M: ?Sized> {
     ride: Numbered<'a, M>,
-    /// So many steps may still be attempted.
+    /// Steps that may still be attempted.
     left: usize,
 }
 
-/// So few go on alone once no others wait: a step of the formation takes as long for one as for eight.
+/// When no rides wait and no more than these are left, each continues alone: a step of the formation takes as long for one as for
+/// eight.
 const FEW: usize = 1;
 
 impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreast<'_, 'a, M, D> {
-    /// Brings a ride, or else the next that comes so far, to where its tyre's force is smooth, and there into a lane.
+    /// Integrates a ride until its tyre's force is smooth and puts it into a lane; a ride that ends before is replaced by the next.
     fn occupy(&mut self, place: usize, mut coming: Option<Numbered<'a, M>>) {
         while let Some((number, mut journey)) = coming.take().or_else(|| self.next()) {
             match journey.advance() {
@@ -108,7 +109,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         }
     }
 
-    /// Puts a ride into a lane of the formation, if it is like the others there.
+    /// Puts a ride into a lane of the formation if it can join.
     fn joins(&mut self, place: usize, journey: &mut Journey<'a, M>) -> bool {
         let Some((shortcut, rolling)) = journey.recorder.shortcut() else {
             return false;
@@ -121,7 +122,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         fits
     }
 
-    /// Steps until a ride has to leave the formation, and brings others into its place.
+    /// Steps until a ride has to leave the formation, and fills its lane with the next.
     fn go_on(&mut self) {
         let formation = self.formation.as_mut().expect("a ride is in it");
         let leaving = loop {
@@ -141,7 +142,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         }
     }
 
-    /// Takes a ride out of its lane: its recorder hands it back where it is.
+    /// Takes a ride out of its lane, with its present state.
     fn leave(&mut self, place: usize) -> Option<Numbered<'a, M>> {
         let (number, mut journey) = self.lanes[place].take()?.ride;
         let (shortcut, _) = journey.recorder.shortcut()?;
@@ -151,7 +152,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
         Some((number, journey))
     }
 
-    /// Lets all go on alone to the end.
+    /// Integrates the remaining rides one by one to their ends.
     fn disband(&mut self) {
         for place in 0..LANES {
             let Some(Lane {
@@ -171,7 +172,7 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
     }
 }
 
-/// A step of all rides in a formation: which of them have to leave it.
+/// A step of all rides in a formation. Returns those that have to leave it.
 fn step<M: Model + ?Sized>(
     formation: &mut Formation<'_, M>,
     lanes: &mut [Option<Lane<'_, M>>; LANES],

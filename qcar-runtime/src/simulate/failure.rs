@@ -1,11 +1,11 @@
-//! What keeps a simulation from being run.
+//! Errors of simulations.
 
 use crate::road::RoadError;
 use crate::roles::RoleError;
 use crate::solver::Report;
 use crate::tyre::TyreError;
 
-/// Why there is no simulation of what was asked for.
+/// Why a simulation failed.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[expect(missing_docs, reason = "the message says it")]
 pub enum SimulateError {
@@ -60,9 +60,7 @@ pub enum SimulateError {
         excitation: usize,
         count: usize,
     },
-    #[error("excitation `{name}` is a motion; its record must be a displacement, velocity or acceleration")]
-    MotionByForce { name: String },
-    #[error("excitation `{name}` is a force; its record must be a force")]
+    #[error("excitation `{name}` is a force; its record must be a force, of power 0")]
     ForceByMotion { name: String },
     #[error(
         "the motion `{name}` cannot be held between samples, since its velocity would be infinite; \
@@ -73,7 +71,7 @@ pub enum SimulateError {
     NotFinite { name: String, sample: usize, value: f64 },
 }
 
-/// `value`, or a complaint.
+/// `value`, or an error if it is not positive.
 pub(super) fn positive(name: &'static str, value: f64, unit: &'static str) -> Result<f64, SimulateError> {
     if value.is_finite() && value > 0.0 {
         Ok(value)

@@ -27,25 +27,25 @@ pub(super) struct Formation<'a, M: ?Sized> {
     speeds: Lanes,
     /// Of the wheels' centres in the design position, m.
     heights: Lanes,
-    /// What moves the wheels beside the contact, N, in z and x.
+    /// Forces on the wheels other than that of the contact, in z and x, N.
     offsets: [Lanes; 2],
     wheel: WheelStates,
-    /// Places of states that do not move.
+    /// Indices of states that do not change.
     locked: Vec<usize>,
     pieces: Pieces,
     wheels: Wheels,
-    /// Which contacts are found already.
+    /// True for each lane whose contact is already computed.
     found: [bool; LANES],
     contacts: Contacts,
-    /// The same with what else moves the wheels.
+    /// Contact forces with the other forces on the wheels added.
     driven: Contacts,
     rates: Vec<Lanes>,
-    /// Room for the state of one.
+    /// Room for the state of one lane.
     state: Vec<f64>,
 }
 
 impl<'a, M: Model + ?Sized> Formation<'a, M> {
-    /// With room for motions like this one.
+    /// An empty formation for rides of this model.
     pub fn like(shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> Self {
         let (relative, absolute) = shortcut.tolerance();
         let absolute = absolute.to_vec();
@@ -73,12 +73,12 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         }
     }
 
-    /// True where a motion may join.
+    /// True if a ride can join: its tyre, its fixed states and its method agree with the others.
     pub fn fits(&self, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) -> bool {
         self.tyre == rolling.tyre && self.locked == rolling.locked && self.method.fits(shortcut.method())
     }
 
-    /// Goes on in a lane where a shortcut has begun.
+    /// Takes a ride whose shortcut has begun into a lane.
     pub fn take(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'a, M>) {
         self.method.take(lane, shortcut.method());
         let constants = self.constants.iter_mut().zip(&rolling.constants);
@@ -89,13 +89,13 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         self.pieces.put(lane, rolling.road, rolling.piece.get());
     }
 
-    /// Gives a lane back, and its state.
+    /// Frees a lane and returns its state.
     pub fn give(&mut self, lane: usize, shortcut: &mut Shortcut, x: &mut [f64]) {
         self.method.give(lane, shortcut.method());
         x.copy_from_slice(shortcut.state());
     }
 
-    /// Doubles the step of a lane where that is wanted and enough is known.
+    /// Doubles the step of a lane if that is wanted and enough past forces are known.
     #[inline]
     pub fn lengthen(&mut self, lane: usize, shortcut: &mut Shortcut, rolling: &Rolling<'_, M>) {
         if shortcut.wants_longer(rolling) && self.method.may_lengthen(lane) {
@@ -115,17 +115,17 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         self.times[lane]
     }
 
-    /// Foresees all lanes at the ends of their steps.
+    /// Predicts the states of all lanes at the ends of their steps.
     pub fn foresee(&mut self) {
         over_lanes(Foresight(self));
     }
 
-    /// Where the wheel's centre of a lane is foreseen, m.
+    /// Predicted position of the wheel's centre of a lane, m.
     pub fn centre(&self, lane: usize) -> [f64; 2] {
         self.wheels.position.map(|axis| axis[lane])
     }
 
-    /// Finds the contact of a lane alone where that has to be, and says whether its force is smooth.
+    /// Computes the contact of a lane if it is not known yet. Returns whether its force is smooth.
     #[inline]
     pub fn touch(&mut self, lane: usize, rolling: &Rolling<'_, M>, from: [f64; 2]) -> bool {
         let smooth = !rolling.bends_between(from, self.centre(lane));
@@ -140,7 +140,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         contact.is_some()
     }
 
-    /// Steps to where all were foreseen, and says which do. Those whose force is not smooth do not.
+    /// Completes the step of each lane whose force is smooth. Returns which lanes stepped.
     pub fn advance(&mut self, smooth: [bool; LANES]) -> [bool; LANES] {
         over_lanes(Advance { of: self, smooth })
     }
@@ -160,7 +160,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
         }
     }
 
-    /// Those that were found.
+    /// The contacts that were computed.
     pub fn rates(&self) -> &[Lanes] {
         &self.rates
     }
@@ -173,7 +173,7 @@ impl<'a, M: Model + ?Sized> Formation<'a, M> {
     }
 }
 
-/// What is foreseen: states, wheels, and the contacts of those on one straight piece of road.
+/// Prediction: states, wheels, and the contacts of wheels on a single straight piece of road.
 struct Foresight<'f, 'a, M: ?Sized>(&'f mut Formation<'a, M>);
 
 impl<M: Model + ?Sized> Loops for Foresight<'_, '_, M> {
@@ -201,7 +201,7 @@ impl<M: Model + ?Sized> Loops for Foresight<'_, '_, M> {
     }
 }
 
-/// A step under the contacts that were found.
+/// A step under the computed contacts.
 struct Advance<'f, 'a, M: ?Sized> {
     of: &'f mut Formation<'a, M>,
     smooth: [bool; LANES],

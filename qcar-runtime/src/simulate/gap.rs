@@ -6,25 +6,25 @@ use std::ops::Range;
 use crate::solver::PAST;
 use crate::vectors::{Loops, widest};
 
-/// Of the samples from one to another those a stride apart are known, and of what is between nothing.
+/// A range of samples of which one in each stride is known.
 pub(super) struct Gap {
     pub from: usize,
     pub to: usize,
     pub stride: usize,
-    /// The filter sees so many samples on each side.
+    /// Reach of the anti-alias filter to each side, in samples.
     pub reach: usize,
 }
 
-/// So many known samples make a polynomial, half of them before the point where there are as many. What vibrates with a
-/// period of ten strides is exact to 3e-5.
+/// Number of known samples that a polynomial interpolates, half of them on each side where possible. A vibration with a period
+/// of ten strides is accurate to 3e-5.
 const AROUND: usize = 8;
 const BEFORE: usize = AROUND / 2 - 1;
 
 impl Gap {
-    /// Fills in the points of signals that each stand in `phases` of some length; the first phase has the samples.
+    /// Interpolates the missing points of signals that are each stored in `phases` of some length; the first phase has the samples.
     ///
-    /// A signal is smooth in the gap, and for so many strides before it as the method that left the gap has looked back.
-    /// What lies further away is left out of account.
+    /// The signals must be smooth in the gap and for as many strides before it as the integration method looked back. Points
+    /// further away are not used.
     pub fn fill(&self, signals: &mut [f64], (phases, length): (usize, usize)) {
         let before = (PAST - 1).min(self.from / self.stride);
         let count = before + (self.to - self.from) / self.stride + 1;
@@ -53,7 +53,7 @@ impl Gap {
         }
     }
 
-    /// Both ends, in which the filter has to do with what is outside; one for a short gap.
+    /// The ends of the gap in which the filter reaches outside of it; a short gap is one such end.
     fn ends(&self) -> [Range<usize>; 2] {
         let reach = (2 * self.reach).next_multiple_of(self.stride);
         if 2 * reach < self.to - self.from {
@@ -63,17 +63,17 @@ impl Gap {
         }
     }
 
-    /// Where the filter, which begins to see a sample so many before it, sees nothing but what is smooth.
+    /// The samples at which the filter's reach is entirely within the smooth range.
     pub fn all_smooth(&self) -> Range<usize> {
         self.from..(self.to + 1).saturating_sub(2 * self.reach).max(self.from)
     }
 }
 
-/// A part of the way from one known sample to the next.
+/// A position between two known samples.
 struct Between {
-    /// So many samples are known.
+    /// Number of known samples.
     count: usize,
-    /// The weights of the samples around that place, by how many of them are before it, less one.
+    /// Interpolation weights by the number of known samples before the position, less one.
     weights: [[f64; AROUND]; AROUND],
 }
 
@@ -86,7 +86,7 @@ impl Between {
         }
     }
 
-    /// The values after the known samples from the one numbered `first` on; after the last known are zeros.
+    /// The interpolated values after each known sample from `first` on; zero after the last.
     fn fill(&self, known: &[f64], first: usize, filled: &mut [f64]) {
         let (end, last_start) = (first + filled.len(), self.count.saturating_sub(AROUND));
         // Near the ends of the gap there are fewer samples on one side.
@@ -105,7 +105,7 @@ impl Between {
     }
 }
 
-/// Values that all have as many known samples on either side.
+/// Values with enough known samples on both sides.
 struct Central<'a> {
     weights: &'a [f64; AROUND],
     known: &'a [f64],
@@ -126,7 +126,7 @@ impl Loops for Central<'_> {
     }
 }
 
-/// The weights at several places, which are none of them, of so many values at 0, 1, 2, ….
+/// Lagrange weights of values at 0, 1, 2, … for several positions that coincide with none of them.
 fn lagrange<const N: usize>(places: [f64; N], count: usize) -> [[f64; AROUND]; N] {
     let others = |i: usize| {
         (0..count)

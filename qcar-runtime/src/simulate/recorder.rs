@@ -1,4 +1,4 @@
-//! What is recorded of a rolling model.
+//! The signals that are recorded while a model rolls over a road.
 
 use super::rolling::Rolling;
 use super::sampling::{Grid, Tape};
@@ -7,25 +7,25 @@ use crate::model::{About, Contact, Lanes, Model};
 use crate::solver::{After, Effort, Event, Step, System};
 use crate::vectors::{Loops, widest};
 
-/// A rolling model with its records.
+/// A rolling model and its recorded signals.
 pub(super) struct Recorder<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     shortcut: Option<Shortcut>,
     /// Room for a state.
     state: Vec<f64>,
-    /// Room for its rate, after that the outputs where the model is asked for them, and what is told of the contact.
+    /// Room for its rate, then the outputs where the model has to compute them, then force and deflection of the contact.
     rates: Vec<f64>,
-    /// For each output its place there, if it is kept. The acceleration of a mass is a rate, so that most models need not be
-    /// asked.
+    /// For each output that is kept, its index in that row. The acceleration of a mass is a rate, so most models need not
+    /// compute their outputs.
     places: Vec<Option<usize>>,
-    /// The places that are recorded, those of outputs first,
+    /// The indices that are recorded, those of outputs first.
     recorded: Vec<usize>,
-    /// and the first of all.
+    /// The first of these indices.
     first: usize,
     tape: Tape,
-    /// When the tyre lost the ground, s.
+    /// Times at which the tyre lost contact, s.
     pub lift_offs: Vec<f64>,
-    /// When it came back, s.
+    /// Times at which it regained contact, s.
     pub landings: Vec<f64>,
     /// Time of the last evaluation, and whether the tyre was on the ground.
     last: (f64, bool),
@@ -53,11 +53,11 @@ impl Kept {
     }
 }
 
-/// What is told of a contact, at the end of each row: force of the tyre in z and x, and its deflection.
+/// Values of the contact at the end of each row: force of the tyre in z and x, and its deflection.
 const OF_CONTACT: usize = 3;
 
 impl<'a, M: Model + ?Sized> Recorder<'a, M> {
-    /// Of what is `kept`, on a tape in the room of another one.
+    /// A recorder of the signals that are `kept`, which reuses the memory of another tape.
     pub fn new(
         rolling: Rolling<'a, M>,
         shortcut: Option<Shortcut>,
@@ -98,12 +98,12 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         self.tape.record_rest(until, values);
     }
 
-    /// What rolls.
+    /// The equations of motion while it rolls.
     pub fn rolling(&self) -> &Rolling<'a, M> {
         &self.rolling
     }
 
-    /// Notes what the contact does to the axle where a step ends, for the shortcut.
+    /// Stores the contact's force at the end of a step, for the shortcut.
     fn note(&mut self, step: &Step<'_>) {
         let Some(shortcut) = &mut self.shortcut else {
             return;
@@ -131,7 +131,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         }
     }
 
-    /// The same by the rates of several, this one's in a lane of them; only where the model is asked for no outputs.
+    /// The same from the rates of several rides, of which this one has a lane; only if the model computes no outputs.
     pub fn record_lane(&mut self, t: f64, (rates, lane): (&[Lanes], usize), contact: Contact) {
         if self.tape.next(t).is_some() {
             self.tape.skip_to(t);
@@ -141,7 +141,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         }
     }
 
-    /// True where the model is asked for outputs that are no rates.
+    /// True if some kept outputs are not rates, so that the model has to compute them.
     pub fn asks(&self) -> bool {
         self.rates.len() > self.state.len() + OF_CONTACT
     }
@@ -150,7 +150,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         self.tape.record(self.recorded.iter().map(|&place| self.rates[place]));
     }
 
-    /// Fills in what lies between the steps of which only the ends were recorded.
+    /// Interpolates the samples within steps of which only the ends were recorded.
     pub fn finish(&mut self) {
         self.tape.fill_in();
     }
@@ -177,13 +177,13 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         place.and_then(|place| self.recorded.iter().position(|own| *own == place))
     }
 
-    /// The room of its tape, for another one.
+    /// The memory of its tape, for another recorder.
     pub fn into_room(self) -> Vec<f64> {
         self.tape.into_room()
     }
 
-    /// Goes on alone where it has taken over, by at most so many steps, and leaves the state in `x`: to what time, and what that
-    /// cost.
+    /// Integrates this ride by the shortcut once it has begun, by at most so many steps, and leaves the state in `x`. Returns the
+    /// time and the effort.
     pub fn go_on(&mut self, x: &mut [f64], most_steps: usize) -> (f64, Effort) {
         let mut shortcut = self.shortcut.take().expect("it has taken over");
         widest(Steps {
@@ -197,7 +197,7 @@ impl<'a, M: Model + ?Sized> Recorder<'a, M> {
         ended
     }
 
-    /// The shortcut by which it goes on where it has taken over, and what rolls.
+    /// The shortcut that has begun, and the equations of motion.
     pub fn shortcut(&mut self) -> Option<(&mut Shortcut, &Rolling<'a, M>)> {
         Some((self.shortcut.as_mut()?, &self.rolling))
     }
@@ -249,7 +249,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
         }
     }
 
-    /// Two: the tyre loses or finds the ground, and a point contact comes to a vertical step.
+    /// Two events: the tyre loses or regains contact, and a point contact reaches a vertical step.
     fn events(&self) -> usize {
         2
     }
@@ -275,7 +275,7 @@ impl<M: Model + ?Sized> System for Recorder<'_, M> {
     }
 }
 
-/// An evaluation, for the instructions of this machine.
+/// One evaluation, compiled for each instruction set.
 struct Observation<'a, 'b, M: ?Sized> {
     rolling: &'a Rolling<'b, M>,
     t: f64,
@@ -292,7 +292,7 @@ impl<M: Model + ?Sized> Loops for Observation<'_, '_, M> {
     }
 }
 
-/// Steps of a shortcut, with the instructions of this machine.
+/// Steps of the shortcut, compiled for each instruction set.
 struct Steps<'s, 'r, 'a, M: ?Sized> {
     shortcut: &'s mut Shortcut,
     recorder: &'r mut Recorder<'a, M>,
@@ -322,7 +322,7 @@ fn observe<M: Model + ?Sized>(rolling: &Rolling<'_, M>, t: f64, x: &[f64], rates
     contact.is_some()
 }
 
-/// The rates of the states, the outputs, and what is told of the contact.
+/// The rates of the states, the outputs, and the values of the contact.
 #[inline(always)]
 fn parts(rates: &mut [f64], states: usize) -> (&mut [f64], &mut [f64], &mut [f64]) {
     let (dx, signals) = rates.split_at_mut(states);

@@ -1,19 +1,19 @@
-//! How a simulation is integrated.
+//! Accuracy of a simulation: the method of integration, its tolerance and its limit of steps.
 
 use super::failure::SimulateError;
 use crate::model::{About, StateKind};
 use crate::solver::{self, DormandPrince, Effort, Report, Rk4, System};
 
-/// How exact a simulation is.
+/// Accuracy of a simulation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How time is stepped.
+    /// Method of time integration.
     pub method: Method,
-    /// The most steps that the whole of a simulation may attempt, by whichever method.
+    /// Largest number of steps that a simulation may attempt.
     pub most_steps: usize,
 }
 
-/// How time is stepped.
+/// A method of time integration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Method {
     /// By Dormand–Prince 5(4) at this relative tolerance.
@@ -32,23 +32,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Integrates `system` on from `x`; no step is longer than `longest_step` (s).
-    ///
-    /// # Errors
-    /// Where the integration stops before its end.
-    pub(super) fn integrate<S: System>(
-        &self,
-        about: &About,
-        system: &mut S,
-        span: (f64, f64),
-        (longest_step, breaks): (f64, &[f64]),
-        x: &mut [f64],
-    ) -> Result<Effort, SimulateError> {
-        let mut integrator = self.integrator(about, longest_step, system.events());
-        judged(about, integrator.go_on(system, None, (span, breaks), x))
-    }
-
-    /// What integrates a system with so many events; no step is longer than `longest_step` (s).
+    /// The integrator of a system with this number of events; no step is longer than `longest_step` (s).
     pub(super) fn integrator(&self, about: &About, longest_step: f64, events: usize) -> Integrator {
         let most_steps = self.most_steps;
         match self.method {
@@ -77,7 +61,7 @@ pub(super) enum Integrator {
 }
 
 impl Integrator {
-    /// Begins, or goes on where the system had taken over, and what that `spent`.
+    /// Begins an integration, or resumes one after the system has advanced by itself with the effort `spent`.
     pub fn go_on<S: System>(
         &mut self,
         system: &mut S,
@@ -93,10 +77,10 @@ impl Integrator {
     }
 }
 
-/// What an integration cost.
+/// The effort of an integration.
 ///
 /// # Errors
-/// Where it has stopped before its end.
+/// If it stopped before its end.
 pub(super) fn judged(about: &About, report: Report) -> Result<Effort, SimulateError> {
     if report.reason.is_success() {
         Ok(report.effort)

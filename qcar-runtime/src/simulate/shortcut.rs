@@ -1,8 +1,8 @@
 //! A shortcut for linear axles: an exponential method wherever the force of the tyre is smooth.
 //!
 //! The steps of the general method are limited by the stability of the fastest mode, and each takes six evaluations. The
-//! exponential method has no such limit and takes one: it goes from sample to sample while its polynomials meet the
-//! force, and leaves the rest to the general one.
+//! exponential method has no such limit and takes one: it steps from sample to sample as long as its polynomials approximate
+//! the force, and leaves the rest to the general method.
 
 use super::rolling::Rolling;
 use super::sampling::Grid;
@@ -10,22 +10,22 @@ use super::settings::{Method, Settings, scales};
 use crate::model::{About, Contact, Model};
 use crate::solver::{Driven, Effort, ExponentialAdams, PAST};
 
-/// The exponential method, and what it needs to know before it can begin.
+/// The exponential method, with the past forces that it needs to begin.
 pub(super) struct Shortcut {
     adams: ExponentialAdams<2>,
     relative: f64,
     absolute: Vec<f64>,
     /// Ends of the shortest steps, s.
     times: Vec<f64>,
-    /// The first of them that is ahead.
+    /// Index of the next of them.
     next: usize,
-    /// In a step of the exponential method.
+    /// True within a step of the exponential method.
     stride: usize,
-    /// The forces at the last times, with nothing between them that is not smooth.
+    /// Forces at the last times, between which the force is smooth.
     past: Vec<[f64; 2]>,
-    /// Where the wheel's centre was at the last time, m.
+    /// Position of the wheel's centre at the last time, m.
     centre: [f64; 2],
-    /// So many times are left out before the next attempt, if that one leads no further than the last.
+    /// Number of times to skip before the next attempt if that attempt gains nothing.
     patience: usize,
     effort: Effort,
 }
@@ -66,12 +66,12 @@ impl Shortcut {
         })
     }
 
-    /// The first time at which it wants to know the force, s.
+    /// The next time at which it needs the force, s.
     pub fn next_time(&self) -> f64 {
         self.times.get(self.next).copied().unwrap_or(f64::INFINITY)
     }
 
-    /// Leaves out the times up to `t`.
+    /// Skips the times up to `t`.
     pub fn pass(&mut self, t: f64) {
         while self.next_time() <= t {
             self.next += 1;
@@ -79,7 +79,7 @@ impl Shortcut {
         }
     }
 
-    /// Notes that the general method has come to time `t`, where the force is what it is.
+    /// Stores the force at time `t`, which the general method has reached.
     pub fn note<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>, t: f64, x: &[f64], force: Option<[f64; 2]>) {
         self.pass(t.next_down());
         if self.next_time() > t {
@@ -97,7 +97,7 @@ impl Shortcut {
         self.centre = centre;
     }
 
-    /// Begins at time `t`, if enough is known of what was before.
+    /// Begins at time `t` if enough past forces are known.
     pub fn begin(&mut self, t: f64, x: &[f64]) -> bool {
         let known = self
             .past
@@ -111,7 +111,7 @@ impl Shortcut {
         true
     }
 
-    /// A step: when it ends, and under which contact. None where it cannot be made, or there is no more to make.
+    /// Takes a step. Returns its end time and contact; `None` if the step is rejected or the ride is over.
     #[inline(always)]
     pub fn step<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>) -> Option<(f64, Contact)> {
         if self.wants_longer(rolling) {
@@ -128,14 +128,14 @@ impl Shortcut {
         good.then_some((time, smooth.contact))
     }
 
-    /// True where steps may be twice as long from here on, as soon as enough is known.
+    /// True if steps may be twice as long from here on.
     #[inline(always)]
     pub fn wants_longer<M: Model + ?Sized>(&self, rolling: &Rolling<'_, M>) -> bool {
         let left = self.times.len() - self.next;
         self.stride == 1 && left.is_multiple_of(2) && rolling.is_level(self.centre) && self.adams.may_double()
     }
 
-    /// Makes them so, if enough is known.
+    /// Doubles them if enough past forces are known.
     pub fn lengthen(&mut self) {
         if self.adams.lengthen() {
             self.stride = 2;
@@ -148,12 +148,12 @@ impl Shortcut {
         self.times.get(self.next + self.stride - 1).copied()
     }
 
-    /// Where the wheel's centre is, m.
+    /// Position of the wheel's centre, m.
     pub fn centre(&self) -> [f64; 2] {
         self.centre
     }
 
-    /// Counts a step that was attempted: where the wheel's centre is at its end, m, if it stands.
+    /// Counts an attempted step. If it is accepted, the wheel's centre is at this position at its end, m.
     #[inline(always)]
     pub fn count(&mut self, centre: Option<[f64; 2]>) {
         self.effort.evaluations += 1;
@@ -171,7 +171,7 @@ impl Shortcut {
         &mut self.adams
     }
 
-    /// What it is held to: relative to each state, and absolute.
+    /// Tolerances, relative to each state and absolute.
     pub fn tolerance(&self) -> (f64, &[f64]) {
         (self.relative, &self.absolute)
     }
@@ -181,7 +181,7 @@ impl Shortcut {
         self.adams.state()
     }
 
-    /// Ends: at which time, s, and what it cost.
+    /// Ends the shortcut. Returns the time, s, and the effort.
     pub fn end(&mut self) -> (f64, Effort) {
         self.past.clear();
         let ended = self.times[self.next - 1];
@@ -195,11 +195,11 @@ impl Shortcut {
     }
 }
 
-/// An axle under a force that is smooth from a point of the wheel's centre on.
+/// A linear axle under a force that is smooth from a position of the wheel's centre on.
 struct Smooth<'r, 'a, M: ?Sized> {
     rolling: &'r Rolling<'a, M>,
     centre: [f64; 2],
-    /// The last that was asked for.
+    /// The last contact that was computed.
     contact: Contact,
 }
 

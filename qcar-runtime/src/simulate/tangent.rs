@@ -1,4 +1,4 @@
-//! How a ride changes with the parameters of its car: forward sensitivities.
+//! Derivatives of a ride by the parameters of its car: forward sensitivities.
 //!
 //! Along each direction of the parameters the variational equation `dS/dt = ∂f/∂x S + ∂f/∂p d` is integrated with the
 //! motion, under the same error control. Its right-hand side is a central difference of `f` along `(S, d)`: internal
@@ -26,15 +26,15 @@ pub struct Tangent {
     pub slopes: Vec<Vec<Vec<f64>>>,
 }
 
-/// Step of the difference along a direction. Directions are about as large as the parameters: the error of the
-/// difference is its square, that of rounding 1e-16 over it.
+/// Step of the central difference along a direction. Directions are about as large as the parameters, so the truncation error is
+/// the square of the step, and the rounding error is 1e-16 divided by it.
 const STEP: f64 = 1e-5;
 
 /// Simulates a ride as [`ride`](super::ride()) does, with its derivatives along `directions`, each of which has an entry for
 /// every parameter: the derivative by ε of a ride whose parameters are `p + ε direction`.
 ///
 /// # Errors
-/// As [`ride`](super::ride()), and where a car that is moved a little along a direction cannot stand.
+/// As [`ride`](super::ride()), and if a car displaced along a direction has no static equilibrium.
 pub fn tangent<M: Model + ?Sized>(
     car: &Car<'_, M>,
     drive: &Drive<'_>,
@@ -80,7 +80,7 @@ fn along(from: &[f64], direction: &[f64], step: f64) -> Vec<f64> {
     from.iter().zip(direction).map(|(from, d)| from + step * d).collect()
 }
 
-/// A rolling model with its neighbours a step forward and a step backward along each direction.
+/// A rolling model, and for each direction the models with parameters one step forward and one step backward.
 struct Varied<'a, M: ?Sized> {
     rolling: Rolling<'a, M>,
     moved: Vec<[Rolling<'a, M>; 2]>,
@@ -91,11 +91,11 @@ struct Varied<'a, M: ?Sized> {
     /// Room for a state with its sensitivities, and for the rates and signals of a point.
     state: Vec<f64>,
     rates: Vec<f64>,
-    /// Room for what a neighbour says.
+    /// Room for the rate and outputs of a displaced model.
     neighbour: [Neighbour; 2],
 }
 
-/// A state beside the motion, its rate and its outputs.
+/// A displaced state with its rate and outputs.
 #[derive(Clone)]
 struct Neighbour {
     x: Vec<f64>,
@@ -155,7 +155,7 @@ impl<'a, M: Model + ?Sized> Varied<'a, M> {
 }
 
 impl Neighbour {
-    /// Looks at the motion of a neighbour in the state `x + step s`.
+    /// Evaluates a displaced model in the state `x + step s`.
     fn look<M: Model + ?Sized>(&mut self, rolling: &Rolling<'_, M>, t: f64, (x, s): (&[f64], &[f64]), step: f64) {
         for ((own, x), s) in self.x.iter_mut().zip(x).zip(s) {
             *own = x + step * s;
@@ -229,7 +229,7 @@ impl<M: Model + ?Sized> System for Varied<'_, M> {
         }
     }
 
-    /// The tyre loses or finds the ground.
+    /// One event: the tyre loses or regains contact.
     fn events(&self) -> usize {
         1
     }

@@ -5,7 +5,7 @@
 //! corrects the step and judges it. M. Hochbruck, A. Ostermann, "Exponential integrators", Acta Numerica 19 (2010),
 //! section 2.5, with the correction of the predictor-corrector pairs in Hairer, Nørsett, Wanner, III.1.
 
-// Several of them at once.
+// Several systems integrated together.
 mod abreast;
 
 use std::array;
@@ -21,11 +21,11 @@ pub trait Driven<const F: usize> {
     /// Writes `dx = A x + B force`.
     fn rate(&self, x: &[f64], force: [f64; F], dx: &mut [f64]);
 
-    /// The forces at time `t`; none where they are not smooth any more.
+    /// The forces at time `t`; `None` where they are not smooth.
     fn force(&mut self, t: f64, x: &[f64]) -> Option<[f64; F]>;
 }
 
-/// So many are kept, so that the step can be doubled.
+/// Number of past forces that are kept, so that the step can be doubled.
 const KEPT: usize = 2 * PAST - 1;
 
 /// The integrator, with the state and the past of the forces.
@@ -33,7 +33,7 @@ pub struct ExponentialAdams<const F: usize> {
     parts: Vec<Part>,
     /// For the shortest step, for twice that, and so on.
     corrections: Vec<Corrections<F>>,
-    /// Which of these steps is taken.
+    /// Index of the step length in use.
     rung: usize,
     /// The state.
     state: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct ExponentialAdams<const F: usize> {
     excess: Vec<f64>,
     /// Each force at the points of the past, the last first.
     past: [[f64; KEPT]; F],
-    /// At so many points they are known.
+    /// Number of points at which they are known.
     known: usize,
 }
 
@@ -105,12 +105,12 @@ impl<const F: usize> ExponentialAdams<F> {
         self.prepare();
     }
 
-    /// True where it was planned to double the step.
+    /// True if the step is to be doubled.
     pub fn may_double(&self) -> bool {
         self.rung + 1 < self.corrections.len()
     }
 
-    /// Doubles the step, and says whether it did: where that was planned, and enough of the past is known.
+    /// Doubles the step if that is intended and enough past forces are known. Returns whether it did.
     pub fn lengthen(&mut self) -> bool {
         let longer = self.may_double() && self.known == KEPT;
         if longer {
@@ -154,7 +154,7 @@ impl<const F: usize> ExponentialAdams<F> {
         good
     }
 
-    /// True where the error of no state is larger than allowed; what is not a number is larger.
+    /// True if no state's error exceeds its tolerance; an error that is not a number does.
     #[inline(always)]
     fn is_within(&mut self, off: [f64; F], relative: f64, absolute: &[f64]) -> bool {
         let n = self.state.len();
@@ -170,7 +170,7 @@ impl<const F: usize> ExponentialAdams<F> {
         excess.iter().filter(|excess| **excess <= 0.0).count() == n
     }
 
-    /// Makes what was foreseen the last state, with the forces as they are there, and by how much they are off.
+    /// Accepts the predicted state, with the forces there and their errors of prediction.
     #[inline(always)]
     fn go_on(&mut self, force: [f64; F], off: [f64; F]) {
         let n = self.state.len();
@@ -275,7 +275,7 @@ impl Part {
         }
     }
 
-    /// Makes what was foreseen the last state.
+    /// Accepts the predicted state.
     #[inline(always)]
     fn go_on(&mut self) {
         let n = self.states.len();
@@ -320,7 +320,7 @@ impl<const F: usize> Linear<F> {
         }
     }
 
-    /// The parts that do not depend on each other.
+    /// The independent parts of the system.
     fn parts(&self) -> Vec<Part> {
         let n = self.states.len();
         let mut group: Vec<usize> = (0..n).collect();

@@ -5,32 +5,32 @@ use crate::metric::Ground;
 use crate::response::parameters::Values;
 use crate::sensitivity::Chance;
 
-/// What a knob does to a parameter: the parameter is the knob times a factor, plus a constant.
+/// Effect of a knob on a parameter: the parameter is the knob times a factor, plus a constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Move {
     /// Place of the knob.
     pub knob: usize,
-    /// Place of the parameter, which leads its ties.
+    /// Index of the parameter; parameters tied to it follow.
     pub parameter: usize,
     /// How much it moves with the knob.
     pub factor: f64,
-    /// What is added.
+    /// The constant.
     pub constant: f64,
 }
 
 /// An axle whose parameters are moved.
 pub struct Axle<'a> {
-    /// What is measured.
+    /// The metrics.
     pub ground: &'a Ground<'a>,
-    /// What does not move.
+    /// Values of the parameters that stay.
     pub values: Values,
-    /// What does.
+    /// The knobs.
     pub moves: Vec<Move>,
     /// How many there are.
     pub knobs: usize,
     /// Means of readings, by their places: further results after the readings.
     pub means: Vec<Vec<usize>>,
-    /// What is not known of the parameters, whatever design is chosen.
+    /// Uncertainty of the parameters, the same for every design.
     pub chance: Chance,
 }
 
@@ -44,7 +44,7 @@ impl Axle<'_> {
         values
     }
 
-    /// What a knob moves, for each parameter.
+    /// The knob that changes each parameter.
     fn direction(&self, knob: usize, size: f64) -> Vec<f64> {
         let mut direction = vec![0.0; self.values.as_slice().len()];
         for own in self.moves.iter().filter(|own| own.knob == knob) {

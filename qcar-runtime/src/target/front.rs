@@ -36,14 +36,14 @@ pub struct Point {
     pub design: Vec<f64>,
     /// All results.
     pub values: Vec<f64>,
-    /// What it costs.
+    /// Its cost.
     pub cost: f64,
 }
 
 /// A front, in the order of its first result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Front {
-    /// None where no design was found that meets all limits.
+    /// `None` if no design meets all limits.
     pub points: Vec<Point>,
     /// Designs that were evaluated.
     pub evaluated: usize,
@@ -57,9 +57,9 @@ const SPREAD: f64 = 20.0;
 struct Member {
     places: Vec<f64>,
     values: Vec<f64>,
-    /// What is to be small.
+    /// Objectives to be minimised.
     aims: Vec<f64>,
-    /// The sum of all that exceeds limits.
+    /// Sum of all violations of limits.
     broken: f64,
     rank: usize,
     room: f64,
@@ -141,7 +141,7 @@ fn points_of(task: &Task<'_>, members: Vec<Member>) -> Vec<Point> {
     first.into_iter().map(point).collect()
 }
 
-/// True where a member is better in something and worse in nothing; what breaks limits less comes first.
+/// True if a member dominates another: a smaller violation of limits, or else better in one objective and worse in none.
 fn dominates(a: &Member, b: &Member) -> bool {
     if a.broken != b.broken {
         return a.broken < b.broken;

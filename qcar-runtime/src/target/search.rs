@@ -10,14 +10,14 @@ use super::task::{Task, is_met};
 use crate::progress::Told;
 use crate::random::SplitMix;
 
-/// What a search found.
+/// Result of a search.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Found {
     /// A value for each knob.
     pub design: Vec<f64>,
     /// Its results.
     pub values: Vec<f64>,
-    /// What it costs, with what missed wishes do.
+    /// Its cost, with the penalties of missed wishes.
     pub cost: f64,
     /// By how much each limit and coupling is exceeded, over its size; at most zero where it is met.
     pub excess: Vec<f64>,
@@ -38,11 +38,11 @@ const ITERATIONS: usize = 25;
 const FIRST: f64 = 0.3;
 const SMALLEST: f64 = 1e-4;
 const FINEST: f64 = 1e-8;
-/// A step is kept that gains so much of what was expected.
+/// Share of the predicted gain that a step must reach to be accepted.
 const GAIN: f64 = 0.05;
 /// So much inside its limit a result is aimed at: a search that ends at a limit would be beyond it as often as not.
 const MARGIN: f64 = 1e-4;
-/// What a knob costs at least, for a step to be unique.
+/// Least cost of a knob, which makes every step unique.
 const LEAST_COST: f64 = 1e-4;
 
 /// Searches, and reports its rounds to `told`. `None` if neither an evaluated design nor today's has results.
@@ -71,7 +71,7 @@ struct State {
     /// With that of missed wishes.
     cost: f64,
     excess: Vec<f64>,
-    /// By how much all that must hold is broken together.
+    /// Sum of the violations of all constraints.
     broken: f64,
     met: bool,
     multipliers: Vec<f64>,
@@ -101,7 +101,7 @@ impl State {
         self.cost + self.price * self.broken
     }
 
-    /// What is met comes before what is not, then what costs less.
+    /// Orders designs: feasible ones first, then by cost.
     fn rank(&self) -> f64 {
         if self.met {
             self.cost
@@ -129,7 +129,7 @@ fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
     State::at(task, today, price).into_iter().chain(looked).collect()
 }
 
-/// Goes down to a minimum of the merit, and asks more for broken limits as long as some are.
+/// Minimises the merit function, and raises the penalties as long as limits are violated.
 fn settle(task: &Task<'_>, mut state: State) -> State {
     for _ in 0..3 {
         state = descend(task, state, &vec![true; task.knobs.len()]);
@@ -248,7 +248,7 @@ fn expected(task: &Task<'_>, state: &State, slopes: &[Vec<f64>], step: &[f64]) -
     task.cost(&task.design(&places)) + task.missed(&after) + state.price * task.broken(&after, &task.margins(MARGIN))
 }
 
-/// Goes to designs that can be had: rounds, tries the neighbours of each knob, and lets the others follow.
+/// Moves to values that are available: rounds each knob, tries its neighbours, and optimises the other knobs again.
 fn had(task: &Task<'_>, from: State) -> State {
     let rounded = |places: &[f64]| task.places(&task.had(&task.design(places)));
     let follow = |state: State| {

@@ -59,7 +59,7 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Rounds in which a box that is good enough grows by so little that it soon is not, at most.
+/// Largest number of rounds in which a box that is good enough is enlarged a little.
 const FINAL_ROUNDS: usize = 30;
 const FINAL_GROWTH: f64 = 0.004;
 /// Designs that confirm a box are so many times those that judge it as it grows: the fewer they are, the more of them must be good, and
@@ -76,7 +76,7 @@ struct Drawn {
     places: Vec<f64>,
     /// Of each limit and coupling; `None` where there are no results.
     excess: Option<Vec<f64>>,
-    /// All that must hold does.
+    /// True if all constraints hold.
     good: bool,
 }
 

@@ -2,77 +2,77 @@
 
 /// Results of designs; a design has a value for each knob.
 pub trait Designs: Sync {
-    /// The results of a design; none where it has none.
+    /// The results of a design; `None` if it has none.
     fn values(&self, design: &[f64]) -> Option<Vec<f64>>;
 
-    /// For each result its derivative by each knob.
+    /// The derivatives of each result by each knob.
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>>;
 
-    /// Whether a design has but one set of results; else [`Designs::drawn`] gives what they may turn out as.
+    /// True if a design's results are certain; otherwise [`Designs::drawn`] gives random draws of them.
     fn is_certain(&self) -> bool {
         true
     }
 
-    /// The results of a design as they may turn out, for the draw of a number; none where it has none.
+    /// The results of a design in the draw of this number; `None` if it has none.
     fn drawn(&self, design: &[f64], _number: u64) -> Option<Vec<f64>> {
         self.values(design)
     }
 }
 
-/// What may move.
+/// The knobs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knob {
-    /// As messages call it.
+    /// Name for messages.
     pub name: String,
     /// Lower end of its range.
     pub lower: f64,
     /// Upper end, above the lower one.
     pub upper: f64,
-    /// Where it is now.
+    /// Present value.
     pub today: f64,
-    /// Between two values that can be had, counted from the lower end; `None` where all can.
+    /// Distance of available values, counted from the lower end; `None` if every value is available.
     pub step: Option<f64>,
-    /// Of a move over the whole range; it grows with the square of the move.
+    /// Cost of a move over the whole range; it grows with the square of the move.
     pub cost: f64,
 }
 
-/// Up to where a result is good.
+/// A limit of a result.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// Place of the result.
+    /// Index of the result.
     pub result: usize,
-    /// Which side of the value is good.
+    /// The admissible side of the value.
     pub sense: Sense,
-    /// In the unit of the result.
+    /// The limit, in the unit of the result.
     pub value: f64,
-    /// What it costs to miss it by its own size, of a wish; `None` for what must hold.
+    /// For a wish, the cost of missing it by its own size; `None` for a limit that must hold.
     pub wish: Option<f64>,
-    /// How far a design's result is kept from it, in its unit, for what is not known of the result.
+    /// Margin for the uncertainty of the result, in its unit.
     pub margin: f64,
 }
 
-/// Which side of a limit is good.
+/// The admissible side of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sense {
-    /// Below.
+    /// Results below it.
     AtMost,
-    /// Above.
+    /// Results above it.
     AtLeast,
 }
 
 /// A sum of knobs that must not exceed a value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupling {
-    /// Of each knob.
+    /// Coefficient of each knob.
     pub factors: Vec<f64>,
-    /// The most.
+    /// Largest value of the sum.
     pub most: f64,
 }
 
-/// What exceeds a limit by no more of its size is met: it reads like the limit where four digits are printed.
+/// Relative excess up to which a limit counts as met: it reads like the limit if four digits are printed.
 pub const TOLERANCE: f64 = 5e-5;
 
-/// Whether an excess is none.
+/// True if an excess counts as none.
 pub fn is_met(excess: f64) -> bool {
     excess <= TOLERANCE
 }
@@ -80,24 +80,23 @@ pub fn is_met(excess: f64) -> bool {
 /// All of it.
 #[derive(Clone)]
 pub struct Task<'a> {
-    /// What gives results.
+    /// The designs.
     pub designs: &'a dyn Designs,
-    /// What may move.
+    /// The knobs.
     pub knobs: Vec<Knob>,
-    /// What is wanted.
+    /// The limits.
     pub limits: Vec<Limit>,
-    /// What must hold between knobs.
+    /// Couplings between knobs.
     pub couplings: Vec<Coupling>,
 }
 
 impl Limit {
-    /// By how much a result is beyond the limit or nearer to it than its margin, over the size of the limit; at most zero where it is
-    /// met.
+    /// Violation of the limit with its margin, relative to the size of the limit; at most zero if it is met.
     pub fn excess(&self, value: f64) -> f64 {
         (self.sign() * (value - self.value) + self.margin) / self.size()
     }
 
-    /// The derivative of that.
+    /// Derivative of the violation.
     pub fn slope(&self, slope: f64) -> f64 {
         self.sign() * slope / self.size()
     }
@@ -121,12 +120,12 @@ impl Limit {
 }
 
 impl Knob {
-    /// A value by its place in the range, 0 to 1.
+    /// The value at a fraction of the range, 0 to 1.
     pub fn at(&self, place: f64) -> f64 {
         self.lower + place * self.span()
     }
 
-    /// The place of a value in the range.
+    /// The fraction of the range at which a value lies.
     pub fn place(&self, value: f64) -> f64 {
         ((value - self.lower) / self.span()).clamp(0.0, 1.0)
     }
@@ -136,7 +135,7 @@ impl Knob {
         self.upper - self.lower
     }
 
-    /// The nearest value that can be had.
+    /// The nearest available value.
     pub fn had(&self, value: f64) -> f64 {
         let last = |step: f64| (self.span() / step + 1e-9).floor();
         let nearest = |step: f64| self.lower + step * ((value - self.lower) / step).round().clamp(0.0, last(step));

@@ -1,6 +1,8 @@
 //! Models for the tests, assembled from masses and links by incidence: `M q̈ + C q̇ + K q = k z_pad + c ż_pad`.
 
+pub mod random;
 pub mod strut;
+pub mod swept;
 pub mod track;
 
 use nalgebra::{Complex, DMatrix, DVector};

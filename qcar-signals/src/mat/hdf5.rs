@@ -4,11 +4,11 @@
 //! Source: "HDF5 File Format Specification" 2.0 of The HDF Group. Files of superblock versions 2 and 3 are read by the crate that
 //! writes them here.
 
-// What the messages of an object header say.
+// Messages of an object header.
 mod messages;
-// The bytes of a dataset.
+// The stored bytes of a dataset.
 mod storage;
-// Newer versions.
+// Superblock versions 2 and 3.
 mod latest;
 
 use std::collections::HashSet;

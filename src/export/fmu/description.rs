@@ -1,6 +1,6 @@
 //! `modelDescription.xml`.
 
-// Each version of the interface has its own.
+// The description of each FMI version.
 pub mod fmi2;
 pub mod fmi3;
 

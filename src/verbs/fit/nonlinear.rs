@@ -2,7 +2,7 @@
 //!
 //! The residuals are those of discovery, over their uncertainty, and so are the errors of sensors that go with them.
 
-// As text and JSON.
+// Its result as text and JSON.
 mod shown;
 
 use std::collections::BTreeMap;

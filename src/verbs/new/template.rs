@@ -15,9 +15,9 @@ use crate::parameters;
 use crate::spreadsheet::{CellFormats, filled};
 use rows::{Row, rows};
 
-// What stands in it.
+// The rows of the workbook.
 mod rows;
-// The sheet of the values.
+// The sheet of values.
 mod values;
 // The sheets of curves and cleats.
 mod tables;

@@ -1,14 +1,14 @@
 //! From the file to a task: names become places, texts become numbers in SI.
 
-// What may move.
+// The parameters that may change.
 mod knobs;
-// What must hold between parameters.
+// Constraints between parameters.
 mod couplings;
-// What must hold of metrics.
+// Limits of metrics.
 mod limits;
-// What is not known.
+// Uncertainty of the parameters.
 mod uncertainty;
-// What else is asked for: the front, and the solution space.
+// Front and solution space.
 mod questions;
 
 use qcar_runtime::error::{InputError, Problem};

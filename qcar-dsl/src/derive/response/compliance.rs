@@ -1,4 +1,4 @@
-//! What moves under which forces.
+//! Compliance: amplitudes of motion under unit forces.
 
 use std::collections::BTreeMap;
 

@@ -1,4 +1,4 @@
-//! What a force input pushes, by itself and through the laws that use it.
+//! The load of a force input, direct and through the laws that use it.
 
 use crate::check::Checked;
 use crate::derive::complex::Complex;

@@ -12,19 +12,19 @@ use crate::front::syntax::{Axle, AxleKind, File, Item, Path};
 use crate::source::{Source, Span};
 
 mod scan;
-// What the Rust lexer may see.
+// A cursor over the tokens.
 mod tokens;
-// The grammar, from the leaves up: units and numbers.
+// Units and numbers.
 mod unit;
 // Expressions and conditions.
 mod expression;
-// What models and laws share.
+// Syntax that models and laws share.
 mod block;
 // Statements of laws.
 mod law;
 // Statements of models.
 mod statement;
-// What changes a model.
+// Statements of effects.
 mod effect;
 
 use statement::Scope;

@@ -7,7 +7,7 @@ use crate::front::syntax::{
     Parameter, ParameterDefault, Requirement, Statement,
 };
 
-// What changes a model.
+// Effects.
 mod effect;
 // Expressions, conditions, numbers and units.
 mod expression;

@@ -1,4 +1,4 @@
-//! What the leaves of a program are read from.
+//! The arguments of a program, from which its leaves are read.
 
 use std::collections::BTreeSet;
 use std::ops::Range;

@@ -1,6 +1,6 @@
 //! The method for several systems abreast, a lane each: all loops run over the lanes.
 //!
-//! Each lane has the bits of [`ExponentialAdams`], whatever the others do.
+//! Each lane gives the same bits as [`ExponentialAdams`], whatever the other lanes do.
 
 use std::array;
 
@@ -8,7 +8,7 @@ use super::{ExponentialAdams, KEPT};
 use crate::model::{LANES, Lanes};
 use crate::solver::polynomial::{EXTRAPOLATION, PAST};
 
-/// The integrator of systems whose states and forces depend on each other in the same places.
+/// Integrator of systems whose matrices have the same sparsity.
 pub struct ExponentialAbreast<const F: usize> {
     parts: Vec<Part>,
     /// For each force how each state is corrected, and how much of that is the error that is judged.
@@ -26,7 +26,7 @@ pub struct ExponentialAbreast<const F: usize> {
     off: [Vec<Lanes>; F],
     /// Each force at the points of the past, the last first.
     past: [[Lanes; KEPT]; F],
-    /// At so many points they are known.
+    /// Number of points at which they are known.
     known: [usize; LANES],
 }
 
@@ -66,13 +66,13 @@ impl<const F: usize> ExponentialAbreast<F> {
         }
     }
 
-    /// True where a system has its states and forces in the same places.
+    /// True if a system's matrices have the same sparsity.
     pub fn fits(&self, one: &ExponentialAdams<F>) -> bool {
         let places = self.parts.iter().map(|part| (&part.states, &part.forces));
         places.eq(one.parts.iter().map(|part| (&part.states, &part.forces)))
     }
 
-    /// Goes on in a lane from where a system is.
+    /// Takes a system into a lane, in its present state.
     pub fn take(&mut self, lane: usize, one: &ExponentialAdams<F>) {
         let put = |rows: &mut [Lanes], values: &[f64]| {
             rows.iter_mut().zip(values).for_each(|(row, value)| row[lane] = *value);
@@ -97,7 +97,7 @@ impl<const F: usize> ExponentialAbreast<F> {
         self.known[lane] = one.known;
     }
 
-    /// Gives a lane back to its system: where it is, and what forces were there before. The lane is free.
+    /// Returns a lane's state and past forces to its system, and frees the lane.
     pub fn give(&mut self, lane: usize, one: &mut ExponentialAdams<F>) {
         let get = |values: &mut [f64], rows: &[Lanes]| {
             values.iter_mut().zip(rows).for_each(|(value, row)| *value = row[lane]);
@@ -117,7 +117,7 @@ impl<const F: usize> ExponentialAbreast<F> {
         }
     }
 
-    /// True where enough of the past is known in a lane for a step of twice the length.
+    /// True if enough past forces of a lane are known for a step of twice the length.
     pub fn may_lengthen(&self, lane: usize) -> bool {
         self.known[lane] == KEPT
     }

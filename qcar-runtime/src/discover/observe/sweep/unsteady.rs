@@ -14,12 +14,13 @@ use rayon::prelude::*;
 use super::measured::AROUND;
 use super::{excitation, linear, nonlinear};
 use crate::campaign::Role;
-use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{Evidence, Kind, Misread, PredictError, Series, Stimulus, order_of, signal_of};
 use crate::model::{Model, Signal};
 use crate::response::parameters::Values;
 use crate::response::ratio::ratio;
 use crate::response::signal::SignalError;
+use crate::simulate::replay::reading;
+use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::spectrum::{synthesize, transform};
 use crate::transmissibility::Point;
 use crate::transmissibility::harmonics::Swept;
@@ -178,7 +179,6 @@ impl<'a> Driven<'a> {
             band: self.band,
             periodic: false,
             samples: self.samples.len(),
-            nodes: 0,
         };
         let readings = sensors.iter().map(|sensor| reading(model.about(), sensor));
         let readings: Vec<Reading> = readings.collect::<Result<_, _>>()?;

@@ -1,9 +1,7 @@
 //! Predicts time histories: recorded inputs drive the model, and its sensors are read at the recorded times.
 
 use nalgebra::Complex;
-use rayon::prelude::*;
 
-use crate::discover::observe::replay::{Between, Reading, Recorded, Replay, reading};
 use crate::discover::observe::{
     Delay, Evidence, Free, Misread, PredictError, Prediction, Series, Spread, Stimulus, excitation_of, is_seen,
     order_of, signal_of,
@@ -11,6 +9,8 @@ use crate::discover::observe::{
 use crate::model::{About, Model};
 use crate::response::parameters::Values;
 use crate::response::signal::SignalError;
+use crate::simulate::replay::reading;
+use crate::simulate::{Between, Reading, Recorded, Replay};
 use crate::transmissibility::Point;
 
 /// Parameter change for a finite difference, relative to its value: about the square root of the rounding error of a
@@ -60,16 +60,14 @@ pub fn history(
         values.as_slice().to_vec()
     };
     let others = replay.like(base, &free.iter().zip(&steps).map(moved).collect::<Vec<_>>(), &begin);
-    let states = if begun {
-        unknown(model.about(), spread)
+    // With the step of each for a difference.
+    let states: Vec<(usize, f64)> = if begun {
+        let states = unknown(model.about(), spread).into_iter();
+        states.map(|(state, sigma)| (state, OF_SPREAD * sigma)).collect()
     } else {
         Vec::new()
     };
-    let elsewhere = states.par_iter().map(|&(state, sigma)| {
-        let begin: Vec<_> = begin.iter().copied().chain([(state, OF_SPREAD * sigma)]).collect();
-        replay.beside(base, p, &begin)
-    });
-    let elsewhere: Vec<Vec<Vec<f64>>> = elsewhere.collect();
+    let by_states = replay.by_initial_states(base, p, &begin, &states);
     let shown = |signals: &[Vec<f64>], column: usize| stimulus.of_band(&signals[column]);
     let predict = |(column, (place, series)): (usize, &(usize, &Series))| {
         let late = misread.late.get(*place).copied().unwrap_or(0.0);
@@ -89,14 +87,18 @@ pub fn history(
                 .map(|(moved, value)| Complex::from((moved - value) / step))
                 .collect()
         };
+        let along = |signals: &[Vec<f64>]| -> Vec<Complex<f64>> {
+            let (slope, _) = read(&shown(signals, column));
+            slope.into_iter().map(Complex::from).collect()
+        };
         let name = |state: usize| model.about().states[state].name.to_string();
         Prediction {
             series: *place,
             slopes: steps.iter().zip(&others).map(|(step, own)| slope(*step, own)).collect(),
             begun: states
                 .iter()
-                .zip(&elsewhere)
-                .map(|(&(state, sigma), own)| (name(state), slope(OF_SPREAD * sigma, own)))
+                .zip(&by_states)
+                .map(|(&(state, _), own)| (name(state), along(own)))
                 .collect(),
             value: value.iter().map(|&value| Complex::from(value)).collect(),
             delay: Some(Delay {
@@ -183,7 +185,6 @@ fn prepare<'a>(
         band: (0.0, *rate),
         periodic: *periodic,
         samples: inputs.samples,
-        nodes: 0,
     };
     let restarts = restarts
         .iter()

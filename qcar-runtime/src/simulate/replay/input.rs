@@ -31,13 +31,11 @@ pub struct Between {
     pub periodic: bool,
     /// Number of samples.
     pub samples: usize,
-    /// Number of nodes for each sample.
-    pub nodes: usize,
 }
 
-/// Node values for each input of the model; zero for an input that was not recorded.
-pub fn rows(about: &About, recorded: &[Recorded], how: &Between) -> Vec<Vec<f64>> {
-    let length = how.samples * how.nodes;
+/// Node values for each input of the model, `nodes` of them for each sample; zero for an input that was not recorded.
+pub fn rows(about: &About, recorded: &[Recorded], how: &Between, nodes: usize) -> Vec<Vec<f64>> {
+    let length = how.samples * nodes;
     let row = |kind| {
         let (place, power) = match kind {
             InputKind::Force(place) => (place, 0),
@@ -48,8 +46,8 @@ pub fn rows(about: &About, recorded: &[Recorded], how: &Between) -> Vec<Vec<f64>
         };
         match recorded.iter().find(|r| r.excitation == usize::from(place)) {
             None => vec![0.0; length],
-            Some(r) if !how.band_limited && r.power == power => held(r.samples, how.nodes),
-            Some(r) => derived(r.samples, power - r.power, how),
+            Some(r) if !how.band_limited && r.power == power => held(r.samples, nodes),
+            Some(r) => derived(r.samples, power - r.power, how, nodes),
         }
     };
     about.inputs.iter().map(|input| row(input.kind)).collect()
@@ -66,7 +64,7 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 ///
 /// The straight line between the ends is treated separately, since a record with different ends would ring. An integral
 /// begins at zero, since its constant moves road and masses alike.
-fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
+fn derived(samples: &[f64], power: i32, how: &Between, nodes: usize) -> Vec<f64> {
     let line = if power < 0 || how.periodic {
         Line::default()
     } else {
@@ -77,8 +75,8 @@ fn derived(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
         .enumerate()
         .map(|(k, y)| y - line.at(k as f64 / how.rate))
         .collect();
-    let mut row = differentiated(&bent, power, how);
-    let step = 1.0 / (how.rate * how.nodes as f64);
+    let mut row = differentiated(&bent, power, how, nodes);
+    let step = 1.0 / (how.rate * nodes as f64);
     let first = if power < 0 && !how.periodic { row[0] } else { 0.0 };
     for (k, value) in row.iter_mut().enumerate() {
         *value += match power {
@@ -112,7 +110,7 @@ impl Line {
     }
 }
 
-fn differentiated(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
+fn differentiated(samples: &[f64], power: i32, how: &Between, nodes: usize) -> Vec<f64> {
     let spacing = how.rate / samples.len() as f64;
     let of_line = |(k, line): (usize, Complex<f64>)| {
         let f = k as f64 * spacing;
@@ -124,11 +122,11 @@ fn differentiated(samples: &[f64], power: i32, how: &Between) -> Vec<f64> {
         let inside = f >= how.band.0 && f <= how.band.1;
         // The inverse transform gives `nodes` times as many samples from the same lines.
         if inside {
-            line * factor * how.nodes as f64
+            line * factor * nodes as f64
         } else {
             Complex::ZERO
         }
     };
     let lines: Vec<Complex<f64>> = transform(samples).into_iter().enumerate().map(of_line).collect();
-    synthesize(&lines, samples.len() * how.nodes)
+    synthesize(&lines, samples.len() * nodes)
 }

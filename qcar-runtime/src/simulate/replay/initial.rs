@@ -1,0 +1,88 @@
+//! How the readings of a linear model depend on the states with which a record begins.
+//!
+//! A reading is a row times the states, `c x`. After `k` steps of the transition matrix `Φ` it depends on the initial states by
+//! `c Φᵏ`. This row is advanced instead of one state vector for each initial state, so the work grows with the number of
+//! nonzeros of A, whatever the number of states.
+
+use super::Reading;
+use crate::matrices::at_rest;
+use crate::model::{About, Entry, Matrix, Model};
+
+/// A linear model that nothing drives, in the steps of a replay.
+pub struct FreeResponse<'a> {
+    about: &'a About,
+    /// The nonzeros of A and C.
+    nonzeros: Vec<(&'a Entry, f64)>,
+    /// Of a whole step, s.
+    length: f64,
+}
+
+impl<'a> FreeResponse<'a> {
+    /// For steps of a length in s.
+    pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
+        let about = model.about();
+        Self {
+            about,
+            nonzeros: about.matrices.iter().zip(at_rest(model, p)).collect(),
+            length,
+        }
+    }
+
+    /// For each of some states the samples of a reading that follow from it where it begins at one and all others at zero.
+    /// `halvings` are those of the steps of each sample.
+    pub fn of<'s>(
+        &self,
+        reading: Reading,
+        halvings: impl Iterator<Item = &'s [u8]>,
+        states: &[(usize, f64)],
+    ) -> Vec<Vec<f64>> {
+        let mut row = self.row(reading);
+        let mut responses = vec![Vec::new(); states.len()];
+        for steps in halvings {
+            for (response, &(state, _)) in responses.iter_mut().zip(states) {
+                response.push(row[state]);
+            }
+            steps.iter().for_each(|&halvings| self.step(&mut row, halvings));
+        }
+        responses
+    }
+
+    /// What a reading takes of each state.
+    fn row(&self, reading: Reading) -> Vec<f64> {
+        let mut row = vec![0.0; self.about.states.len()];
+        match reading {
+            Reading::State(state) => row[state] = 1.0,
+            Reading::Output(output) => {
+                for (entry, value) in self.of_matrix(Matrix::C) {
+                    if usize::from(entry.row) == output {
+                        row[usize::from(entry.column)] = value;
+                    }
+                }
+            }
+        }
+        row
+    }
+
+    /// The row times the transition matrix of the Runge-Kutta method, `1 + hA + (hA)²/2 + (hA)³/6 + (hA)⁴/24`, for each part of
+    /// a step.
+    fn step(&self, row: &mut [f64], halvings: u8) {
+        let parts = 1_u32 << halvings;
+        let h = self.length / f64::from(parts);
+        for _ in 0..parts {
+            let mut term = row.to_vec();
+            for power in 1..=4 {
+                let mut next = vec![0.0; row.len()];
+                for (entry, value) in self.of_matrix(Matrix::A) {
+                    next[usize::from(entry.column)] += h / f64::from(power) * value * term[usize::from(entry.row)];
+                }
+                row.iter_mut().zip(&next).for_each(|(row, next)| *row += next);
+                term = next;
+            }
+        }
+    }
+
+    fn of_matrix(&self, matrix: Matrix) -> impl Iterator<Item = (&Entry, f64)> {
+        let nonzeros = self.nonzeros.iter().copied();
+        nonzeros.filter(move |(entry, _)| entry.matrix == matrix)
+    }
+}
