@@ -105,6 +105,7 @@ fn everything(model: &dyn Model) {
     model.rolling_outputs(&constants, &x, &u, &contact, &mut y);
     let (ps, xs, us) = (rows(p.len()), rows(x.len()), rows(u.len()));
     model.prepare_sets(&ps, &mut rows(about.constants));
+    let of_sets = rows(about.constants);
     model.derivative_sets(&rows(about.constants), &xs, &us, &mut rows(x.len()));
     model.matrices_sets(&ps, &xs, &us, &mut rows(about.matrices.len()));
     model.sensitivities_sets(&ps, &xs, &us, &mut rows(about.sensitivities.len()));
@@ -114,6 +115,7 @@ fn everything(model: &dyn Model) {
             let (re, im, d_re, d_im) = (&mut room(n)[..], &mut room(n)[..], &mut room(m)[..], &mut room(m)[..]);
             let jacobian = wanted.then_some((d_re, d_im));
             model.response(excitation, &constants, &[1.0; LANES], ResponseMut { re, im, jacobian });
+            model.response_sets(excitation, &of_sets, &[1.0], wanted, &mut rows(layout.rows(wanted)));
         }
     }
 }
