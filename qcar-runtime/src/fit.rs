@@ -23,8 +23,10 @@ mod uncertainty;
 pub mod quality;
 // The result as values to print or to serialise.
 pub mod report;
-// Intervals of parameters by their profiles.
+// Intervals of parameters by their profiles,
 pub mod profile;
+// and by fits to what might have been measured.
+pub mod bootstrap;
 // The errors that a fit is expected to have.
 mod forecast;
 // What a run says of a place,
