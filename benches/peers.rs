@@ -66,7 +66,7 @@ fn main() {
             way(&format!("{name}, eight sets{suffix}"), LANES, work)
         })
     };
-    let sets = of_sets("", Sets::linearise);
+    let sets = of_sets("", |sets| sets.linearise());
     table(
         "A, B, C, D and all Jacobians",
         "matrices",
@@ -81,7 +81,7 @@ fn main() {
         50,
         responses
             .into_iter()
-            .chain(of_sets(", four lines at a time", Sets::respond)),
+            .chain(of_sets(", four lines at a time", |sets| sets.respond())),
         &peers,
     );
     let (plan, levels) = (fit::plan(), [fit::level()]);

@@ -36,6 +36,11 @@ fn main() {
     row("A, B, C, D and all Jacobians", 2000, ways.map(linearise));
     row("the same of eight sets", 500, ways.map(linearise_sets));
     row("300 lines, 5 channels, Jacobian", 10, ways.map(respond));
+    row(
+        "the same of eight sets, four lines at a time",
+        2,
+        ways.map(respond_sets),
+    );
     row("equations of motion", 10_000, ways.map(move_once));
     let (plan, levels) = (fit::plan(), [fit::level()]);
     let setups = ways.map(|model| Setup::new(model, &plan, &levels).expect("the plan suits the model"));
@@ -133,6 +138,11 @@ fn linearise_sets(model: &dyn Model) -> Work<'_> {
 fn respond(model: &dyn Model) -> Work<'_> {
     let mut subject = Subject::new(model);
     Box::new(move || black_box(&mut subject).respond())
+}
+
+fn respond_sets(model: &dyn Model) -> Work<'_> {
+    let mut sets = Sets::new(model);
+    Box::new(move || black_box(&mut sets).respond())
 }
 
 fn move_once(model: &dyn Model) -> Work<'_> {

@@ -133,7 +133,7 @@ pub fn difference(peer: Option<&Peer>) -> String {
 
 /// NaN where one is, so that nothing is taken for right that is no number.
 fn larger(a: f64, b: f64) -> f64 {
-    if a >= b { a } else { b }
+    if a >= b || a.is_nan() { a } else { b }
 }
 
 fn number(word: &str) -> f64 {
