@@ -1,5 +1,6 @@
 //! The ride of all programs: axle_d in z and x at 30 km/h over a cleat of 30 mm, from rest to the last state, at a tolerance of 1e-6.
 
+use models::axle_d::AxleD;
 use qcar_runtime::model::{LANES, Model, StateKind};
 use qcar_runtime::road::Road;
 use qcar_runtime::simulate::{AntiAlias, Drive, Kept, Method, Ridden, Settings, end_of_ride, rides_abreast};
@@ -36,11 +37,7 @@ fn end(samples: usize) -> f64 {
 /// What a program is told of car, tyre and road.
 pub fn told() -> Vec<String> {
     let (parameters, road) = (cleat::parameters(), road());
-    let of_model = models::axle_d::AxleD
-        .about()
-        .parameters
-        .iter()
-        .zip(parameters.as_slice());
+    let of_model = AxleD.about().parameters.iter().zip(parameters.as_slice());
     let set = |name: &str, value: f64| format!("set {name} {value:?}");
     let vertices = road.vertices();
     // The circle reaches the step no earlier than with its foremost point.
@@ -105,11 +102,10 @@ pub fn abreast<M: Model + ?Sized>(model: &M) -> impl FnMut() {
 /// # Panics
 /// Where that is no matter of the tolerance.
 pub fn difference(peer: Option<&Peer>) -> String {
-    let model = &models::axle_d::AxleD;
     let worst = PROBES.into_iter().map(|samples| {
-        let exact = states(model, samples, EXACT);
+        let exact = states(samples, EXACT);
         let found = match peer {
-            None => states(model, samples, 1e-6),
+            None => states(samples, 1e-6),
             Some(peer) => {
                 peer.tell(&format!("set end {:?}", end(samples)));
                 let shown = peer.shown("ride");
@@ -141,17 +137,17 @@ fn number(word: &str) -> f64 {
 }
 
 /// The states at the end of so many samples, by mass, axis and order.
-fn states<M: Model + ?Sized>(model: &M, samples: usize, tolerance: f64) -> Vec<(String, f64)> {
+fn states(samples: usize, tolerance: f64) -> Vec<(String, f64)> {
     let (parameters, road) = (cleat::parameters(), road());
     let settings = Settings {
         method: Method::Adaptive(tolerance),
         ..Settings::default()
     };
-    let ended = end_of_ride(&cleat::on_tyre(model, &parameters), &drive(&road, samples), &settings);
+    let ended = end_of_ride(&cleat::car(&parameters), &drive(&road, samples), &settings);
     let (x, _) = ended.expect("it rides");
     let name = |state: &qcar_runtime::model::State| {
         let order = usize::from(state.kind == StateKind::Velocity);
         format!("{} {} {order}", state.location, state.axis)
     };
-    model.about().states.iter().map(name).zip(x).collect()
+    AxleD.about().states.iter().map(name).zip(x).collect()
 }
