@@ -106,10 +106,17 @@ static Point contact(const Point &centre, const Point &velocity, std::size_t &ne
         const Point from = {road[k][0] - centre.x, road[k][1] - centre.z}, to = {road[k + 1][0] - centre.x, road[k + 1][1] - centre.z};
         const Point d = {to.x - from.x, to.z - from.z};
         const double a = d.x * d.x + d.z * d.z, b = from.x * d.x + from.z * d.z, c = from.x * from.x + from.z * from.z - squared;
-        const double under = b * b - a * c;
-        if (under <= 0) continue;
-        const double root = std::sqrt(under), enters = (-b - root) / a, leaves = (-b + root) / a;
-        if (enters >= 1 || leaves <= 0) continue;
+        const double end = a + 2 * b + c;
+        double enters = 0, leaves = 1;
+        // Most pieces are all inside, or outside with no nearest point between their ends.
+        if (c >= 0 && end >= 0 && (b >= 0 || a + b <= 0)) continue;
+        if (c >= 0 || end >= 0) {
+            const double under = b * b - a * c;
+            if (under <= 0) continue;
+            const double root = std::sqrt(under);
+            if (c >= 0) enters = (-b - root) / a;
+            if (end >= 0) leaves = (-b + root) / a;
+        }
         const Point first = enters > 0 ? from + enters * d : from, last = leaves < 1 ? from + leaves * d : to;
         if (enters > 0) entry = first;
         pieces++;
