@@ -33,9 +33,17 @@ fn response_and_jacobian(mut subject: Subject<'static>) -> Subject<'static> {
     subject
 }
 
+#[library_benchmark]
+#[bench::axle_d(Sets::new(MODEL))]
+fn response_and_jacobian_of_eight_sets(mut sets: Sets<'static>) -> Sets<'static> {
+    black_box(&mut sets).respond();
+    sets
+}
+
 library_benchmark_group!(
     name = models;
-    benchmarks = matrices_and_jacobians, matrices_and_jacobians_of_eight_sets, response_and_jacobian
+    benchmarks = matrices_and_jacobians, matrices_and_jacobians_of_eight_sets, response_and_jacobian,
+        response_and_jacobian_of_eight_sets
 );
 
 /// The counting itself.

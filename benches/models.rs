@@ -41,6 +41,13 @@ fn response_and_jacobian(bencher: Bencher) {
     bencher.bench_local(|| black_box(&mut subject).respond());
 }
 
+/// The same of eight parameter sets together, four lines at a time.
+#[divan::bench]
+fn response_and_jacobian_of_eight_sets(bencher: Bencher) {
+    let mut sets = Sets::new(MODEL);
+    bencher.bench_local(|| black_box(&mut sets).respond());
+}
+
 /// The equations of motion once.
 #[divan::bench(sample_size = 1000)]
 fn derivative(bencher: Bencher) {

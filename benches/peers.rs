@@ -1,10 +1,11 @@
-//! qcar beside others on the same work: code written by hand, CasADi's C, Ceres, NumPy and SciPy.
+//! qcar beside others on the same work: code written by hand, CasADi's C, Ceres, NumPy and SciPy, and of rides Boost.odeint.
 //!
-//! `cargo bench --bench peers` builds what it can (g++, libceres-dev; casadi, numpy and scipy for the Python in `target/python`, else
+//! `cargo bench --bench peers` builds what it can (g++, libceres-dev, libboost-dev; casadi, numpy and scipy for the Python in `target/python`, else
 //! `python3`), says what is missing, holds the results of each against qcar's, and times all of them in turn. The fastest
 //! round counts, which other programs on the machine have disturbed least; others tell their processor time, qcar goes by the clock.
 //! `docs/benchmarks.md` holds what it prints. The tasks are the same to the letter: the vertical chain of axle_d of `benches/subject`,
-//! 300 lines, five accelerations over the pad; the fit has qcar's residuals, bounds, starts and tolerances.
+//! 300 lines, five accelerations over the pad; the fit has qcar's residuals, bounds, starts and tolerances. A ride is
+//! that of `benches/cleat` without a record.
 
 // Programs of others.
 #[path = "peers/child.rs"]
@@ -12,7 +13,11 @@ mod child;
 // What they find.
 #[path = "peers/judge.rs"]
 mod judge;
+// What they ride.
+#[path = "peers/rides.rs"]
+mod rides;
 
+mod cleat;
 mod fit;
 mod subject;
 
@@ -40,21 +45,28 @@ struct Way<'a> {
 
 fn main() {
     let from_disk = compile_file(Path::new(""), "benches/subject/axle_d_z.axle").expect("the model can be read");
-    let machine = Machine::new(&from_disk.compiled.expect("the model compiles"));
+    let compiled = from_disk.compiled.expect("the model compiles");
+    let (machine, narrow) = (Machine::new(&compiled), Machine::narrow(&compiled));
     let (peers, missing) = child::all();
     for reason in missing {
         println!("left out: {reason}");
     }
     println!("{}, one thread, the fastest of {ROUNDS} rounds in turn\n", processor());
     println!("| task | by | time | qcar / it | differs from qcar by |\n|---|---|---|---|---|");
-    let models: [(&str, &dyn Model); 2] = [("qcar", MODEL), ("qcar, from a file", &machine)];
+    let models: [(&str, &dyn Model); 3] = [
+        ("qcar", MODEL),
+        ("qcar, from a file", &machine),
+        ("qcar, from a file, AVX alone", &narrow),
+    ];
     let linear = models.map(|(name, model)| way(name, 1, subject(model, Subject::linearise)));
-    let sets = models.map(|(name, model)| {
-        let mut sets = Sets::new(model);
-        way(&format!("{name}, eight sets"), LANES, move || {
-            black_box(&mut sets).linearise()
+    let of_sets = |suffix: &'static str, work: fn(&mut Sets)| {
+        models.map(|(name, model)| {
+            let mut sets = Sets::new(model);
+            let work = move || work(black_box(&mut sets));
+            way(&format!("{name}, eight sets{suffix}"), LANES, work)
         })
-    });
+    };
+    let sets = of_sets("", |sets| sets.linearise());
     table(
         "A, B, C, D and all Jacobians",
         "matrices",
@@ -67,7 +79,9 @@ fn main() {
         "300 lines, 5 channels, Jacobian",
         "response",
         50,
-        responses.into_iter(),
+        responses
+            .into_iter()
+            .chain(of_sets(", four lines at a time", |sets| sets.respond())),
         &peers,
     );
     let (plan, levels) = (fit::plan(), [fit::level()]);
@@ -82,6 +96,18 @@ fn main() {
         way(name, 1, move || drop(black_box(setup.local(black_box(&start)))))
     });
     table("fit of 12 parameters", "fit", 1, fits.into_iter(), &peers);
+    let axle = models::axle_d::AxleD;
+    let rides = [
+        way("qcar", 1, rides::alone(&axle)),
+        way("qcar, 32 rides abreast", rides::ABREAST, rides::abreast(&axle)),
+    ];
+    table(
+        "cleat run of 1 s without a record",
+        "ride",
+        1,
+        rides.into_iter(),
+        &peers,
+    );
 }
 
 fn subject<'a>(model: &'a dyn Model, work: fn(&mut Subject<'a>)) -> impl FnMut() + 'a {
@@ -119,9 +145,17 @@ fn table<'a>(title: &str, task: &'static str, count: usize, own: impl Iterator<I
         }
     }
     let own = ways.len() - others.clone().count();
-    let differences = (0..own)
-        .map(|_| String::new())
-        .chain(others.map(|peer| judge::difference(task, peer)));
+    let first = if task == "ride" {
+        rides::difference(None)
+    } else {
+        String::new()
+    };
+    let differences = std::iter::once(first)
+        .chain((1..own).map(|_| String::new()))
+        .chain(others.map(|peer| match task {
+            "ride" => rides::difference(Some(peer)),
+            _ => judge::difference(task, peer),
+        }));
     for ((way, time), difference) in ways.iter().zip(&fastest).zip(differences) {
         let ratio = fastest[0] / time;
         println!(

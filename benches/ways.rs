@@ -36,6 +36,11 @@ fn main() {
     row("A, B, C, D and all Jacobians", 2000, ways.map(linearise));
     row("the same of eight sets", 500, ways.map(linearise_sets));
     row("300 lines, 5 channels, Jacobian", 10, ways.map(respond));
+    row(
+        "the same of eight sets, four lines at a time",
+        2,
+        ways.map(respond_sets),
+    );
     row("equations of motion", 10_000, ways.map(move_once));
     let (plan, levels) = (fit::plan(), [fit::level()]);
     let setups = ways.map(|model| Setup::new(model, &plan, &levels).expect("the plan suits the model"));
@@ -105,6 +110,7 @@ fn everything(model: &dyn Model) {
     model.rolling_outputs(&constants, &x, &u, &contact, &mut y);
     let (ps, xs, us) = (rows(p.len()), rows(x.len()), rows(u.len()));
     model.prepare_sets(&ps, &mut rows(about.constants));
+    let of_sets = rows(about.constants);
     model.derivative_sets(&rows(about.constants), &xs, &us, &mut rows(x.len()));
     model.matrices_sets(&ps, &xs, &us, &mut rows(about.matrices.len()));
     model.sensitivities_sets(&ps, &xs, &us, &mut rows(about.sensitivities.len()));
@@ -114,6 +120,7 @@ fn everything(model: &dyn Model) {
             let (re, im, d_re, d_im) = (&mut room(n)[..], &mut room(n)[..], &mut room(m)[..], &mut room(m)[..]);
             let jacobian = wanted.then_some((d_re, d_im));
             model.response(excitation, &constants, &[1.0; LANES], ResponseMut { re, im, jacobian });
+            model.response_sets(excitation, &of_sets, &[1.0], wanted, &mut rows(layout.rows(wanted)));
         }
     }
 }
@@ -131,6 +138,11 @@ fn linearise_sets(model: &dyn Model) -> Work<'_> {
 fn respond(model: &dyn Model) -> Work<'_> {
     let mut subject = Subject::new(model);
     Box::new(move || black_box(&mut subject).respond())
+}
+
+fn respond_sets(model: &dyn Model) -> Work<'_> {
+    let mut sets = Sets::new(model);
+    Box::new(move || black_box(&mut sets).respond())
 }
 
 fn move_once(model: &dyn Model) -> Work<'_> {

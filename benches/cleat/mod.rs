@@ -11,7 +11,8 @@ use qcar_runtime::tyre::{Geometry, Rates, Tyre};
 
 pub use track::{cleat, drive};
 
-const RADIUS: f64 = 0.324;
+/// Of the unloaded tyre, m.
+pub const RADIUS: f64 = 0.324;
 const STATIC_DEFLECTION: f64 = 0.03102;
 const LOAD: f64 = 5749.6;
 

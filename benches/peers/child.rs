@@ -6,6 +6,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
+use crate::rides;
 use crate::subject::{MODEL, Subject};
 
 /// Where they are built.
@@ -33,14 +34,23 @@ struct Talk {
 /// All that could be built, and why others could not.
 pub fn all() -> (Vec<Peer>, Vec<String>) {
     fs::create_dir_all(FOLDER).expect("a folder in target");
+    let all = &["matrices", "response", "fit"];
     let built = [
-        cpp("hand").and_then(|program| start("by hand", &["matrices", "response", "fit"], 1, program)),
-        cpp_with("wide", &["-DWIDE"], &[])
-            .and_then(|program| start("by hand, eight at once", &["matrices", "response", "fit"], 8, program)),
-        casadi().and_then(|program| start("CasADi's C", &["matrices", "response"], 1, program)),
-        cpp_with("ceres", &["-DCERES", "-I/usr/include/eigen3"], &["-lceres", "-lglog"])
-            .and_then(|program| start("Ceres", &["fit"], 1, program)),
-        scipy().and_then(|program| start("NumPy and SciPy", &["response", "fit"], 1, program)),
+        cpp("hand", PEERS, &[], &[]).and_then(|program| start("by hand", all, 1, program, &subject())),
+        cpp("wide", PEERS, &["-DWIDE"], &[])
+            .and_then(|program| start("by hand, eight at once", all, 8, program, &subject())),
+        casadi().and_then(|program| start("CasADi's C", &all[..2], 1, program, &subject())),
+        cpp(
+            "ceres",
+            PEERS,
+            &["-DCERES", "-I/usr/include/eigen3"],
+            &["-lceres", "-lglog"],
+        )
+        .and_then(|program| start("Ceres", &all[2..], 1, program, &subject())),
+        scipy().and_then(|program| start("NumPy and SciPy", &all[1..], 1, program, &subject())),
+        cpp("ride", RIDE, &[], &[]).and_then(|program| start("by hand", &["ride"], 1, program, &rides::told())),
+        cpp("odeint", RIDE, &["-DODEINT"], &[])
+            .and_then(|program| start("Boost.odeint", &["ride"], 1, program, &rides::told())),
     ];
     let (mut peers, mut missing) = (Vec::new(), Vec::new());
     for peer in built {
@@ -52,18 +62,14 @@ pub fn all() -> (Vec<Peer>, Vec<String>) {
     (peers, missing)
 }
 
-fn cpp(name: &str) -> Result<Command, String> {
-    cpp_with(name, &[], &[])
-}
+/// The texts of the programs in C++.
+const PEERS: &str = "benches/peers/peers.cpp";
+const RIDE: &str = "benches/peers/ride.cpp";
 
-fn cpp_with(name: &str, flags: &[&str], last: &[&str]) -> Result<Command, String> {
+fn cpp(name: &str, source: &str, flags: &[&str], last: &[&str]) -> Result<Command, String> {
     let program = Path::new(FOLDER).join(name);
     let mut compiler = Command::new("g++");
-    compiler
-        .args(FLAGS)
-        .args(flags)
-        .arg("benches/peers/peers.cpp")
-        .args(last);
+    compiler.args(FLAGS).args(flags).arg(source).args(last);
     run(compiler.arg("-o").arg(&program), name)?;
     Ok(Command::new(program))
 }
@@ -81,7 +87,7 @@ fn casadi() -> Result<Command, String> {
         "casadi",
     )?;
     let object = object.display().to_string();
-    cpp_with("casadi", &["-DCASADI", &format!("-I{FOLDER}")], &[&object])
+    cpp("casadi", PEERS, &["-DCASADI", &format!("-I{FOLDER}")], &[&object])
 }
 
 fn scipy() -> Result<Command, String> {
@@ -110,12 +116,21 @@ fn run(command: &mut Command, name: &str) -> Result<(), String> {
     }
 }
 
-/// Starts a program and gives it the parameters of the subject.
+/// The parameters of the subject, as programs are told them.
+fn subject() -> Vec<String> {
+    let parameters = MODEL.about().parameters.iter().zip(Subject::new(MODEL).p);
+    parameters
+        .map(|(parameter, value)| format!("set {} {value:?}", parameter.name))
+        .collect()
+}
+
+/// Starts a program and tells it what its work is of.
 fn start(
     name: &'static str,
     tasks: &'static [&'static str],
     lanes: usize,
     mut program: Command,
+    told: &[String],
 ) -> Result<Peer, String> {
     let child = program.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
     let mut child = child.map_err(|error| format!("{name}: {error}"))?;
@@ -128,9 +143,7 @@ fn start(
         to,
         from: BufReader::new(from),
     };
-    for (parameter, value) in MODEL.about().parameters.iter().zip(Subject::new(MODEL).p) {
-        talk.say(&format!("set {} {value:?}", parameter.name));
-    }
+    told.iter().for_each(|line| talk.say(line));
     Ok(Peer {
         name,
         tasks,
@@ -140,6 +153,11 @@ fn start(
 }
 
 impl Peer {
+    /// Tells it something more.
+    pub fn tell(&self, line: &str) {
+        self.talk.borrow_mut().say(line);
+    }
+
     /// Seconds of processor time that it takes for so many.
     pub fn time(&self, task: &str, count: usize) -> f64 {
         let mut talk = self.talk.borrow_mut();

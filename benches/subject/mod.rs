@@ -1,5 +1,7 @@
 //! What is measured: the five vertical masses of axle_d at three hundred lines.
 
+use std::ops::{Deref, DerefMut};
+
 use qcar_runtime::model::{LANES, Lanes, Model, ResponseMut};
 
 qcar_derive::axle_file!("benches/subject/axle_d_z.axle");
@@ -85,13 +87,50 @@ impl<'a> Subject<'a> {
 /// Several parameter sets together.
 pub struct Sets<'a> {
     model: &'a dyn Model,
-    p: Vec<Lanes>,
-    x: Vec<Lanes>,
-    u: Vec<Lanes>,
+    p: Rows,
+    constants: Rows,
+    x: Rows,
+    u: Rows,
     /// The nonzeros of A, B, C and D.
-    pub matrices: Vec<Lanes>,
+    pub matrices: Rows,
     /// Those of their parameter Jacobians.
-    pub sensitivities: Vec<Lanes>,
+    pub sensitivities: Rows,
+    omega: Vec<f64>,
+    /// The response to the pad with its Jacobian, of [`AT_ONCE`] lines.
+    response: Rows,
+}
+
+/// So many lines of a response of several sets fit into the L1 cache.
+const AT_ONCE: usize = 4;
+
+/// Rows that begin at a line of the cache, so that the widest vectors are each of one line.
+pub struct Rows {
+    memory: Vec<f64>,
+    start: usize,
+}
+
+impl Rows {
+    fn new(rows: usize) -> Self {
+        let memory = vec![0.0; LANES * (rows + 1)];
+        let start = memory.as_ptr().align_offset(size_of::<Lanes>());
+        Rows { memory, start }
+    }
+}
+
+impl Deref for Rows {
+    type Target = [Lanes];
+
+    fn deref(&self) -> &[Lanes] {
+        let rows = self.memory.len() - LANES;
+        self.memory[self.start..][..rows].as_chunks().0
+    }
+}
+
+impl DerefMut for Rows {
+    fn deref_mut(&mut self) -> &mut [Lanes] {
+        let rows = self.memory.len() - LANES;
+        self.memory[self.start..][..rows].as_chunks_mut().0
+    }
 }
 
 impl<'a> Sets<'a> {
@@ -99,14 +138,19 @@ impl<'a> Sets<'a> {
     pub fn new(model: &'a dyn Model) -> Self {
         let about = model.about();
         let row = |p: &f64| std::array::from_fn(|set| p * (1.0 + 0.01 * set as f64));
-        let room = |rows: usize| vec![[0.0; LANES]; rows];
+        let subject = Subject::new(model);
+        let mut p = Rows::new(subject.p.len());
+        p.iter_mut().zip(&subject.p).for_each(|(to, value)| *to = row(value));
         Sets {
             model,
-            p: Subject::new(model).p.iter().map(row).collect(),
-            x: room(about.states.len()),
-            u: room(about.inputs.len()),
-            matrices: room(about.matrices.len()),
-            sensitivities: room(about.sensitivities.len()),
+            p,
+            constants: Rows::new(about.constants),
+            x: Rows::new(about.states.len()),
+            u: Rows::new(about.inputs.len()),
+            matrices: Rows::new(about.matrices.len()),
+            sensitivities: Rows::new(about.sensitivities.len()),
+            omega: subject.omega,
+            response: Rows::new(AT_ONCE * about.responses[0].rows(true)),
         }
     }
 
@@ -115,6 +159,16 @@ impl<'a> Sets<'a> {
         self.model.matrices_sets(&self.p, &self.x, &self.u, &mut self.matrices);
         self.model
             .sensitivities_sets(&self.p, &self.x, &self.u, &mut self.sensitivities);
+    }
+
+    /// The response with its full Jacobian, constants included; some lines overwrite those before.
+    pub fn respond(&mut self) {
+        self.model.prepare_sets(&self.p, &mut self.constants);
+        let rows = self.model.about().responses[0].rows(true);
+        for lines in self.omega.chunks(AT_ONCE) {
+            let into = &mut self.response[..lines.len() * rows];
+            self.model.response_sets(0, &self.constants, lines, true, into);
+        }
     }
 }
 

@@ -1,7 +1,8 @@
 //! Instructions of x86-64 as bytes.
 //!
-//! Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2: chapter 2 has the forms of an instruction (ModRM, SIB, REX
-//! and VEX), chapters 3 to 5 its opcode. Nothing beyond AVX is used, and no multiplication is fused with an addition.
+//! Intel 64 and IA-32 Architectures Software Developer's Manual, volume 2: chapter 2 has the forms of an instruction (ModRM, SIB, REX,
+//! VEX and EVEX), chapters 3 to 5 its opcode. One or four numbers need AVX, eight AVX-512 with its part DQ. No multiplication is fused
+//! with an addition.
 
 /// A register for addresses, by its number.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -45,11 +46,24 @@ pub enum Operand {
     Memory(Memory),
 }
 
-/// How many numbers an instruction works on: one, or four.
+/// How many numbers an instruction works on.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub enum Width {
-    One,
-    Four,
+    One = 1,
+    Four = 4,
+    Eight = 8,
+}
+
+impl Width {
+    /// As a number.
+    pub fn numbers(self) -> usize {
+        self as usize
+    }
+
+    /// Bytes of so many numbers.
+    pub fn bytes(self) -> usize {
+        size_of::<f64>() * self.numbers()
+    }
 }
 
 /// Arithmetic on numbers, by its opcode.
@@ -83,7 +97,7 @@ pub enum Comparison {
     Greater = 0x1e,
 }
 
-/// The prefix that a VEX stands for.
+/// The prefix that a VEX or EVEX stands for.
 #[derive(Clone, Copy)]
 enum Prefix {
     P66 = 1,
@@ -97,6 +111,11 @@ enum Map {
     M0F38 = 2,
     M0F3A = 3,
 }
+
+/// The mask register of comparisons of eight numbers.
+const MASK: u8 = 1;
+/// Of an instruction that has none.
+const ALL: u8 = 0;
 
 /// Instructions one after the other.
 #[derive(Default)]
@@ -117,50 +136,63 @@ impl Assembler {
 
     /// Numbers from memory; a single one is followed by zeros.
     pub fn load(&mut self, width: Width, to: Register, from: Memory) {
-        let prefix = one_or_four(width);
-        self.vex(width, prefix, Map::M0F, 0x10, to, None, Operand::Memory(from));
-    }
-
-    /// Numbers to memory.
-    pub fn store(&mut self, width: Width, from: Register, to: Memory) {
-        let prefix = one_or_four(width);
-        self.vex(width, prefix, Map::M0F, 0x11, from, None, Operand::Memory(to));
-    }
-
-    /// One number from memory, four times.
-    pub fn broadcast(&mut self, to: Register, from: Memory) {
-        self.vex(
-            Width::Four,
-            Prefix::P66,
-            Map::M0F38,
-            0x19,
+        self.vector(
+            width,
+            one_or_more(width),
+            (Map::M0F, 0x10),
             to,
             None,
             Operand::Memory(from),
         );
     }
 
+    /// Numbers to memory.
+    pub fn store(&mut self, width: Width, from: Register, to: Memory) {
+        self.vector(
+            width,
+            one_or_more(width),
+            (Map::M0F, 0x11),
+            from,
+            None,
+            Operand::Memory(to),
+        );
+    }
+
+    /// One number from memory, four or eight times.
+    pub fn broadcast(&mut self, width: Width, to: Register, from: Memory) {
+        let (opcode, from) = ((Map::M0F38, 0x19), Operand::Memory(from));
+        match width {
+            Width::Eight => self.evex(Width::One, ALL, opcode, to, None, from),
+            Width::One | Width::Four => self.vex(Width::Four, Prefix::P66, opcode, to, None, from),
+        }
+    }
+
     /// `to = a ∘ b`
     pub fn arithmetic(&mut self, what: Arithmetic, width: Width, to: Register, a: Register, b: Operand) {
-        // The root of four has one operand alone.
+        // The root of several has one operand alone.
         let a = (what != Arithmetic::Sqrt || width == Width::One).then_some(a);
-        self.vex(width, one_or_four(width), Map::M0F, what as u8, to, a, b);
+        self.vector(width, one_or_more(width), (Map::M0F, what as u8), to, a, b);
     }
 
     /// `to = a ∘ b`, bit by bit; of memory, all of a register is read.
     pub fn bits(&mut self, what: Bits, width: Width, to: Register, a: Register, b: Operand) {
-        self.vex(width, Prefix::P66, Map::M0F, what as u8, to, Some(a), b);
+        self.vector(width, Prefix::P66, (Map::M0F, what as u8), to, Some(a), b);
     }
 
-    /// All bits where `a` compares with `b` so, else none.
+    /// All bits where `a` compares with `b` so, else none. Of eight numbers the result is in the [`MASK`] instead of in `to`.
     pub fn compare(&mut self, what: Comparison, width: Width, to: Register, a: Register, b: Operand) {
-        self.vex(width, one_or_four(width), Map::M0F, 0xc2, to, Some(a), b);
+        let to = if width == Width::Eight { Register(MASK) } else { to };
+        self.vector(width, one_or_more(width), (Map::M0F, 0xc2), to, Some(a), b);
         self.bytes.push(what as u8);
     }
 
-    /// `b` where `test` has its first bit, else `a`.
+    /// `b` where `test` has its first bit, else `a`; of eight numbers the test is what was compared last.
     pub fn blend(&mut self, width: Width, to: Register, a: Register, b: Register, test: Register) {
-        self.vex(width, Prefix::P66, Map::M0F3A, 0x4b, to, Some(a), Operand::Register(b));
+        let b = Operand::Register(b);
+        if width == Width::Eight {
+            return self.evex(width, MASK, (Map::M0F38, 0x65), to, Some(a), b);
+        }
+        self.vex(width, Prefix::P66, (Map::M0F3A, 0x4b), to, Some(a), b);
         self.bytes.push(test.0 << 4);
     }
 
@@ -247,13 +279,27 @@ impl Assembler {
         self.bytes.push(0xc3);
     }
 
-    #[allow(clippy::too_many_arguments, reason = "these are the fields of the instruction")]
+    /// An instruction on numbers.
+    fn vector(
+        &mut self,
+        width: Width,
+        prefix: Prefix,
+        opcode: (Map, u8),
+        reg: Register,
+        a: Option<Register>,
+        b: Operand,
+    ) {
+        match width {
+            Width::One | Width::Four => self.vex(width, prefix, opcode, reg, a, b),
+            Width::Eight => self.evex(width, ALL, opcode, reg, a, b),
+        }
+    }
+
     fn vex(
         &mut self,
         width: Width,
         prefix: Prefix,
-        map: Map,
-        opcode: u8,
+        (map, opcode): (Map, u8),
         reg: Register,
         a: Option<Register>,
         b: Operand,
@@ -269,25 +315,51 @@ impl Assembler {
             let first = reg_bit | (index ^ 1) << 6 | (base ^ 1) << 5 | map as u8;
             self.bytes.extend([0xc4, first, last, opcode]);
         }
-        self.operands(reg.0, b);
+        self.operands(reg.0, b, 1);
+    }
+
+    /// An instruction on the numbers of a wide register that the mask has. So many numbers are in memory.
+    fn evex(
+        &mut self,
+        memory: Width,
+        mask: u8,
+        (map, opcode): (Map, u8),
+        reg: Register,
+        a: Option<Register>,
+        b: Operand,
+    ) {
+        let (index, base) = high_bits(b);
+        // The fifth bit of a register that is read last stands where else that of an index does.
+        let index = match b {
+            Operand::Register(Register(b)) => b >> 4,
+            Operand::Memory(_) => index,
+        };
+        let a = a.map_or(0, |a| a.0);
+        let inverted = (reg.0 >> 3 & 1) << 7 | index << 6 | base << 5 | (reg.0 >> 4) << 4;
+        let first = inverted ^ 0xf0 | map as u8;
+        let second = 1 << 7 | (!a & 15) << 3 | 1 << 2 | Prefix::P66 as u8;
+        let third = 2 << 5 | (!a >> 4 & 1) << 3 | mask;
+        self.bytes.extend([0x62, first, second, third, opcode]);
+        self.operands(reg.0, b, memory.bytes() as i32);
     }
 
     /// An instruction on pointers.
     fn rex(&mut self, opcode: u8, reg: u8, b: Operand) {
         let (index, base) = high_bits(b);
         self.bytes.extend([0x48 | reg >> 3 << 2 | index << 1 | base, opcode]);
-        self.operands(reg, b);
+        self.operands(reg, b, 1);
     }
 
-    /// ModRM, SIB and displacement.
-    fn operands(&mut self, reg: u8, b: Operand) {
+    /// ModRM, SIB and displacement; one of a byte counts units of so many bytes.
+    fn operands(&mut self, reg: u8, b: Operand, unit: i32) {
         let reg = (reg & 7) << 3;
         let memory = match b {
             Operand::Register(Register(b)) => return self.bytes.push(0xc0 | reg | b & 7),
             Operand::Memory(memory) => memory,
         };
-        let short = i8::try_from(memory.offset);
-        let form = if short.is_ok() { 0x40 } else { 0x80 };
+        let units = (memory.offset % unit == 0).then_some(memory.offset / unit);
+        let short = units.and_then(|units| i8::try_from(units).ok());
+        let form = if short.is_some() { 0x40 } else { 0x80 };
         let base = memory.base.0 & 7;
         // The stack pointer and its neighbour R12 stand for "see the next byte", and there for "no index".
         match memory.index {
@@ -298,8 +370,8 @@ impl Assembler {
             }
         }
         match short {
-            Ok(short) => self.bytes.push(short as u8),
-            Err(_) => self.bytes.extend(memory.offset.to_le_bytes()),
+            Some(short) => self.bytes.push(short as u8),
+            None => self.bytes.extend(memory.offset.to_le_bytes()),
         }
     }
 }
@@ -307,14 +379,14 @@ impl Assembler {
 /// The fourth bits of index and base.
 fn high_bits(b: Operand) -> (u8, u8) {
     match b {
-        Operand::Register(Register(b)) => (0, b >> 3),
+        Operand::Register(Register(b)) => (0, b >> 3 & 1),
         Operand::Memory(memory) => (memory.index.map_or(0, |index| index.0 >> 3), memory.base.0 >> 3),
     }
 }
 
-fn one_or_four(width: Width) -> Prefix {
+fn one_or_more(width: Width) -> Prefix {
     match width {
         Width::One => Prefix::F2,
-        Width::Four => Prefix::P66,
+        Width::Four | Width::Eight => Prefix::P66,
     }
 }

@@ -10,13 +10,12 @@ use qcar_dsl::evaluate::given::{Given, Part};
 use qcar_dsl::program::Program;
 use qcar_model::{LANES, Lanes};
 
+use crate::assemble::Width;
 use crate::call::Call;
 use crate::reads::Reads;
-use crate::shape::Shape;
+use crate::shape::{Breadth, Shape};
 use crate::translate::{Translated, Wide, translate};
 
-/// How many sets or points the instructions compute together.
-const WIDTH: usize = 4;
 /// Bytes of a number.
 const NUMBER: usize = size_of::<f64>();
 
@@ -34,20 +33,24 @@ pub struct Code {
     numbers: Box<[Wide]>,
     reads: Reads,
     results: usize,
+    /// How many sets or points the instructions compute together.
+    width: usize,
 }
 
 impl Code {
-    /// Nothing where this machine cannot run such code, the system allows none, or the program has no translation.
-    pub fn new(vectors: &Vectors, program: &Program, shape: Shape) -> Option<Code> {
-        if !std::arch::is_x86_feature_detected!("avx") {
+    /// For vectors of this many numbers. Nothing where this machine cannot run such code, the system allows none, or the program has no
+    /// translation.
+    pub fn new(vectors: &Vectors, program: &Program, shape: Shape, breadth: Breadth) -> Option<Code> {
+        if !breadth.is_there() {
             return None;
         }
         let reads = Reads::new(vectors, program, shape);
-        let enter = match shape {
-            Shape::Once => compute::<1> as *const () as usize,
-            Shape::Sets | Shape::Points(_) => compute::<WIDTH> as *const () as usize,
+        let (width, enter) = match (shape, breadth) {
+            (Shape::Once, _) => (Width::One, compute::<1> as *const () as usize),
+            (_, Breadth::Four) => (Width::Four, compute::<4> as *const () as usize),
+            (_, Breadth::Eight) => (Width::Eight, compute::<8> as *const () as usize),
         };
-        let Translated { code, calls, numbers } = translate(program, &reads, shape, enter)?;
+        let Translated { code, calls, numbers } = translate(program, &reads, (shape, width), enter)?;
         let mut memory = MmapMut::map_anon(code.len()).ok()?;
         memory.copy_from_slice(&code);
         Some(Code {
@@ -56,6 +59,7 @@ impl Code {
             numbers,
             reads,
             results: program.outputs.len(),
+            width: width.numbers(),
         })
     }
 
@@ -89,10 +93,10 @@ impl Code {
             *pointer = at_least(rows, least).as_flattened().as_ptr();
         }
         let into = into[..self.results].as_flattened_mut();
-        for first in (0..LANES).step_by(WIDTH) {
+        for first in (0..LANES).step_by(self.width) {
             let [a, b, c, d] = parts.map(|part| part.wrapping_add(first));
             let into = into.as_mut_ptr().wrapping_add(first);
-            // SAFETY: as in `run`, where each entry and each result is `WIDTH` numbers of its row, from `first` on.
+            // SAFETY: as in `run`, where each entry and each result is `width` numbers of its row, from `first` on.
             unsafe {
                 let code: Entered = std::mem::transmute(self.memory.as_ptr());
                 code(a, b, c, d, into, self.numbers.as_ptr());
@@ -106,7 +110,7 @@ impl Code {
     /// # Panics
     /// As [`Code::run`].
     pub fn sweep(&self, given: &Given, points: usize, into: &mut [&mut [f64]]) -> bool {
-        if points < WIDTH {
+        if points < self.width {
             return false;
         }
         let shared = self.reads.parts.first();
@@ -124,8 +128,8 @@ impl Code {
             self.results
         );
         let run = |from: usize, to: usize| {
-            // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of `WIDTH` while
-            // their first is below `to`, and each row has `points` of them, which is at least `to + WIDTH - 1`.
+            // SAFETY: as in `run`, of the shared part. The code reads and writes the points from `from` on by groups of `width` while
+            // their first is below `to`, and each row has `points` of them, which is at least `to + width - 1`.
             unsafe {
                 let code: Swept = std::mem::transmute(self.memory.as_ptr());
                 let (from, to, numbers) = (NUMBER * from, NUMBER * to, self.numbers.as_ptr());
@@ -133,7 +137,7 @@ impl Code {
             }
         };
         // The last group is whole, too: it may compute again what the one before it has.
-        let last = points - WIDTH;
+        let last = points - self.width;
         if last > 0 {
             run(0, last);
         }
@@ -159,8 +163,8 @@ fn at_least<T>(entries: &[T], least: usize) -> &[T] {
 unsafe extern "sysv64" fn compute<const N: usize>(call: &Call, rows: *const Wide, result: &mut Wide) {
     // SAFETY: the caller, which is the code of a program with this call, says so.
     let rows = unsafe { std::slice::from_raw_parts(rows, call.arguments()) };
-    for (point, result) in result.iter_mut().enumerate().take(N) {
-        *result = call.value(|argument| rows[argument][point]);
+    for (point, result) in result.0.iter_mut().enumerate().take(N) {
+        *result = call.value(|argument| rows[argument].0[point]);
     }
 }
 
@@ -172,7 +176,11 @@ mod tests {
 
     /// Else all would be left to the interpreter, which has the same bits.
     #[test]
-    fn a_processor_with_avx_runs_machine_code_in_each_shape() {
+    fn a_processor_runs_machine_code_in_each_shape_and_breadth() {
+        [Breadth::Four, Breadth::Eight].into_iter().for_each(runs_in_each_shape);
+    }
+
+    fn runs_in_each_shape(breadth: Breadth) {
         let ops = vec![
             Op::Prepared(1),
             Op::Constant(2.0),
@@ -185,9 +193,9 @@ mod tests {
             outputs,
             curves: Vec::new(),
         };
-        let code = |shape| Code::new(&Vectors::default(), &program, shape);
+        let code = |shape| Code::new(&Vectors::default(), &program, shape, breadth);
         let shapes = [Shape::Once, Shape::Sets, Shape::Points(&[Part::Constants])];
-        if !std::arch::is_x86_feature_detected!("avx") {
+        if !breadth.is_there() {
             return assert!(shapes.into_iter().all(|shape| code(shape).is_none()));
         }
         let [once, sets, points] = shapes.map(|shape| code(shape).expect("the program has a translation"));
@@ -198,10 +206,10 @@ mod tests {
         let mut rows = [[0.0; LANES]; 2];
         sets.sets(&[(Part::Constants, &[[7.0; LANES], [0.25; LANES]])], &mut rows);
         assert_eq!(rows, [[0.5; LANES], [0.5f64.sin(); LANES]]);
-        let columns = [[0.0; 5], [0.25, 0.5, 0.75, 1.0, 1.25]];
+        let columns = [[0.0; 9], std::array::from_fn(|point| 0.25 * (point + 1) as f64)];
         let given = Given::default().with(Part::Constants, columns.as_flattened());
-        let (mut twice, mut sine) = ([0.0; 5], [0.0; 5]);
-        assert!(points.sweep(&given, 5, &mut [&mut twice, &mut sine]));
+        let (mut twice, mut sine) = ([0.0; 9], [0.0; 9]);
+        assert!(points.sweep(&given, 9, &mut [&mut twice, &mut sine]));
         assert_eq!(
             (twice, sine),
             (columns[1].map(|x| 2.0 * x), columns[1].map(|x| (2.0 * x).sin()))

@@ -5,7 +5,7 @@ use qcar_dsl::evaluate::given::{Given, Part};
 use qcar_dsl::program::Program;
 use qcar_model::Lanes;
 
-use crate::shape::Shape;
+use crate::shape::{Breadth, Shape};
 
 /// A program as machine code, of which there is none.
 #[derive(Debug)]
@@ -13,7 +13,7 @@ pub enum Code {}
 
 impl Code {
     /// Nothing.
-    pub fn new(_vectors: &Vectors, _program: &Program, _shape: Shape) -> Option<Code> {
+    pub fn new(_vectors: &Vectors, _program: &Program, _shape: Shape, _breadth: Breadth) -> Option<Code> {
         None
     }
 

@@ -7,19 +7,20 @@ use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::evaluate::given::{Given, Part, contact_entries, prepared, unprepared};
 use qcar_dsl::program::{Program, Programs};
 use qcar_dsl::schedule::Compiled;
-use qcar_model::{About, Contact, Lanes, Model, Points, ResponseMut};
+use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
 #[cfg(target_arch = "x86_64")]
 use crate::code::Code;
 #[cfg(not(target_arch = "x86_64"))]
 use crate::elsewhere::Code;
-use crate::shape::Shape;
+use crate::shape::{Breadth, Shape};
 
 /// A compiled model, its programs translated into machine code.
 ///
 /// Slices have the lengths that [`About`] states; a shorter one panics.
 #[derive(Debug)]
 pub struct Machine {
+    breadth: Breadth,
     /// Computes what has no machine code.
     interpreter: Evaluator,
     vectors: Vectors,
@@ -45,6 +46,8 @@ struct Routine {
     once: OnceLock<Option<Code>>,
     sets: OnceLock<Option<Code>>,
     points: OnceLock<Option<Code>>,
+    /// At fewer points than fill the widest vectors.
+    few: OnceLock<Option<Code>>,
 }
 
 /// What varies from point to point.
@@ -52,9 +55,19 @@ const MOVING: Shape = Shape::Points(&[Part::States, Part::Inputs]);
 const LINES: Shape = Shape::Points(&[Part::Frequency]);
 
 impl Machine {
-    /// Of a compiled model. Nothing is translated yet.
+    /// Of a compiled model, for the widest vectors of this processor. Nothing is translated yet.
     pub fn new(compiled: &Compiled) -> Self {
+        Self::with(compiled, Breadth::widest())
+    }
+
+    /// The same for vectors of four numbers (AVX), whatever the processor has beyond them. The bits are the same.
+    pub fn narrow(compiled: &Compiled) -> Self {
+        Self::with(compiled, Breadth::Four)
+    }
+
+    fn with(compiled: &Compiled, breadth: Breadth) -> Self {
         Machine {
+            breadth,
             interpreter: Evaluator::new(compiled),
             vectors: compiled.vectors.clone(),
             responses: compiled.programs.responses.iter().map(|_| Default::default()).collect(),
@@ -76,13 +89,23 @@ impl Machine {
     pub fn with_alone(mut self, axis: &str, link: &str, compiled: &Compiled) -> Self {
         let mut links = self.about().links.iter();
         let place = links.position(|own| own.axis == axis && own.name == link);
-        self.alone.extend(place.map(|place| (place, Machine::new(compiled))));
+        self.alone
+            .extend(place.map(|place| (place, Machine::with(compiled, self.breadth))));
         self
     }
 
     #[inline]
     fn code<'a>(&self, known: &'a OnceLock<Option<Code>>, program: &Program, shape: Shape) -> Option<&'a Code> {
-        known.get_or_init(|| Code::new(&self.vectors, program, shape)).as_ref()
+        let new = || Code::new(&self.vectors, program, shape, self.breadth);
+        known.get_or_init(new).as_ref()
+    }
+
+    fn points<'a>(&self, routine: &'a Routine, program: &Program, shape: Shape, points: usize) -> Option<&'a Code> {
+        if self.breadth == Breadth::Four || points >= LANES {
+            return self.code(&routine.points, program, shape);
+        }
+        let new = || Code::new(&self.vectors, program, shape, Breadth::Four);
+        routine.few.get_or_init(new).as_ref()
     }
 
     #[inline]
@@ -97,7 +120,7 @@ impl Machine {
 
     /// At several points; false where that is left to the interpreter.
     fn sweep(&self, routine: &Routine, program: &Program, given: &Given, points: usize, into: &mut [f64]) -> bool {
-        let code = self.code(&routine.points, program, MOVING);
+        let code = self.points(routine, program, MOVING, points);
         code.is_some_and(|code| code.sweep(given, points, &mut [into]))
     }
 }
@@ -223,16 +246,42 @@ impl Model for Machine {
             .zip(self.programs.responses.get(excitation));
         let is_done = known.is_some_and(|([value, with_jacobian], programs)| match &mut into.jacobian {
             None => {
-                let code = self.code(&value.points, &programs.value, LINES);
+                let code = self.points(value, &programs.value, LINES, lines);
                 code.is_some_and(|code| code.sweep(&given, lines, &mut [into.re, into.im]))
             }
             Some((d_re, d_im)) => {
-                let code = self.code(&with_jacobian.points, &programs.with_jacobian, LINES);
+                let code = self.points(with_jacobian, &programs.with_jacobian, LINES, lines);
                 code.is_some_and(|code| code.sweep(&given, lines, &mut [into.re, into.im, d_re, d_im]))
             }
         });
         if !is_done {
             self.interpreter.response(excitation, constants, omega, into);
+        }
+    }
+
+    fn response_sets(
+        &self,
+        excitation: usize,
+        constants: &[Lanes],
+        omega: &[f64],
+        with_jacobian: bool,
+        into: &mut [Lanes],
+    ) {
+        let known = self.responses.get(excitation);
+        let known = known.zip(self.programs.responses.get(excitation));
+        let code = known.and_then(|([value, whole], programs)| match with_jacobian {
+            false => self.sets(value, &programs.value),
+            true => self.sets(whole, &programs.with_jacobian),
+        });
+        let Some(code) = code else {
+            return self
+                .interpreter
+                .response_sets(excitation, constants, omega, with_jacobian, into);
+        };
+        let rows = self.about().responses[excitation].rows(with_jacobian);
+        for (omega, into) in omega.iter().zip(into.chunks_exact_mut(rows)) {
+            let frequency = [[*omega; LANES]];
+            code.sets(&[(Part::Constants, constants), (Part::Frequency, &frequency)], into);
         }
     }
 
@@ -266,6 +315,38 @@ impl Model for Machine {
             &prepared(constants, x, u).with(Part::Contact, &contact_entries(contact)),
             y,
         );
+    }
+
+    fn contact_force_sets(&self, constants: &[Lanes], x: &[Lanes], s: &Lanes, v: &Lanes) -> Lanes {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.sets(&self.contact_force, &rolling.contact_force)) else {
+            return self.interpreter.contact_force_sets(constants, x, s, v);
+        };
+        let (mut force, contact) = ([[0.0; LANES]], [*s, *v]);
+        let given = [
+            (Part::Constants, constants),
+            (Part::States, x),
+            (Part::Contact, &contact),
+        ];
+        code.sets(&given, &mut force);
+        force[0]
+    }
+
+    fn rolling_derivative_sets(
+        &self,
+        constants: &[Lanes],
+        x: &[Lanes],
+        u: &[Lanes],
+        contacts: &Contacts,
+        dx: &mut [Lanes],
+    ) {
+        let rolling = self.programs.rolling.as_ref();
+        let Some(code) = rolling.and_then(|rolling| self.sets(&self.rolling_derivative, &rolling.derivative)) else {
+            return self.interpreter.rolling_derivative_sets(constants, x, u, contacts, dx);
+        };
+        let contact = [contacts.s, contacts.v, contacts.force[0], contacts.force[1]];
+        let [constants, x, u] = moving_sets((Part::Constants, constants), x, u);
+        code.sets(&[constants, x, u, (Part::Contact, &contact)], dx);
     }
 
     fn alone(&self, link: usize) -> Option<&dyn Model> {

@@ -13,8 +13,10 @@ use crate::shape::Shape;
 use crate::values::{OWN, Values};
 use frame::{Frame, Place};
 
-/// A number as wide as a register.
-pub type Wide = [f64; 4];
+/// A number as wide as the widest register, of which narrower ones read the beginning.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Wide(pub [f64; 8]);
 
 /// In front of the numbers of a program: what signs and directions are made of.
 const OWN_NUMBERS: [f64; 4] = [-0.0, f64::from_bits(!SIGN), 1.0, 0.0];
@@ -38,12 +40,12 @@ pub struct Translated {
 /// Translates a program. `enter` is the address of the function that computes a [`Call`].
 ///
 /// Nothing where it reads more parts than there are registers for their addresses, or needs too much of the stack.
-pub fn translate(program: &Program, reads: &Reads, shape: Shape, enter: usize) -> Option<Translated> {
+pub fn translate(program: &Program, reads: &Reads, (shape, width): (Shape, Width), enter: usize) -> Option<Translated> {
     if reads.parts.len() > frame::parts(shape) {
         return None;
     }
     let calls: Box<[Call]> = program.ops.iter().filter_map(|&op| Call::of(program, op)).collect();
-    let mut writer = Writer::new(program, reads, shape, &calls, enter);
+    let mut writer = Writer::new(program, reads, (shape, width), &calls, enter);
     writer.program();
     let code = writer.frame.around(writer.body, writer.values.slots())?;
     Some(Translated {
@@ -70,11 +72,17 @@ struct Writer<'a> {
 }
 
 impl<'a> Writer<'a> {
-    fn new(program: &'a Program, reads: &'a Reads, shape: Shape, calls: &'a [Call], enter: usize) -> Self {
-        let mut numbers: Vec<Wide> = OWN_NUMBERS.map(|number| [number; 4]).into();
+    fn new(
+        program: &'a Program,
+        reads: &'a Reads,
+        (shape, width): (Shape, Width),
+        calls: &'a [Call],
+        enter: usize,
+    ) -> Self {
+        let mut numbers: Vec<Wide> = OWN_NUMBERS.map(|number| Wide([number; 8])).into();
         let number = program.ops.iter().map(|op| match *op {
             Op::Constant(number) => {
-                numbers.push([number; 4]);
+                numbers.push(Wide([number; 8]));
                 Some(numbers.len() - 1)
             }
             _ => None,
@@ -86,8 +94,8 @@ impl<'a> Writer<'a> {
         Writer {
             program,
             reads,
-            frame: Frame::new(shape, calls),
-            values: Values::new(program),
+            frame: Frame::new(shape, width, calls),
+            values: Values::new(program, width),
             body: Assembler::default(),
             numbers,
             number,
@@ -221,7 +229,7 @@ impl<'a> Writer<'a> {
         self.body.address(Pointer::RSI, self.frame.argument(0));
         self.body.address(Pointer::RDX, self.frame.result());
         self.body.set(Pointer::RAX, self.enter as u64);
-        if width == Width::Four {
+        if width != Width::One {
             self.body.narrow();
         }
         self.body.call(Pointer::RAX);
@@ -242,7 +250,7 @@ impl<'a> Writer<'a> {
     }
 
     fn width(&self) -> Width {
-        self.frame.width()
+        self.frame.width
     }
 
     /// A register for a result or what is loaded; what stood there before, and is computed, is kept in memory.
@@ -289,7 +297,7 @@ impl<'a> Writer<'a> {
         let width = self.width();
         match self.place(value) {
             Place::Whole(place) => self.body.load(width, to, place),
-            Place::Shared(place) => self.body.broadcast(to, place),
+            Place::Shared(place) => self.body.broadcast(width, to, place),
         }
         to
     }

@@ -5,12 +5,9 @@
 
 use qcar_dsl::program::{Program, Value};
 
-use crate::assemble::Register;
+use crate::assemble::{Register, Width};
 
-/// Registers that values stand in; one more is left for what an operation keeps to itself.
-const REGISTERS: usize = 15;
-
-/// Of no value's.
+/// Of no value's: left for what an operation keeps to itself.
 pub const OWN: Register = Register(15);
 
 /// The values of a program while its code is written.
@@ -20,7 +17,7 @@ pub struct Values {
     /// Of each value the rest of its row: the operations that are still to come.
     rest: Vec<(u32, u32)>,
     /// What stands in each register.
-    registers: [Option<Value>; REGISTERS],
+    registers: Vec<Option<Value>>,
     register: Vec<Option<Register>>,
     slot: Vec<Option<u32>>,
     free_slots: Vec<u32>,
@@ -28,8 +25,8 @@ pub struct Values {
 }
 
 impl Values {
-    /// None of them anywhere.
-    pub fn new(program: &Program) -> Self {
+    /// None of them anywhere, with as many registers as instructions of this width have.
+    pub fn new(program: &Program, width: Width) -> Self {
         let count = program.ops.len();
         let mut rest = vec![(0, 0); count + 1];
         for &op in &program.ops {
@@ -52,7 +49,7 @@ impl Values {
         Values {
             needed,
             rest,
-            registers: [None; REGISTERS],
+            registers: vec![None; registers(width) - 1],
             register: vec![None; count],
             slot: vec![None; count],
             free_slots: Vec::new(),
@@ -105,7 +102,7 @@ impl Values {
 
     fn leave(&mut self, value: Value) {
         if let Some(register) = self.register[value.0 as usize].take() {
-            self.registers[usize::from(register.0)] = None;
+            self.registers[place_of(register)] = None;
         }
     }
 
@@ -113,7 +110,7 @@ impl Values {
     pub fn allocate(&mut self, value: Value) -> (Register, Option<Value>) {
         let free = self.registers.iter().position(Option::is_none);
         let place = free.unwrap_or_else(|| self.last_needed());
-        let register = Register(place as u8);
+        let register = register_at(place);
         let evicted = self.registers[place].replace(value);
         if let Some(evicted) = evicted {
             self.register[evicted.0 as usize] = None;
@@ -134,12 +131,13 @@ impl Values {
 
     /// Empties all registers, and gives what stood in them.
     pub fn clear(&mut self) -> impl Iterator<Item = (Register, Value)> + use<> {
-        let registers = std::mem::take(&mut self.registers);
+        let none = vec![None; self.registers.len()];
+        let registers = std::mem::replace(&mut self.registers, none);
         for value in registers.iter().flatten() {
             self.register[value.0 as usize] = None;
         }
         let stood = registers.into_iter().enumerate();
-        stood.filter_map(|(place, value)| Some((Register(place as u8), value?)))
+        stood.filter_map(|(place, value)| Some((register_at(place), value?)))
     }
 
     fn next(&self, value: Value) -> Option<u32> {
@@ -149,6 +147,23 @@ impl Values {
 
     fn last_needed(&self) -> usize {
         let next = |place: &usize| self.registers[*place].map(|value| self.next(value));
-        (0..REGISTERS).max_by_key(next).unwrap_or_default()
+        (0..self.registers.len()).max_by_key(next).unwrap_or_default()
     }
+}
+
+fn registers(width: Width) -> usize {
+    match width {
+        Width::One | Width::Four => 16,
+        Width::Eight => 32,
+    }
+}
+
+/// All registers but [`OWN`] in a row.
+fn register_at(place: usize) -> Register {
+    let place = place as u8;
+    Register(place + u8::from(place >= OWN.0))
+}
+
+fn place_of(register: Register) -> usize {
+    usize::from(register.0 - u8::from(register.0 > OWN.0))
 }

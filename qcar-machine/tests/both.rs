@@ -3,12 +3,12 @@
 use qcar_dsl::evaluate::Evaluator;
 use qcar_dsl::schedule::Compiled;
 use qcar_machine::Machine;
-use qcar_model::{About, Contact, LANES, Lanes, Model, Points, ResponseMut};
+use qcar_model::{About, Contact, Contacts, LANES, Lanes, Model, Points, ResponseMut};
 
-/// The same compiled model, interpreted and as machine code.
+/// The same compiled model, interpreted and as machine code for vectors of both breadths.
 pub struct Both {
     interpreted: Evaluator,
-    machine: Machine,
+    machines: [Machine; 2],
 }
 
 /// Where a model is evaluated: numbers for whatever it reads, again from the first where there are too few.
@@ -29,7 +29,7 @@ impl Both {
     pub fn new(compiled: &Compiled) -> Self {
         Both {
             interpreted: Evaluator::new(compiled),
-            machine: Machine::new(compiled),
+            machines: [Machine::new(compiled), Machine::narrow(compiled)],
         }
     }
 
@@ -99,6 +99,45 @@ impl Both {
         self.same_rows(about.sensitivities.len(), |model, to| {
             model.sensitivities_sets(&p, x, u, to)
         });
+        let contact: [Lanes; 4] = std::array::from_fn(|row| at.numbers(3 + row, LANES).try_into().expect("so many"));
+        let [s, v, ..] = contact;
+        let contacts = &Contacts {
+            s,
+            v,
+            force: [contact[2], contact[3]],
+        };
+        self.same_rows(1, |model, to| to[0] = model.contact_force_sets(constants, x, &s, &v));
+        self.same_rows(about.states.len(), |model, to| {
+            model.rolling_derivative_sets(constants, x, u, contacts, to)
+        });
+        self.compare_responses_of_sets(constants, &at.positive(19, 3));
+    }
+
+    /// The interpreter's are those of each set alone, too.
+    fn compare_responses_of_sets(&self, constants: &[Lanes], omega: &[f64]) {
+        for (excitation, layout) in self.about().responses.iter().enumerate() {
+            for wanted in [false, true] {
+                let (n, m) = (layout.outputs.len(), layout.slopes(wanted));
+                let rows = layout.rows(wanted);
+                let found = self.same_rows(omega.len() * rows, |model, to| {
+                    model.response_sets(excitation, constants, omega, wanted, to)
+                });
+                for set in 0..LANES {
+                    let constants: Vec<f64> = constants.iter().map(|row| row[set]).collect();
+                    let mut alone = [n, n, m, m].map(|rows| vec![0.5; rows * omega.len()]);
+                    let [re, im, d_re, d_im] = &mut alone;
+                    let jacobian = wanted.then_some((&mut d_re[..], &mut d_im[..]));
+                    let into = ResponseMut { re, im, jacobian };
+                    self.interpreted.response(excitation, &constants, omega, into);
+                    let alone = alone.concat();
+                    for (place, row) in found.iter().enumerate() {
+                        let alone = alone[place % rows * omega.len() + place / rows];
+                        let same = row[set].to_bits() == alone.to_bits() || row[set].is_nan() && alone.is_nan();
+                        assert!(same, "row {place} of set {set}: {:e}, alone {alone:e}", row[set]);
+                    }
+                }
+            }
+        }
     }
 
     fn compare_points(&self, p: &[f64], constants: &[f64], at: &At, count: usize) {
@@ -142,14 +181,17 @@ impl Both {
         flat.as_chunks().0.to_vec()
     }
 
-    /// What both give, which is the same bit by bit; no two ways of computing need agree on which not-a-number is none.
+    /// What all give, which is the same bit by bit; no two ways of computing need agree on which not-a-number is none.
     pub fn same(&self, length: usize, evaluate: impl Fn(&dyn Model, &mut [f64])) -> Vec<f64> {
-        let [mut expected, mut got] = [vec![0.5; length], vec![0.5; length]];
+        let mut expected = vec![0.5; length];
         evaluate(&self.interpreted, &mut expected);
-        evaluate(&self.machine, &mut got);
-        for (place, (got, expected)) in got.iter().zip(&expected).enumerate() {
-            let same = got.to_bits() == expected.to_bits() || got.is_nan() && expected.is_nan();
-            assert!(same, "value {place} of {length}: {got:e}, interpreted {expected:e}");
+        for machine in &self.machines {
+            let mut got = vec![0.5; length];
+            evaluate(machine, &mut got);
+            for (place, (got, expected)) in got.iter().zip(&expected).enumerate() {
+                let same = got.to_bits() == expected.to_bits() || got.is_nan() && expected.is_nan();
+                assert!(same, "value {place} of {length}: {got:e}, interpreted {expected:e}");
+            }
         }
         expected
     }

@@ -278,6 +278,18 @@ pub struct Entry {
     pub column: u16,
 }
 
+impl ResponseLayout {
+    /// How many rows its parameter Jacobian has, where it is wanted.
+    pub fn slopes(&self, wanted: bool) -> usize {
+        if wanted { self.jacobian.len() } else { 0 }
+    }
+
+    /// How many rows there are in all, real and imaginary parts each for itself.
+    pub fn rows(&self, with_jacobian: bool) -> usize {
+        2 * (self.outputs.len() + self.slopes(with_jacobian))
+    }
+}
+
 impl Entry {
     /// A place in a matrix.
     pub const fn at(matrix: Matrix, row: u16, column: u16) -> Entry {

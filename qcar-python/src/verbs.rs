@@ -57,6 +57,7 @@ pub fn fit_campaign<'py>(
         fix,
         all_runs: false,
         profile: Vec::new(),
+        bootstrap: None,
     };
     let fit = || refuse_nonlinear(&campaign, choices.model.as_deref()).and_then(|()| fit::fit(&campaign, &choices));
     let fitted = long(py, fit)?.map_err(errors::of_campaign)?;

@@ -25,6 +25,8 @@ pub mod quality;
 pub mod report;
 // Intervals by profile likelihood.
 pub mod profile;
+// Intervals by refits to resampled data.
+pub mod bootstrap;
 // Standard errors to expect from a measurement.
 mod forecast;
 // The information of a run about one sensor.

@@ -1,5 +1,7 @@
 //! Random numbers that are the same on every machine, and for any number of threads.
 
+use std::f64::consts::TAU;
+
 /// SplitMix64 (Steele, Lea and Flood 2014): one multiplication chain a number.
 #[derive(Clone, Debug)]
 pub struct SplitMix(u64);
@@ -39,6 +41,12 @@ impl SplitMix {
             }
         }
         all
+    }
+
+    /// Standard normal (Box and Muller 1958).
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.uniform()).ln()).sqrt();
+        radius * (TAU * self.uniform()).cos()
     }
 
     /// Sixty-four random bits.

@@ -2,12 +2,14 @@
 
 use nalgebra::Complex;
 use qcar_runtime::campaign::{Parameter, Role};
+use qcar_runtime::fit::bootstrap::ParameterBootstrap;
 use qcar_runtime::fit::observation::{Difference, Pair};
 use qcar_runtime::fit::plan::ChannelWeight;
 use qcar_runtime::fit::quality::{K_MAGNITUDE, K_PHASE, quality};
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::fit::{Fit, Level, Observation, Plan, Setup, Weighting, channels::across_links};
 use qcar_runtime::model::{Channel, Default, Model};
+use qcar_runtime::progress::UNTOLD;
 use std::collections::BTreeMap;
 
 use super::support::{self, Assembled, CHAIN, Law, acceleration, between, chain};
@@ -199,6 +201,86 @@ fn standard_errors_cover_the_truth_as_often_as_they_say() {
     let part = |within: usize| within as f64 / f64::from(count);
     assert!((0.55..0.80).contains(&part(within_one)), "{}", part(within_one));
     assert!((0.89..0.99).contains(&part(within_two)), "{}", part(within_two));
+}
+
+/// With white errors, and with errors that neighbouring lines share, of which independent lines would make too little.
+#[test]
+fn bootstrap_intervals_cover_the_truth_as_often_as_they_say() {
+    let model = chain(true);
+    let (mut plan, mut random) = (plan(), Random(11));
+    plan.starts = 1;
+    for (shared, least) in [(1, 0.89), (6, 0.85)] {
+        let (mut within, mut count, mut wide) = (0, 0, 0.0);
+        for _ in 0..24 {
+            let mut level = level(&model, &support::truth(&CHAIN), 80, 0.02, &mut random);
+            share_errors(&model, &mut level, shared);
+            let levels = [level];
+            let setup = Setup::new(&model, &plan, &levels).unwrap();
+            let fit = setup.fit();
+            let found = setup.bootstrap(&fit, 150, UNTOLD);
+            assert_eq!(found.failed, 0);
+            for own in &found.parameters {
+                let truth = CHAIN.iter().find(|given| given.0 == own.name).unwrap().2;
+                let [from, to] = own.interval;
+                within += usize::from((from..=to).contains(&truth));
+                wide += own.stderr / parameter(&fit, &own.name).stderr.unwrap();
+                count += 1;
+            }
+        }
+        // Intervals are of 95 %; of 192 correlated ones the bands are three standard deviations wide.
+        let part = within as f64 / f64::from(count);
+        assert!((least..0.995).contains(&part), "{shared}: {part}");
+        let wide = wide / f64::from(count);
+        assert!((0.75..1.1).contains(&wide), "{shared}: {wide} standard errors");
+    }
+}
+
+/// Gives so many neighbouring lines the mean of their errors, times the root of their number.
+fn share_errors(model: &Assembled, level: &mut Level, shared: usize) {
+    for own in &mut level.observations {
+        let truth = |&f: &f64| exact(model, &support::truth(&CHAIN), &own.channel, f);
+        let truth: Vec<_> = own.frequency.iter().map(truth).collect();
+        let errors: Vec<_> = own
+            .value
+            .iter()
+            .zip(&truth)
+            .map(|(value, truth)| value / truth - 1.0)
+            .collect();
+        for (first, errors) in errors.chunks(shared).enumerate() {
+            let error = errors.iter().sum::<Complex<f64>>() / (errors.len() as f64).sqrt();
+            for line in first * shared..first * shared + errors.len() {
+                own.value[line] = truth[line] * (1.0 + error);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_bootstrap_depends_on_the_seed_alone_and_has_gains_and_sides_in_it() {
+    let model = chain(true);
+    let (mut plan, mut level) = (plan(), clean(&model));
+    let wide = |plan: &Plan, level: &Level| {
+        let levels = [level.clone()];
+        let setup = Setup::new(&model, plan, &levels).unwrap();
+        let fit = setup.fit();
+        let (found, again) = (setup.bootstrap(&fit, 300, UNTOLD), setup.bootstrap(&fit, 300, UNTOLD));
+        assert_eq!(found, again);
+        let relative = |own: &ParameterBootstrap| own.stderr / own.value;
+        found.parameters.iter().map(relative).fold(0.0, f64::max)
+    };
+    // Measured without an error, and with errors of 2 % by either cause.
+    assert!(wide(&plan, &level) < 1e-6);
+    plan.gain_error = 0.02;
+    let by_gain = wide(&plan, &level);
+    plan.gain_error = 0.0;
+    for own in &mut level.observations {
+        own.differences.push(Difference {
+            pair: Pair::LeftRight,
+            half: vec![Complex::from(0.02); own.frequency.len()],
+        });
+    }
+    let by_sides = wide(&plan, &level);
+    assert!(by_gain > 0.005 && by_sides > 0.005, "{by_gain} {by_sides}");
 }
 
 #[test]

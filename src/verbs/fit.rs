@@ -10,6 +10,7 @@ use nalgebra::Complex;
 use qcar_dsl::check::Unseen;
 use qcar_runtime::campaign::{Campaign, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
+use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::profile::ParameterProfile;
@@ -54,7 +55,7 @@ pub(crate) mod nonlinear;
 /// The exit status is 1 if the search does not end at a minimum, or if every parameter ends at a bound of its range.
 #[derive(Args)]
 #[command(
-    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/silverbox --format json"
+    after_help = "Examples:\n  qcar fit models/campaigns/axle_a_rig --out results\n  qcar fit models/campaigns/axle_a_rig --starts 4 --fix c_tire --channels pad_to_wheel,wheel_to_body\n  qcar fit models/campaigns/axle_a_rig --profile k_tire,c_tire\n  qcar fit models/campaigns/axle_a_rig --bootstrap 1000\n  qcar fit models/campaigns/silverbox --format json"
 )]
 pub struct Arguments {
     /// Folder with a campaign.toml
@@ -93,6 +94,9 @@ pub struct Choices {
     /// Also find intervals of these parameters by profile likelihood; `all` for every fitted one
     #[arg(long, value_delimiter = ',', value_name = "NAMES")]
     pub profile: Vec<String>,
+    /// Also find intervals by fitting a linear model again to N resamples of what was measured
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(100..=1_000_000))]
+    pub bootstrap: Option<u32>,
 }
 
 impl Choices {
@@ -143,6 +147,8 @@ pub struct Fitted {
     pub fit: Fit,
     /// Profiles of the parameters that were asked for.
     pub profiles: Vec<ParameterProfile>,
+    /// What fits to resamples say, where that was asked for.
+    pub bootstrap: Option<Bootstrap>,
     /// Time for reading, estimating and fitting.
     pub seconds: f64,
 }
@@ -239,6 +245,11 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
     let fit = while_counting(searches, |told| setup.fit_telling(told));
     let profiles = profiles(&setup, &fit, &profiled, &campaign.name);
+    let resamples = choices.bootstrap.filter(|_| fit.converged);
+    let bootstrap = resamples.map(|resamples| {
+        let repeat = |told: Told<'_>| setup.bootstrap(&fit, resamples as usize, told);
+        while_counting(format!("{}: bootstrap, fit", campaign.name), repeat)
+    });
     let mut fitted = Fitted {
         seconds: begun.elapsed().as_secs_f64(),
         campaign,
@@ -246,6 +257,7 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
         levels,
         fit,
         profiles,
+        bootstrap,
     };
     clamped::take_over(&mut fitted)?;
     fitted.campaign.notices.extend(notices::all_at_bounds(&fitted.fit));

@@ -104,11 +104,41 @@ fn what_cannot_be_planned_or_profiled_is_refused() {
         ("fit AXLE --profile k_tyre", "did you mean `k_tire`?"),
         ("fit AXLE --profile c_wheel_x", "on which no fitted channel depends"),
         ("fit AXLE --model bent.axle --profile k_tyre", "did you mean `k_tire`?"),
+        ("fit AXLE --all-runs --bootstrap 100", "use `--profile`"),
+        ("fit AXLE --model bent.axle --bootstrap 100", "use `--profile`"),
+        ("fit AXLE --bootstrap 99", "99 is not in 100..=1000000"),
     ] {
         let ran = run_line(folder.path(), &line.replace("AXLE", AXLE));
         assert_eq!((ran.status, ran.stdout.as_str()), (2, ""), "{line}");
         assert!(ran.stderr.contains(said), "{}", ran.stderr);
     }
+}
+
+/// The scatter, gains and measured differences of sides are in both; standard errors may have more, by the least asymmetry.
+#[test]
+fn bootstrap_intervals_are_about_as_wide_as_standard_errors() {
+    let arguments = ["fit", AXLE, "--bootstrap", "200", "--starts", "1"];
+    let fit = result(&arguments);
+    let found = &fit["bootstrap"];
+    assert_eq!(
+        (&found["resamples"], &found["failed"]),
+        (&200.into(), &0.into()),
+        "{found}"
+    );
+    let parameters = found["parameters"].as_array().unwrap();
+    assert!(parameters.len() >= 10, "{parameters:?}");
+    for own in parameters {
+        let parameter = &fit["parameters"][own["name"].as_str().unwrap()];
+        let [value, error] = ["value", "stderr"].map(|key| parameter[key].as_f64().unwrap());
+        let [from, to] = [0, 1].map(|end| own["interval"][end].as_f64().unwrap());
+        assert!(from < value && value < to, "{own}");
+        let part = |of: &str| parameter["stderr_parts"][of].as_f64().unwrap();
+        let least = part("scatter").hypot(part("gain"));
+        let wide = own["stderr"].as_f64().unwrap();
+        assert!((0.6 * least..1.3 * error).contains(&wide), "{own}: {least} to {error}");
+    }
+    let text = succeeds(&arguments);
+    assert!(text.contains("95 % intervals by 200 fits to resamples\n"), "{text}");
 }
 
 /// Near its minimum the model is linear within these errors of a few percent, so that both intervals agree; an end of the range

@@ -7,11 +7,12 @@
 use crate::assemble::{Assembler, Memory, Pointer, Width};
 use crate::call::Call;
 use crate::shape::Shape;
+use crate::translate::Wide;
 use qcar_model::LANES;
 
-/// Bytes of a number, and of four.
+/// Bytes of a number, and of as many as the widest register holds.
 const NUMBER: usize = 8;
-const FOUR: usize = 4 * NUMBER;
+const ROOM: usize = size_of::<Wide>();
 /// Bytes of a page: the system gives the stack page by page, and each must be touched in turn.
 const PAGE: usize = 4096;
 /// Of the stack in a call, at most.
@@ -48,7 +49,7 @@ const NUMBERS: usize = 5;
 pub enum Place {
     /// As many numbers as an instruction works on, so that it can take them from there.
     Whole(Memory),
-    /// One number that four points share.
+    /// One number that all points share.
     Shared(Memory),
 }
 
@@ -66,26 +67,21 @@ pub struct Frame {
     /// Where its arguments are kept.
     given: [Pointer; 6],
     calls: bool,
+    /// How many numbers its instructions work on.
+    pub width: Width,
     /// Of the row of arguments of its calls.
     arguments: usize,
 }
 
 impl Frame {
     /// Of a program with these calls.
-    pub fn new(shape: Shape, calls: &[Call]) -> Self {
+    pub fn new(shape: Shape, width: Width, calls: &[Call]) -> Self {
         Frame {
             shape,
+            width,
             given: if calls.is_empty() { GIVEN } else { PRESERVED },
             calls: !calls.is_empty(),
             arguments: calls.iter().map(Call::arguments).max().unwrap_or(0),
-        }
-    }
-
-    /// How many numbers its instructions work on.
-    pub fn width(&self) -> Width {
-        match self.shape {
-            Shape::Once => Width::One,
-            Shape::Sets | Shape::Points(_) => Width::Four,
         }
     }
 
@@ -124,12 +120,12 @@ impl Frame {
 
     /// A number of the program.
     pub fn number(&self, number: usize) -> Memory {
-        at(self.given[NUMBERS], FOUR * number)
+        at(self.given[NUMBERS], ROOM * number)
     }
 
     /// On the stack an argument of a call, behind the stack pointer of before.
     pub fn argument(&self, place: usize) -> Memory {
-        at(Pointer::RSP, FOUR * (1 + place))
+        at(Pointer::RSP, ROOM * (1 + place))
     }
 
     /// What a call gives.
@@ -139,13 +135,16 @@ impl Frame {
 
     /// A value that waits.
     pub fn slot(&self, slot: u32) -> Memory {
-        self.argument(self.arguments + 1 + slot as usize)
+        at(
+            Pointer::RSP,
+            ROOM * (2 + self.arguments) + self.width.bytes() * slot as usize,
+        )
     }
 
     /// After the last operation: again for the next points, from `start` on.
     pub fn repeat(&self, body: &mut Assembler, start: usize) {
         if let Shape::Points(_) = self.shape {
-            body.add(self.given[OFFSET], FOUR as i32);
+            body.add(self.given[OFFSET], self.width.bytes() as i32);
             body.repeat_while_below(self.given[OFFSET], self.given[END], start);
         }
     }
@@ -153,7 +152,7 @@ impl Frame {
     /// The whole function; `None` where it would need too much of the stack.
     pub fn around(&self, body: Assembler, slots: u32) -> Option<Vec<u8>> {
         let needs_stack = self.calls || slots > 0;
-        let bytes = FOUR * (2 + self.arguments + slots as usize);
+        let bytes = ROOM * (2 + self.arguments) + self.width.bytes() * slots as usize;
         if bytes > LARGEST {
             return None;
         }
@@ -175,7 +174,7 @@ impl Frame {
         if self.calls {
             PRESERVED.iter().rev().for_each(|&own| after.pop(own));
         }
-        if self.width() == Width::Four {
+        if self.width != Width::One {
             after.narrow();
         }
         after.ret();
@@ -191,7 +190,7 @@ fn enter(before: &mut Assembler, bytes: usize) {
         before.touch(at(Pointer::RSP, 0));
     }
     before.add(Pointer::RSP, -((bytes % PAGE) as i32));
-    before.and(Pointer::RSP, -(FOUR as i8));
+    before.and(Pointer::RSP, -(ROOM as i8));
     before.store_pointer(Pointer::RAX, at(Pointer::RSP, 0));
 }
 

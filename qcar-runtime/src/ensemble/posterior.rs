@@ -1,7 +1,6 @@
 //! Parameter sets that are as probable as a fit says: draws from the normal distribution of its estimates, within their ranges.
 
 use nalgebra::{DMatrix, DVector, SymmetricEigen};
-use std::f64::consts::TAU;
 use thiserror::Error;
 
 use crate::random::SplitMix;
@@ -86,7 +85,7 @@ impl Posterior {
     pub fn draw(&self, number: u64, seed: u64, into: &mut [f64]) {
         let mut random = SplitMix::stream(seed, number);
         for _ in 0..MOST_DRAWS {
-            let normal = DVector::from_fn(self.estimates.len(), |_, _| normal(&mut random));
+            let normal = DVector::from_fn(self.estimates.len(), |_, _| random.normal());
             let moved = &self.root * normal;
             let all = into.iter_mut().zip(&self.estimates).zip(moved.iter());
             all.for_each(|((value, own), moved)| *value = own.value + moved);
@@ -97,12 +96,6 @@ impl Posterior {
         }
         into.fill(f64::NAN);
     }
-}
-
-/// A standard normal number (Box and Muller 1958).
-fn normal(random: &mut SplitMix) -> f64 {
-    let radius = (-2.0 * (1.0 - random.uniform()).ln()).sqrt();
-    radius * (TAU * random.uniform()).cos()
 }
 
 #[cfg(test)]

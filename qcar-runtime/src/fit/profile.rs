@@ -44,8 +44,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
     /// how far it is.
     pub fn profiles(&self, fit: &Fit, names: &[String], told: Told<'_>) -> Vec<ParameterProfile> {
         let about = &self.model.about().parameters;
-        let value = |&place: &usize| fit.parameters[place].value;
-        let minimum = self.local(&self.free.iter().map(value).collect::<Vec<_>>());
+        let minimum = self.minimum_of(fit);
         let uncertainty = uncertainty::estimate(self, &minimum);
         let free = 0..self.free.len();
         let wanted: Vec<usize> = free
@@ -75,6 +74,12 @@ impl<M: Model + ?Sized> Setup<'_, M> {
                 }
             },
         )
+    }
+
+    /// Where a fit has ended, with residual and Jacobian.
+    pub(super) fn minimum_of(&self, fit: &Fit) -> Outcome {
+        let value = |&place: &usize| fit.parameters[place].value;
+        self.local(&self.free.iter().map(value).collect::<Vec<_>>())
     }
 
     fn first_step(&self, uncertainty: &Uncertainty, minimum: &Outcome, variable: usize) -> f64 {

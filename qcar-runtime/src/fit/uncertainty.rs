@@ -42,8 +42,7 @@ pub struct StandardError {
 }
 
 pub(super) fn estimate<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome) -> Uncertainty {
-    let free: Vec<bool> = outcome.at_bound.iter().map(|&bound| bound == 0).collect();
-    let information = Information::new(&outcome.jacobian, &free);
+    let information = information(outcome);
     let x = DVector::from_iterator(
         information.seen().len(),
         information.seen().iter().map(|&k| outcome.x[k]),
@@ -59,6 +58,12 @@ pub(super) fn estimate<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcom
         covariance: scatter + asymmetric + gains,
         asymmetry,
     }
+}
+
+/// What the Jacobian tells of the variables that are off their bounds.
+pub(super) fn information(outcome: &Outcome) -> Information {
+    let free: Vec<bool> = outcome.at_bound.iter().map(|&bound| bound == 0).collect();
+    Information::new(&outcome.jacobian, &free)
 }
 
 impl Uncertainty {
@@ -103,14 +108,7 @@ impl Uncertainty {
 /// smaller: at the optimum the scores sum to zero, which resembles negative correlation.
 fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
     let count = information.seen().len();
-    let (mut independent, mut correlated) = (DMatrix::zeros(count, count), DMatrix::zeros(count, count));
-    for grid in 0..setup.grids.len() {
-        let scores = scores(setup, outcome, information, grid);
-        independent += &scores * scores.transpose();
-        correlated += long_run(&scores);
-    }
-    let covariance = information.inverse() * independent * information.inverse();
-    let long_run = information.inverse() * correlated * information.inverse();
+    let [covariance, long_run] = of_lines(setup, outcome, information);
     let growth = |k: usize| {
         if long_run[(k, k)] > covariance[(k, k)] {
             long_run[(k, k)] / covariance[(k, k)]
@@ -121,21 +119,62 @@ fn scatter<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, informati
     DMatrix::from_fn(count, count, |i, j| covariance[(i, j)] * (growth(i) * growth(j)).sqrt())
 }
 
-/// For each line of a grid, the gradient of its share of the cost: a column a line.
+/// The covariance with lines as independent clusters, and that with neighbours that may be correlated.
+fn of_lines<M: Model + ?Sized>(
+    setup: &Setup<'_, M>,
+    outcome: &Outcome,
+    information: &Information,
+) -> [DMatrix<f64>; 2] {
+    let count = information.seen().len();
+    let mut sums = [DMatrix::zeros(count, count), DMatrix::zeros(count, count)];
+    for grid in 0..setup.grids.len() {
+        let lines = unfitted(setup, outcome, information, grid);
+        let scores: Vec<DVector<f64>> = lines
+            .iter()
+            .map(|line| line.slopes.transpose() * &line.residual)
+            .collect();
+        if !scores.is_empty() {
+            let scores = DMatrix::from_columns(&scores);
+            sums[0] += &scores * scores.transpose();
+            sums[1] += long_run(&scores);
+        }
+    }
+    sums.map(|sum| information.inverse() * sum * information.inverse())
+}
+
+/// True where correlation of neighbouring lines makes the variances larger, in the mean of all parameters.
+pub(super) fn are_neighbours_correlated<M: Model + ?Sized>(
+    setup: &Setup<'_, M>,
+    outcome: &Outcome,
+    information: &Information,
+) -> bool {
+    let [independent, long_run] = of_lines(setup, outcome, information).map(|own| own.diagonal());
+    let growth = long_run.component_div(&independent);
+    growth.iter().any(|growth| growth.is_finite()) && growth.mean() > 1.0
+}
+
+/// A line of a grid, in all channels and runs that have it.
+pub(super) struct Line {
+    /// Its residuals' rows.
+    pub rows: Vec<usize>,
+    /// What they would be if the line were not fitted to.
+    pub residual: DVector<f64>,
+    slopes: DMatrix<f64>,
+}
+
+/// The lines of a grid.
 ///
 /// The residuals are those that the line would have if it were not fitted to, `(1 − H)⁻¹ r` with its block H of the
 /// projection (CR3, MacKinnon & White, "Some heteroskedasticity-consistent covariance matrix estimators with improved
 /// finite sample properties", J. Econometrics 29, 1985): the few lines at a resonance decide on a parameter, and the
 /// fit goes through them.
-fn scores<M: Model + ?Sized>(
+pub(super) fn unfitted<M: Model + ?Sized>(
     setup: &Setup<'_, M>,
     outcome: &Outcome,
     information: &Information,
     grid: usize,
-) -> DMatrix<f64> {
-    let lines = setup.grids[grid].frequency.len();
-    let mut scores = DMatrix::zeros(information.seen().len(), lines);
-    for line in 0..lines {
+) -> Vec<Line> {
+    let of_line = |line: usize| {
         let of_grid = setup.targets.iter().filter(|target| target.grid == grid);
         let rows: Vec<usize> = of_grid
             .flat_map(|target| [target.rows().0.start + line, target.rows().1.start + line])
@@ -144,18 +183,23 @@ fn scores<M: Model + ?Sized>(
         let residual = outcome.residual.select_rows(&rows);
         let free = DMatrix::identity(rows.len(), rows.len()) - &slopes * information.inverse() * slopes.transpose();
         // A line that alone decides on a parameter has no residual of its own.
-        let unfitted = free.lu().solve(&residual).unwrap_or(residual);
-        scores.set_column(line, &(slopes.transpose() * unfitted));
-    }
-    scores
+        let residual = free.lu().solve(&residual).unwrap_or(residual);
+        Line { rows, residual, slopes }
+    };
+    (0..setup.grids[grid].frequency.len()).map(of_line).collect()
+}
+
+/// How many neighbours of a line may be correlated with it.
+pub(super) fn lags(lines: usize) -> usize {
+    ((lines as f64).sqrt() as usize).min(lines.saturating_sub(1))
 }
 
 /// The covariance of the sum of correlated columns, with Bartlett's kernel over the square root of their number.
 fn long_run(scores: &DMatrix<f64>) -> DMatrix<f64> {
     let lines = scores.ncols();
-    let lags = (lines as f64).sqrt() as usize;
+    let lags = lags(lines);
     let mut sum = scores * scores.transpose();
-    for lag in 1..=lags.min(lines.saturating_sub(1)) {
+    for lag in 1..=lags {
         let shifted = scores.columns(lag, lines - lag) * scores.columns(0, lines - lag).transpose();
         let weight = 1.0 - lag as f64 / (lags + 1) as f64;
         sum += (&shifted + shifted.transpose()) * weight;
@@ -172,15 +216,7 @@ fn asymmetry<M: Model + ?Sized>(
     others: &DVector<f64>,
 ) -> (DMatrix<f64>, f64) {
     let mut covariance = DMatrix::zeros(x.len(), x.len());
-    for pair in [Pair::LeftRight, Pair::FrontRear] {
-        let pattern = pattern(setup, |target, line| {
-            let differences = &setup.observation(target).differences;
-            differences
-                .iter()
-                .filter(|difference| difference.pair == pair)
-                .map(|difference| difference.half[line])
-                .sum()
-        });
+    for pattern in of_sides(setup) {
         let shift = information.shift(&outcome.jacobian, &pattern);
         covariance += &shift * shift.transpose();
     }
@@ -205,8 +241,35 @@ fn typical_shift(squares: &DVector<f64>, others: &DVector<f64>, x: &DVector<f64>
 fn gains<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information: &Information) -> DMatrix<f64> {
     let count = information.seen().len();
     let mut covariance = DMatrix::zeros(count, count);
-    for signal in signals(setup) {
-        let pattern = pattern(setup, |target, _| {
+    for pattern in of_gains(setup) {
+        let shift = information.shift(&outcome.jacobian, &pattern);
+        covariance += &shift * shift.transpose();
+    }
+    covariance
+}
+
+/// What normal numbers multiply in the residual: half of what each pair of sides differs by, and the gain error of each signal.
+pub(super) fn patterns<M: Model + ?Sized>(setup: &Setup<'_, M>) -> Vec<DVector<f64>> {
+    of_sides(setup).chain(of_gains(setup)).collect()
+}
+
+fn of_sides<M: Model + ?Sized>(setup: &Setup<'_, M>) -> impl Iterator<Item = DVector<f64>> {
+    let of_pair = move |pair: Pair| {
+        pattern(setup, |target, line| {
+            let differences = &setup.observation(target).differences;
+            differences
+                .iter()
+                .filter(|difference| difference.pair == pair)
+                .map(|difference| difference.half[line])
+                .sum()
+        })
+    };
+    [Pair::LeftRight, Pair::FrontRear].into_iter().map(of_pair)
+}
+
+fn of_gains<M: Model + ?Sized>(setup: &Setup<'_, M>) -> impl Iterator<Item = DVector<f64>> {
+    let of_signal = move |signal: &Signal| {
+        pattern(setup, |target, _| {
             let observation = setup.observation(target);
             let share = |of: &Signal, sensors: usize| {
                 if of == signal {
@@ -218,11 +281,9 @@ fn gains<M: Model + ?Sized>(setup: &Setup<'_, M>, outcome: &Outcome, information
             let above = share(&observation.channel.numerator, observation.sensors.0);
             let below = share(&observation.channel.denominator, observation.sensors.1);
             Complex::from(setup.plan.gain_error * (above - below))
-        });
-        let shift = information.shift(&outcome.jacobian, &pattern);
-        covariance += &shift * shift.transpose();
-    }
-    covariance
+        })
+    };
+    signals(setup).into_iter().map(of_signal)
 }
 
 /// The signals of all targets, each once.

@@ -11,6 +11,7 @@ use super::recorder::Kept;
 use super::ride::{Drive, Journey, Ride};
 use super::settings::Settings;
 use crate::model::{LANES, Model};
+use crate::solver::ExponentialAdams;
 
 /// Parameters of a car, and the road and speed of its ride.
 pub type Ridden<'a> = (&'a [f64], Drive<'a>);
@@ -33,6 +34,7 @@ pub fn rides_abreast<'a, M: Model + ?Sized>(
         done,
         waiting: rides.iter().enumerate(),
         rooms: Vec::new(),
+        last: None,
         formation: None,
         lanes: [const { None }; LANES],
     };
@@ -50,6 +52,8 @@ struct Abreast<'r, 'a, M: ?Sized, D> {
     waiting: Enumerate<slice::Iter<'r, Ridden<'a>>>,
     /// Memory of complete records, for the rides to come.
     rooms: Vec<Vec<f64>>,
+    /// Parameters of the last ride that has begun, and its exponential method: those of a car often come one after the other.
+    last: Option<(&'a [f64], ExponentialAdams<2>)>,
     formation: Option<Formation<'a, M>>,
     lanes: [Option<Lane<'a, M>>; LANES],
 }
@@ -102,8 +106,16 @@ impl<'a, M: Model + ?Sized, D: FnMut(usize, Result<Ride, SimulateError>)> Abreas
                 ..*self.car
             };
             let room = self.rooms.pop().unwrap_or_default();
-            match Journey::new(&car, drive, self.settings, |grid| (grid, room), self.kept) {
-                Ok(journey) => return Some((number, journey)),
+            let of_car = |last: &&(&[f64], ExponentialAdams<2>)| last.0 == *parameters;
+            let same = self.last.as_ref().filter(of_car).map(|last| &last.1);
+            let is_new = same.is_none();
+            match Journey::new(&car, drive, self.settings, |grid| (grid, room), self.kept, same) {
+                Ok(mut journey) => {
+                    if let Some((shortcut, _)) = journey.recorder.shortcut().filter(|_| is_new) {
+                        self.last = Some((*parameters, shortcut.method().clone()));
+                    }
+                    return Some((number, journey));
+                }
                 Err(error) => (self.done)(number, Err(error)),
             }
         }

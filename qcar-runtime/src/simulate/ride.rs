@@ -10,7 +10,7 @@ use super::shortcut::Shortcut;
 use crate::model::{About, Model};
 use crate::progress::{self, Told};
 use crate::road::Road;
-use crate::solver::{Effort, Reason, System};
+use crate::solver::{Effort, ExponentialAdams, Reason, System};
 use crate::tyre::{Geometry, Tyre};
 
 /// A ride that is to be simulated.
@@ -75,7 +75,7 @@ pub fn ride<M: Model + ?Sized>(
     settings: &Settings,
 ) -> Result<Ride, SimulateError> {
     let kept = Kept::all(car.model.about());
-    let mut journey = Journey::new(car, drive, settings, |grid| (grid, Vec::new()), &kept)?;
+    let mut journey = Journey::new(car, drive, settings, |grid| (grid, Vec::new()), &kept, None)?;
     journey.finish()?;
     Ok(journey.ride().0)
 }
@@ -91,7 +91,7 @@ pub fn end_of_ride<M: Model + ?Sized>(
 ) -> Result<(Vec<f64>, Effort), SimulateError> {
     let kept = Kept::all(car.model.about());
     let unrecorded = |grid: Grid| (grid.without_points(), Vec::new());
-    let mut journey = Journey::new(car, drive, settings, unrecorded, &kept)?;
+    let mut journey = Journey::new(car, drive, settings, unrecorded, &kept, None)?;
     journey.finish()?;
     Ok((journey.x, journey.effort))
 }
@@ -114,13 +114,15 @@ pub(super) struct Journey<'a, M: ?Sized> {
 }
 
 impl<'a, M: Model + ?Sized> Journey<'a, M> {
-    /// A car at rest on flat ground, about to move. What of the grid of the samples `recorded` leaves is recorded, in a room.
+    /// A car at rest on flat ground, about to move. What of the grid of the samples `recorded` leaves is recorded, in a room. The
+    /// exponential method may be that of another ride of the `same` car.
     pub fn new(
         car: &Car<'a, M>,
         drive: &Drive<'a>,
         settings: &Settings,
         recorded: impl FnOnce(Grid) -> (Grid, Vec<f64>),
         kept: &Kept,
+        same: Option<&ExponentialAdams<2>>,
     ) -> Result<Self, SimulateError> {
         let (tyre, about) = (car.rolling_tyre(), car.model.about());
         drive.check(&tyre)?;
@@ -128,7 +130,7 @@ impl<'a, M: Model + ?Sized> Journey<'a, M> {
         let start = drive.start(&tyre).min(grid.start());
         let (rolling, x) = Rolling::at_rest(car, drive.road, drive.speed, start)?;
         let span = (drive.reaches(&tyre).max(start), grid.end());
-        let shortcut = Shortcut::new(&rolling, about, settings, &grid);
+        let shortcut = Shortcut::new(&rolling, about, settings, &grid, same);
         let static_deflection = rolling.deflection(span.0, &x);
         let mut recorder = Recorder::new(rolling, shortcut, recorded(grid), about, kept);
         recorder.rest(span.0, &x);

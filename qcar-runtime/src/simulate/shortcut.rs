@@ -39,12 +39,13 @@ const STEP: f64 = 1e-3;
 
 impl Shortcut {
     /// For a ride that is recorded on a grid. None where the axle is not linear, or where steps of a given length were
-    /// asked for.
+    /// asked for. The method of another ride of the `same` car spares an exponential, where its steps are as long.
     pub fn new<M: Model + ?Sized>(
         rolling: &Rolling<'_, M>,
         about: &About,
         settings: &Settings,
         grid: &Grid,
+        same: Option<&ExponentialAdams<2>>,
     ) -> Option<Self> {
         let (Method::Adaptive(relative), true) = (settings.method, rolling.is_linear()) else {
             return None;
@@ -52,8 +53,10 @@ impl Shortcut {
         let times = grid.steps(STEP);
         let step = times.get(1)? - times[0];
         let doublings = usize::from(step < 1.5 * STEP);
+        let same = same.filter(|same| same.steps_by(step, doublings)).cloned();
+        let new = || ExponentialAdams::new(&Smooth::new(rolling), about.states.len(), step, doublings);
         Some(Self {
-            adams: ExponentialAdams::new(&Smooth::new(rolling), about.states.len(), step, doublings)?,
+            adams: same.or_else(new)?,
             relative,
             absolute: scales(about).map(|scale| relative * scale).collect(),
             next: times.partition_point(|t| rolling.speed * t < rolling.smooth_from),

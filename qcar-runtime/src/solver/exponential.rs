@@ -29,6 +29,7 @@ pub trait Driven<const F: usize> {
 const KEPT: usize = 2 * PAST - 1;
 
 /// The integrator, with the state and the past of the forces.
+#[derive(Clone)]
 pub struct ExponentialAdams<const F: usize> {
     parts: Vec<Part>,
     /// For the shortest step, for twice that, and so on.
@@ -45,9 +46,12 @@ pub struct ExponentialAdams<const F: usize> {
     past: [[f64; KEPT]; F],
     /// Number of points at which they are known.
     known: usize,
+    /// The shortest step, s.
+    step: f64,
 }
 
 /// How each state is corrected for a unit of each force that was not foreseen.
+#[derive(Clone)]
 struct Corrections<const F: usize> {
     whole: [Vec<f64>; F],
     /// How much of that is by the last point of the past, without which the polynomial would be one order lower: the
@@ -90,7 +94,13 @@ impl<const F: usize> ExponentialAdams<F> {
             excess: vec![0.0; states],
             past: [[0.0; KEPT]; F],
             known: 0,
+            step,
         })
+    }
+
+    /// True where it is for such steps.
+    pub fn steps_by(&self, step: f64, doublings: usize) -> bool {
+        self.step == step && self.corrections.len() == doublings + 1
     }
 
     /// Begins at state `x`, with the shortest step and the forces of points that far apart, the present ones last.
@@ -203,6 +213,7 @@ impl<const F: usize> ExponentialAdams<F> {
 ///
 /// The next state is foreseen from the last as that was foreseen; what corrects it comes with the forces. So a step need
 /// not wait for the forces of the last one to be known before it begins.
+#[derive(Clone)]
 struct Part {
     states: Vec<usize>,
     forces: Vec<usize>,

@@ -64,13 +64,18 @@ pub(super) fn run(campaign: Campaign, arguments: &Arguments) -> Result<String, F
 }
 
 /// # Errors
-/// Channels, which the cost of a linear fit is made of.
+/// Channels, which the cost of a linear fit is made of, and their resamples.
 fn refuse_choices(choices: &Choices) -> Result<(), InputError> {
     let expected = "a linear model, whose cost consists of channels";
     let remedy = "leave it out: a nonlinear model is fitted to all sensors";
     let channels =
         (!choices.channels.is_empty()).then(|| flag("--channels", choices.channels.join(","), expected, remedy));
-    InputError::unless_empty(channels.into_iter().collect(), Some(()))
+    let alone = "a linear model, fitted to its transmissibilities alone";
+    let resamples = choices.bootstrap.map(|own| {
+        let remedy = "use `--profile`, which finds intervals of every fit";
+        flag("--bootstrap", own, alone, remedy)
+    });
+    InputError::unless_empty(channels.into_iter().chain(resamples).collect(), Some(()))
 }
 
 /// Fits.

@@ -1,5 +1,6 @@
 //! A fit as text for people and as JSON for programs.
 
+use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, ParameterFit};
 use serde::Serialize;
@@ -26,6 +27,8 @@ pub(crate) struct Result<'a> {
     starts: usize,
     minima: &'a [LocalMinimum],
     profiles: &'a [ParameterProfile],
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bootstrap: Option<&'a Bootstrap>,
     notices: &'a [String],
     seconds: f64,
 }
@@ -55,6 +58,7 @@ pub(crate) fn result(of: &Fitted) -> Result<'_> {
         starts: fit.starts,
         minima: &fit.minima,
         profiles: &of.profiles,
+        bootstrap: of.bootstrap.as_ref(),
         notices: &of.campaign.notices,
         seconds: of.seconds,
     }
@@ -65,6 +69,7 @@ pub(super) fn text(of: &Fitted) -> String {
         summary(of),
         parameters(&of.fit.parameters),
         profiles(&of.profiles),
+        of.bootstrap.as_ref().map_or(String::new(), bootstrap),
         correlations(&of.fit.correlations),
         channels(of),
     ];
@@ -158,6 +163,27 @@ fn profile_remark(of: &ParameterProfile) -> String {
     });
     let words = [Some(open.to_string()).filter(|words| !words.is_empty()), lower];
     words.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+fn bootstrap(of: &Bootstrap) -> String {
+    let mut table = Table::new(["parameter", "unit", "value", "from", "to", "stderr", "bias"]);
+    for own in &of.parameters {
+        let shown = |value: f64| units::value(value, &own.unit);
+        let [from, to] = own.interval;
+        let ends = [own.value, from, to].map(|value| number(shown(value), 5));
+        let spread = [own.stderr, own.bias].map(|value| number(shown(value), 2));
+        let names = [own.name.clone(), units::name(&own.unit).into()];
+        table.row([&names[..], &ends, &spread].concat());
+    }
+    let failed = match of.failed {
+        0 => String::new(),
+        failed => format!(", {failed} of which ended at no minimum and do not count"),
+    };
+    format!(
+        "95 % intervals by {} fits to resamples{failed}\n{}",
+        of.resamples,
+        table.text()
+    )
 }
 
 fn correlations(of: &[Correlation]) -> String {

@@ -1,0 +1,180 @@
+//! Bootstrap intervals of fitted parameters: the fit repeated to data that might have been measured instead.
+//!
+//! What is drawn has the three causes of `uncertainty`. *Scatter*: the residual of each line, of all channels and runs at once, is
+//! multiplied by a random number (wild bootstrap, Wu, "Jackknife, bootstrap and other resampling methods in regression analysis", Annals
+//! of Statistics 14, 1986). Where the scores of neighbouring lines are correlated, their numbers are, too, by Bartlett's kernel (dependent
+//! wild bootstrap, Shao, "The dependent wild bootstrap", J. Amer. Statist. Assoc. 105, 2010). *Asymmetry* and *gains*: what half the
+//! difference of two sides, and the gain of each sensor, do to the residual, each times a normal number. Only
+//! the least share of asymmetry that `uncertainty` gives to every parameter is not among them, because no data show it.
+//!
+//! Each search begins at the minimum of the fit, so an interval is about that minimum and no other.
+
+use super::cost::Cost;
+use super::report::Fit;
+use super::search::OPTIONS;
+use super::setup::Setup;
+use super::uncertainty::{self, Line};
+use crate::least_squares::{Outcome, Problem, minimize};
+use crate::model::Model;
+use crate::progress::{self, Told};
+use crate::random::SplitMix;
+use nalgebra::DVector;
+use serde::Serialize;
+
+/// What the repeated fits say.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Bootstrap {
+    /// How often the fit was repeated.
+    pub resamples: usize,
+    /// So many of them ended at no minimum, and do not count.
+    pub failed: usize,
+    /// Of each fitted parameter; none where all have failed.
+    pub parameters: Vec<ParameterBootstrap>,
+}
+
+/// What they say of a parameter.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ParameterBootstrap {
+    /// Name.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// At the minimum of the fit.
+    pub value: f64,
+    /// Standard deviation of the repeated fits.
+    pub stderr: f64,
+    /// Their mean less `value`.
+    pub bias: f64,
+    /// Their quantiles at 2.5 and 97.5 %.
+    pub interval: [f64; 2],
+}
+
+/// The ends of an interval of 95 %.
+const ENDS: [f64; 2] = [0.025, 0.975];
+
+impl<M: Model + ?Sized> Setup<'_, M> {
+    /// Repeats a fit so many times. Each resample depends on the plan's seed and its own number alone; one by one `told` hears how far it
+    /// is.
+    pub fn bootstrap(&self, fit: &Fit, resamples: usize, told: Told<'_>) -> Bootstrap {
+        let minimum = self.minimum_of(fit);
+        let drawn = Drawn::new(self, &minimum);
+        let numbers: Vec<u64> = (0..resamples as u64).collect();
+        let found = progress::map_with(
+            &numbers,
+            told,
+            || self.cost(),
+            |cost, &number| {
+                let random = SplitMix::stream(self.plan.seed, number);
+                let change = drawn.residual(random) - &minimum.residual;
+                let outcome = minimize(&mut Changed { cost, change }, &minimum.x, &self.bounds, &OPTIONS);
+                outcome.stop.converged().then_some(outcome.x)
+            },
+        );
+        let found: Vec<Vec<f64>> = found.into_iter().flatten().collect();
+        let variables = if found.is_empty() { 0 } else { self.free.len() };
+        Bootstrap {
+            resamples,
+            failed: resamples - found.len(),
+            parameters: (0..variables)
+                .map(|variable| self.about_parameter(variable, minimum.x[variable], &found))
+                .collect(),
+        }
+    }
+
+    fn about_parameter(&self, variable: usize, value: f64, found: &[Vec<f64>]) -> ParameterBootstrap {
+        let mut values: Vec<f64> = found.iter().map(|x| x[variable]).collect();
+        values.sort_by(f64::total_cmp);
+        let count = values.len() as f64;
+        let mean = values.iter().sum::<f64>() / count;
+        let square = values.iter().map(|own| (own - mean).powi(2)).sum::<f64>();
+        let parameter = &self.model.about().parameters[self.free[variable]];
+        ParameterBootstrap {
+            name: parameter.name.to_string(),
+            unit: parameter.unit.to_string(),
+            value,
+            stderr: (square / (count - 1.0).max(1.0)).sqrt(),
+            bias: mean - value,
+            interval: ENDS.map(|part| quantile(&values, part)),
+        }
+    }
+}
+
+/// Of ascending values, interpolated between neighbours.
+fn quantile(values: &[f64], part: f64) -> f64 {
+    let place = part * (values.len() - 1) as f64;
+    let below = place as usize;
+    let above = (below + 1).min(values.len() - 1);
+    values[below] + (place - below as f64) * (values[above] - values[below])
+}
+
+/// What residuals at the minimum are drawn from.
+struct Drawn {
+    /// Those that the lines of each grid would have if they were not fitted to.
+    grids: Vec<Vec<Line>>,
+    rows: usize,
+    /// So many neighbours of a line are drawn together with it.
+    lags: Vec<usize>,
+    /// What normal numbers multiply: errors of sides and gains.
+    patterns: Vec<DVector<f64>>,
+}
+
+impl Drawn {
+    fn new<M: Model + ?Sized>(setup: &Setup<'_, M>, minimum: &Outcome) -> Self {
+        let information = uncertainty::information(minimum);
+        let grids = 0..setup.grids.len();
+        let grids: Vec<Vec<Line>> = grids
+            .map(|grid| uncertainty::unfitted(setup, minimum, &information, grid))
+            .collect();
+        let correlated = uncertainty::are_neighbours_correlated(setup, minimum, &information);
+        let lags = |lines: &Vec<Line>| if correlated { uncertainty::lags(lines.len()) } else { 0 };
+        Self {
+            rows: minimum.residual.len(),
+            lags: grids.iter().map(lags).collect(),
+            patterns: uncertainty::patterns(setup),
+            grids,
+        }
+    }
+
+    fn residual(&self, mut random: SplitMix) -> DVector<f64> {
+        let mut residual = DVector::zeros(self.rows);
+        for (lines, &lags) in self.grids.iter().zip(&self.lags) {
+            let normal: Vec<f64> = (0..lines.len() + lags).map(|_| random.normal()).collect();
+            // Sums of neighbours have Bartlett's kernel as their correlation.
+            let scale = 1.0 / ((lags + 1) as f64).sqrt();
+            for (line, own) in lines.iter().enumerate() {
+                let times = scale * normal[line..=line + lags].iter().sum::<f64>();
+                for (&row, value) in own.rows.iter().zip(&own.residual) {
+                    residual[row] = times * value;
+                }
+            }
+        }
+        for pattern in &self.patterns {
+            residual.axpy(random.normal(), pattern, 1.0);
+        }
+        residual
+    }
+}
+
+/// A cost with other measured values: its residual is changed by the same everywhere.
+struct Changed<'c, 'm, 's, M: ?Sized> {
+    cost: &'c mut Cost<'m, 's, M>,
+    change: DVector<f64>,
+}
+
+impl<M: Model + ?Sized> Problem for Changed<'_, '_, '_, M> {
+    fn variables(&self) -> usize {
+        self.cost.variables()
+    }
+
+    fn residuals(&self) -> usize {
+        self.change.len()
+    }
+
+    fn evaluate(&mut self, x: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
+        self.cost.evaluate(x, residual, jacobian);
+        residual
+            .iter_mut()
+            .zip(&self.change)
+            .for_each(|(own, change)| *own += change);
+    }
+}
