@@ -47,6 +47,8 @@ pub mod scales;
 pub mod workshop;
 // The residual of each sensor, in percent.
 mod left;
+// Units that the samples of a channel contradict.
+mod doubt;
 // Dense and named matrices.
 pub mod state_space;
 // Models for other tools.

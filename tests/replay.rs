@@ -125,7 +125,6 @@ fn it_does_not_matter_what_was_recorded_of_a_motion() {
         (1, wave(0.002 * omega, quarter)),
         (2, wave(0.002 * omega * omega, 2.0 * quarter)),
     ];
-    // Forty whole periods. The end of a displacement that is not periodic is known less exactly than its integrals.
     let outputs: Vec<Reading> = (0..model.about().outputs.len()).map(Reading::Output).collect();
     let [position, velocity, acceleration] = records.map(|(power, samples)| {
         let recorded = Recorded {
@@ -133,10 +132,7 @@ fn it_does_not_matter_what_was_recorded_of_a_motion() {
             power,
             samples: &samples,
         };
-        let how = Between {
-            periodic: true,
-            ..band_limited(rate, samples.len())
-        };
+        let how = band_limited(rate, samples.len());
         replay(model, values.as_slice(), vec![recorded], how, outputs.clone()).unwrap()
     });
     for other in [velocity, acceleration] {

@@ -12,8 +12,6 @@ use crate::table::{Table, number, or_dash};
 use crate::terminal::prose;
 use crate::verbs::Format;
 
-// Units that samples contradict.
-pub(super) mod doubt;
 // Summary of a channel.
 mod course;
 // A file read channel by channel.

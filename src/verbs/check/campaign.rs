@@ -5,9 +5,9 @@ use std::path::Path;
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::error::InputError;
 
+use crate::doubt::{Does, doubt};
 use crate::failure::Failure;
 use crate::table::{Table, number};
-use crate::verbs::inspect::doubt::{Does, doubt};
 
 /// Significant digits.
 const DIGITS: usize = 6;

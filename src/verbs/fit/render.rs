@@ -27,7 +27,6 @@ pub(crate) struct Result<'a> {
     starts: usize,
     minima: &'a [LocalMinimum],
     profiles: &'a [ParameterProfile],
-    #[serde(skip_serializing_if = "Option::is_none")]
     bootstrap: Option<&'a Bootstrap>,
     notices: &'a [String],
     seconds: f64,

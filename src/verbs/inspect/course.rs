@@ -3,7 +3,7 @@
 use qcar_signals::samples::Samples;
 use qcar_signals::signal::Signal;
 
-use super::doubt::{Does, doubt};
+use crate::doubt::{Does, doubt};
 
 /// Columns of a sparkline.
 const SPARKS: usize = 16;

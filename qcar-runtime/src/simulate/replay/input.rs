@@ -47,7 +47,16 @@ pub fn rows(about: &About, recorded: &[Recorded], how: &Between, nodes: usize) -
         match recorded.iter().find(|r| r.excitation == usize::from(place)) {
             None => vec![0.0; length],
             Some(r) if !how.band_limited && r.power == power => held(r.samples, nodes),
-            Some(r) => derived(r.samples, power - r.power, how, nodes),
+            Some(r) => {
+                let mut row = derived(r.samples, power - r.power, how, nodes);
+                // The constant of a position moves road and masses alike. A velocity keeps its own, so that it stays the derivative of
+                // the position.
+                if power == 0 && r.power > 0 && !how.periodic {
+                    let first = row[0];
+                    row.iter_mut().for_each(|value| *value -= first);
+                }
+                row
+            }
         }
     };
     about.inputs.iter().map(|input| row(input.kind)).collect()
@@ -62,8 +71,8 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 
 /// Derivative of order `power` by the spectrum; a negative order integrates.
 ///
-/// The straight line between the ends is treated separately, since a record with different ends would ring. An integral
-/// begins at zero, since its constant moves road and masses alike.
+/// The straight line between the ends is treated separately, since a record with different ends would ring. An integral has no
+/// mean.
 fn derived(samples: &[f64], power: i32, how: &Between, nodes: usize) -> Vec<f64> {
     let line = if power < 0 || how.periodic {
         Line::default()
@@ -77,12 +86,11 @@ fn derived(samples: &[f64], power: i32, how: &Between, nodes: usize) -> Vec<f64>
         .collect();
     let mut row = differentiated(&bent, power, how, nodes);
     let step = 1.0 / (how.rate * nodes as f64);
-    let first = if power < 0 && !how.periodic { row[0] } else { 0.0 };
     for (k, value) in row.iter_mut().enumerate() {
         *value += match power {
             0 => line.at(k as f64 * step),
             1 => line.slope,
-            _ => -first,
+            _ => 0.0,
         };
     }
     row
@@ -96,12 +104,17 @@ struct Line {
 }
 
 impl Line {
-    /// Line through the first and the last sample.
+    /// The line whose removal lets the samples repeat without a step: it goes through the first sample and the one that would follow the
+    /// last, on the parabola through the last three.
     fn through_ends(samples: &[f64], rate: f64) -> Self {
-        let (start, end) = (samples[0], samples[samples.len() - 1]);
+        let start = samples[0];
+        let next = match samples {
+            [.., a, b, c] => 3.0 * (c - b) + a,
+            _ => samples[samples.len() - 1],
+        };
         Self {
             start,
-            slope: (end - start) * rate / (samples.len() - 1) as f64,
+            slope: (next - start) * rate / samples.len() as f64,
         }
     }
 

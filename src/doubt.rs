@@ -8,14 +8,14 @@ const ABOUT_ONE: f64 = 0.05;
 const TRAVEL: f64 = 1.0;
 
 /// What a channel does, in its unit.
-pub(in crate::verbs) struct Does {
+pub(crate) struct Does {
     pub mean: f64,
     pub min: f64,
     pub max: f64,
 }
 
 /// What is odd about a unit, beside what a channel does; nothing where it may be right.
-pub(in crate::verbs) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
+pub(crate) fn doubt(unit: &str, does: Option<Does>) -> Option<String> {
     if unit.is_empty() {
         return None;
     }
