@@ -290,8 +290,9 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     let fidelity = fidelity(&steady);
     let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse)?;
     // A model that leaves a large residual has poor parameters, so a first-order gain there is unreliable: also start
-    // from the given values. Fits with effects have already tried those values.
-    if set.names().is_empty() && is_missing(set, evidence) {
+    // from the given values, whatever the gain. Fits with effects have already tried those values.
+    let is_far_off = set.names().is_empty() && is_missing(set, evidence);
+    if is_far_off {
         let given = Place::given(&fidelity.coarse);
         for prospect in &mut prospects {
             prospect.start_from(&given, &set.assembly, &candidates[prospect.candidate]);
@@ -301,7 +302,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     // The screening sees only a part of the lines; the lead counts all of them.
     let least = least.max(lead / THINNED[0] as f64);
     let worth = |own: &screen::Prospect| own.gain() > least;
-    if !prospects.iter().any(worth) {
+    if !is_far_off && !prospects.iter().any(worth) {
         return Ok(Vec::new());
     }
     let entering = entrants(&candidates, &prospects);
