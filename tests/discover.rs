@@ -10,6 +10,7 @@ use std::path::Path;
 use std::process::Command;
 
 use qcar_blind::hidden::Hidden;
+use qcar_blind::matrix::cases;
 use qcar_blind::programme::Programme;
 use qcar_blind::{Order, make};
 use qcar_runtime::discover::numbers::Numbers;
@@ -568,6 +569,21 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
         let output = output.expect("qcar runs");
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     }
+}
+
+/// Cleat runs alone, whose base fit ends far off with the tyre at the end of its range: no candidate gains anything to first order there.
+#[test]
+fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let name = "cleats alone: suspended_mass@subframe 18 seed 51";
+    let case = cases(51).into_iter().find(|case| case.name == name);
+    make(case.expect("a case of the matrix").order, &campaign).expect("a campaign");
+    let answer = discover(&campaign, None);
+    assert_eq!(answer["verdict"], "found", "{answer}");
+    assert_eq!(answer["effects"][0]["name"], "suspended_mass", "{answer}");
+    assert_eq!(answer["effects"][0]["at"], "subframe", "{answer}");
+    assert!(answer["gap"]["held_out"]["after"].as_f64() < Some(1.1), "{answer}");
 }
 
 /// A stop that damps on the way out alone, behind a check valve: the law of the damper says where it acts, and in which direction.
