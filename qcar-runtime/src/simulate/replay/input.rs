@@ -104,17 +104,13 @@ struct Line {
 }
 
 impl Line {
-    /// The line whose removal lets the samples repeat without a step: it goes through the first sample and the one that would follow the
-    /// last, on the parabola through the last three.
+    /// Line through the first and the last sample. The sample that would follow the last would close the record better, but a signal
+    /// up to half the sample rate does not tell it.
     fn through_ends(samples: &[f64], rate: f64) -> Self {
-        let start = samples[0];
-        let next = match samples {
-            [.., a, b, c] => 3.0 * (c - b) + a,
-            _ => samples[samples.len() - 1],
-        };
+        let (start, end) = (samples[0], samples[samples.len() - 1]);
         Self {
             start,
-            slope: (next - start) * rate / samples.len() as f64,
+            slope: (end - start) * rate / (samples.len() - 1) as f64,
         }
     }
 
