@@ -48,7 +48,12 @@ pub fn rows(about: &About, recorded: &[Recorded], how: &Between, nodes: usize) -
             None => vec![0.0; length],
             Some(r) if !how.band_limited && r.power == power => held(r.samples, nodes),
             Some(r) => {
-                let mut row = derived(r.samples, power - r.power, how, nodes);
+                let line = match kind {
+                    _ if power < r.power || how.periodic => Line::default(),
+                    InputKind::Motion(..) if r.power == 0 => Line::through_next(r.samples, how.rate),
+                    _ => Line::through_ends(r.samples, how.rate),
+                };
+                let mut row = derived(r.samples, power - r.power, &line, how, nodes);
                 // The constant of a position moves road and masses alike. A velocity keeps its own, so that it stays the derivative of
                 // the position.
                 if power == 0 && r.power > 0 && !how.periodic {
@@ -71,14 +76,9 @@ fn held(samples: &[f64], nodes: usize) -> Vec<f64> {
 
 /// Derivative of order `power` by the spectrum; a negative order integrates.
 ///
-/// The straight line between the ends is treated separately, since a record with different ends would ring. An integral has no
+/// The straight `line` between the ends is treated separately, since a record with different ends would ring. An integral has no
 /// mean.
-fn derived(samples: &[f64], power: i32, how: &Between, nodes: usize) -> Vec<f64> {
-    let line = if power < 0 || how.periodic {
-        Line::default()
-    } else {
-        Line::through_ends(samples, how.rate)
-    };
+fn derived(samples: &[f64], power: i32, line: &Line, how: &Between, nodes: usize) -> Vec<f64> {
     let bent: Vec<f64> = samples
         .iter()
         .enumerate()
@@ -104,13 +104,24 @@ struct Line {
 }
 
 impl Line {
-    /// Line through the first and the last sample. The sample that would follow the last would close the record better, but a signal
-    /// up to half the sample rate does not tell it.
+    /// Line through the first and the last sample.
     fn through_ends(samples: &[f64], rate: f64) -> Self {
         let (start, end) = (samples[0], samples[samples.len() - 1]);
         Self {
             start,
             slope: (end - start) * rate / (samples.len() - 1) as f64,
+        }
+    }
+
+    /// Line through the first sample and the one that would follow the last, on the parabola through the last three: a displacement is
+    /// smooth, and its derivatives need an end that closes well. A force up to half the sample rate does not tell that sample.
+    fn through_next(samples: &[f64], rate: f64) -> Self {
+        let [.., a, b, c] = samples else {
+            return Self::through_ends(samples, rate);
+        };
+        Self {
+            start: samples[0],
+            slope: (3.0 * (c - b) + a - samples[0]) * rate / samples.len() as f64,
         }
     }
 
