@@ -8,9 +8,9 @@ use super::normal::products;
 /// seven digits that it would take to see such a direction.
 const RANK_TOLERANCE: f64 = 1e-7;
 
-/// Pivots of the scaled normal equations above this leave ten digits of their inverse, and every direction far above the tolerance of
-/// the rank.
-const DOUBTFUL: f64 = 1e-3;
+/// The trace of the inverse of the scaled normal equations that leaves ten digits of it. No singular value of the scaled Jacobian is then
+/// below `1e-3`, far above the tolerance of the rank: its reciprocal square is an eigenvalue of that inverse.
+const LARGEST_TRACE: f64 = 1e6;
 
 /// A variable takes part in an unseen direction when its component is at least this large.
 const TAKES_PART: f64 = 1e-3;
@@ -106,8 +106,8 @@ pub fn correlation(covariance: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-/// `(JᵀJ)⁻¹` of these columns by Cholesky's factor, at a fraction of the cost of singular values; `None` where a pivot says that some
-/// direction may be unseen, or that digits would be lost.
+/// `(JᵀJ)⁻¹` of these columns by Cholesky's factor, at a fraction of the cost of singular values; `None` if some direction may be
+/// unseen, or digits would be lost.
 fn well_determined(jacobian: &DMatrix<f64>, columns: &[usize]) -> Option<DMatrix<f64>> {
     let columns: Vec<&[f64]> = columns.iter().map(|&k| jacobian.column(k).data.into_slice()).collect();
     let products = products(&columns);
@@ -115,12 +115,13 @@ fn well_determined(jacobian: &DMatrix<f64>, columns: &[usize]) -> Option<DMatrix
     let scaled = DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
         scale[i] * products[(i, j)] * scale[j]
     });
-    let factor = scaled.cholesky()?;
-    let is_well_determined = factor.l_dirty().diagonal().iter().all(|pivot| *pivot > DOUBTFUL);
-    let inverse = is_well_determined.then(|| factor.inverse())?;
-    Some(DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
-        scale[i] * inverse[(i, j)] * scale[j]
-    }))
+    let inverse = scaled.cholesky()?.inverse();
+    let is_well_determined = inverse.trace() < LARGEST_TRACE;
+    is_well_determined.then(|| {
+        DMatrix::from_fn(columns.len(), columns.len(), |i, j| {
+            scale[i] * inverse[(i, j)] * scale[j]
+        })
+    })
 }
 
 /// The singular directions of the scaled Jacobian.

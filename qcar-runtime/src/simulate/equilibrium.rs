@@ -19,9 +19,6 @@ const ROUNDING: f64 = 1e-12;
 /// Directions in which the scaled Jacobian is flatter than this are free: a model may float in x, and a dry friction
 /// may rest at any force. It lies above the rounding of the difference quotients and below any spring.
 const FREE: f64 = 1e-9;
-/// Pivots in a ratio above this belong to no free direction: pivots of a matrix of ten states are within a factor of a hundred of its
-/// singular values.
-const DOUBTFUL: f64 = 1e-6;
 
 /// Moves `x` to the nearest zero of `derivative`; `scales` are the sizes of the states.
 ///
@@ -66,13 +63,11 @@ fn shortest_solution(jacobian: DMatrix<f64>, residual: &DVector<f64>) -> Option<
     })
 }
 
-/// The step where there is only one, at a fraction of the cost of a singular value decomposition; none where a pivot is so small
-/// that the Jacobian may be singular.
+/// The step if no direction is free, at a fraction of the cost of a singular value decomposition: no singular value is smaller than the
+/// reciprocal of the norm of the inverse.
 fn only_solution(jacobian: &DMatrix<f64>, residual: &DVector<f64>) -> Option<DVector<f64>> {
-    let factors = jacobian.clone().lu();
-    let pivots = factors.u().diagonal().abs();
-    let is_regular = pivots.min() > DOUBTFUL * pivots.max();
-    is_regular.then(|| factors.solve(residual)).flatten()
+    let inverse = jacobian.clone().try_inverse()?;
+    (FREE * inverse.norm() < 1.0).then(|| inverse * residual)
 }
 
 /// Goes along `step` as far as the largest weighted rate falls. False where it does not fall at all.
