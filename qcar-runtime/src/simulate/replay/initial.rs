@@ -11,8 +11,10 @@ use crate::model::{About, Entry, Matrix, Model};
 /// A linear model that nothing drives, in the steps of a replay.
 pub struct FreeResponse<'a> {
     about: &'a About,
-    /// The nonzeros of A and C.
-    nonzeros: Vec<(&'a Entry, f64)>,
+    /// The nonzeros of A,
+    a: Vec<(&'a Entry, f64)>,
+    /// and those of C.
+    c: Vec<(&'a Entry, f64)>,
     /// Of a whole step, s.
     length: f64,
 }
@@ -21,9 +23,12 @@ impl<'a> FreeResponse<'a> {
     /// For steps of a length in s.
     pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
         let about = model.about();
+        let nonzeros: Vec<_> = about.matrices.iter().zip(at_rest(model, p)).collect();
+        let of = |matrix| nonzeros.iter().copied().filter(move |(entry, _)| entry.matrix == matrix);
         Self {
             about,
-            nonzeros: about.matrices.iter().zip(at_rest(model, p)).collect(),
+            a: of(Matrix::A).collect(),
+            c: of(Matrix::C).collect(),
             length,
         }
     }
@@ -53,7 +58,7 @@ impl<'a> FreeResponse<'a> {
         match reading {
             Reading::State(state) => row[state] = 1.0,
             Reading::Output(output) => {
-                for (entry, value) in self.of_matrix(Matrix::C) {
+                for &(entry, value) in &self.c {
                     if usize::from(entry.row) == output {
                         row[usize::from(entry.column)] = value;
                     }
@@ -72,17 +77,12 @@ impl<'a> FreeResponse<'a> {
             let mut term = row.to_vec();
             for power in 1..=4 {
                 let mut next = vec![0.0; row.len()];
-                for (entry, value) in self.of_matrix(Matrix::A) {
+                for (entry, value) in &self.a {
                     next[usize::from(entry.column)] += h / f64::from(power) * value * term[usize::from(entry.row)];
                 }
                 row.iter_mut().zip(&next).for_each(|(row, next)| *row += next);
                 term = next;
             }
         }
-    }
-
-    fn of_matrix(&self, matrix: Matrix) -> impl Iterator<Item = (&Entry, f64)> {
-        let nonzeros = self.nonzeros.iter().copied();
-        nonzeros.filter(move |(entry, _)| entry.matrix == matrix)
     }
 }
