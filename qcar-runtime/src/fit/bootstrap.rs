@@ -15,6 +15,7 @@ use super::search::OPTIONS;
 use super::setup::Setup;
 use super::uncertainty::{self, Line};
 use crate::least_squares::{Outcome, Problem, minimize};
+use crate::mean::{deviation, mean};
 use crate::model::Model;
 use crate::progress::{self, Told};
 use crate::random::SplitMix;
@@ -85,15 +86,13 @@ impl<M: Model + ?Sized> Setup<'_, M> {
         let mut values: Vec<f64> = found.iter().map(|x| x[variable]).collect();
         values.sort_by(f64::total_cmp);
         let count = values.len() as f64;
-        let mean = values.iter().sum::<f64>() / count;
-        let square = values.iter().map(|own| (own - mean).powi(2)).sum::<f64>();
         let parameter = &self.model.about().parameters[self.free[variable]];
         ParameterBootstrap {
             name: parameter.name.to_string(),
             unit: parameter.unit.to_string(),
             value,
-            stderr: (square / (count - 1.0).max(1.0)).sqrt(),
-            bias: mean - value,
+            stderr: deviation(&values) * (count / (count - 1.0).max(1.0)).sqrt(),
+            bias: mean(&values) - value,
             interval: ENDS.map(|part| quantile(&values, part)),
         }
     }
