@@ -605,10 +605,10 @@ fn a_law_of_the_travel_knows_a_check_valve() {
     assert_eq!(learned["laws"][0]["name"], "position_damping_law", "{learned}");
     assert_eq!(learned["at"], "damper", "{learned}");
     assert!(learned["explained"].as_f64() > Some(0.8), "{learned}");
-    let inward = learned["laws"][0]["parameters"]["inward"].as_f64();
-    assert!(inward < Some(0.2), "{learned}");
+    let returning = learned["laws"][0]["parameters"]["return_share"].as_f64();
+    assert!(returning < Some(0.2), "{learned}");
     let words = learned["laws"][0]["words"].as_str().expect("a sentence");
-    assert!(words.contains("inward = "), "{words}");
+    assert!(words.contains("return_share = "), "{words}");
 }
 
 /// A drag that grows with the square of the speed: the catalogue's linear one is certain and closes little of the gap.
