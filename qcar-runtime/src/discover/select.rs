@@ -78,7 +78,7 @@ pub fn discover(
     while let Some(place) = next(&sets, evidence) {
         sets[place].extended = true;
         let lead = law.lead(&sets, place, evidence, progress);
-        let more = extensions(&sets[place], lead, evidence, progress)?;
+        let more = extensions(&sets[place], lead, evidence, progress);
         sets.extend(more);
         tell(&sets[best(&sets)], progress);
     }
@@ -276,9 +276,9 @@ fn setting_spread(assembly: &Assembly, spread: f64) -> std::collections::BTreeMa
     assembly.given().iter().enumerate().filter_map(moved).collect()
 }
 
-/// Fitted sets with one more effect. Empty if no candidate passes the screening: its gain must exceed the false-alarm
-/// threshold and the `lead` of a learned law.
-fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Result<Vec<Set>, PredictError> {
+/// Fitted sets with one more effect. Empty if the set explains the data well and no candidate passes the screening: its gain
+/// must exceed the false-alarm threshold and the `lead` of a learned law.
+fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>) -> Vec<Set> {
     let candidates = set.assembly.candidates();
     progress(News::Doing(&format!(
         "screening {} effects at their places",
@@ -288,7 +288,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     // The non-steady part of a sweep response changes little when one effect is added, so it is subtracted once.
     let steady = evidence.less(&refit.unsteady).hurried();
     let fidelity = fidelity(&steady);
-    let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse)?;
+    let mut prospects = screen(&set.assembly, &candidates, refit, &fidelity.coarse);
     // A model that leaves a large residual has poor parameters, so a first-order gain there is unreliable: also start
     // from the given values, whatever the gain. Fits with effects have already tried those values.
     let is_far_off = set.names().is_empty() && is_missing(set, evidence);
@@ -303,7 +303,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     let least = least.max(lead / THINNED[0] as f64);
     let worth = |own: &screen::Prospect| own.gain() > least;
     if !is_far_off && !prospects.iter().any(worth) {
-        return Ok(Vec::new());
+        return Vec::new();
     }
     let entering = entrants(&candidates, &prospects);
     let (finalists, dropped) = race(&set.assembly, &candidates, &entering, &fidelity, progress);
@@ -325,7 +325,7 @@ fn extensions(set: &Set, lead: f64, evidence: &Evidence, progress: Progress<'_>)
     for own in &mut sets {
         own.rivals.clone_from(&rivals);
     }
-    Ok(sets)
+    sets
 }
 
 /// Explanation of all runs by a fit; `None` if the prediction fails or the evidence is not finite.

@@ -14,7 +14,7 @@ use super::assembly::{Assembly, Hypothesis, Place};
 use crate::campaign::Role;
 use crate::discover::candidate::{Added, Candidate, Change, ParameterRole};
 use crate::discover::noise::{Discrepancy, Form};
-use crate::discover::observe::{Evidence, PredictError};
+use crate::discover::observe::Evidence;
 use crate::discover::posterior::Refit;
 
 /// A candidate with the start points of its fits.
@@ -52,15 +52,7 @@ const FEW_SHAPES: &[f64] = &[0.0, -0.5, 0.5];
 const OTHERS: [f64; 2] = [-0.5, 0.5];
 
 /// Screens all candidates; the largest gain comes first. Leaves out those that cannot be predicted.
-///
-/// # Errors
-/// None: a candidate that cannot be predicted is left out.
-pub fn screen(
-    assembly: &Assembly,
-    candidates: &[Candidate],
-    refit: &Refit,
-    evidence: &Evidence,
-) -> Result<Vec<Prospect>, PredictError> {
+pub fn screen(assembly: &Assembly, candidates: &[Candidate], refit: &Refit, evidence: &Evidence) -> Vec<Prospect> {
     let here = assembly.hypothesis().place(refit);
     let tangent = Tangent::new(refit, assembly, evidence);
     let alone = tangent.gain_alone();
@@ -91,7 +83,7 @@ pub fn screen(
     });
     let mut all: Vec<Prospect> = all.collect();
     all.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
-    Ok(all)
+    all
 }
 
 /// The present fit, linearised: residuals, Jacobian and the derived quantities of the score test.

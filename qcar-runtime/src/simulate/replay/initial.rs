@@ -24,7 +24,12 @@ impl<'a> FreeResponse<'a> {
     pub fn new(model: &'a dyn Model, p: &[f64], length: f64) -> Self {
         let about = model.about();
         let nonzeros: Vec<_> = about.matrices.iter().zip(at_rest(model, p)).collect();
-        let of = |matrix| nonzeros.iter().copied().filter(move |(entry, _)| entry.matrix == matrix);
+        let of = |matrix| {
+            nonzeros
+                .iter()
+                .copied()
+                .filter(move |(entry, _)| entry.matrix == matrix)
+        };
         Self {
             about,
             a: of(Matrix::A).collect(),
