@@ -571,35 +571,57 @@ fn a_law_is_learned_where_the_catalogue_has_none() {
     }
 }
 
-/// Cleat runs alone, whose base fit ends far off with the tyre at the end of its range: no candidate gains anything to first order there.
-#[test]
-fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
+/// The answer to short sweeps and K&C curves of an axle with an effect.
+fn of_short_sweeps(axle: &str, seed: u64, effect: Hidden) -> Value {
     let folder = tempfile::tempdir().expect("a folder");
     let campaign = folder.path().join("campaign");
-    let name = "cleats alone: suspended_mass@subframe 18 seed 51";
-    let case = cases(51).into_iter().find(|case| case.name == name);
+    let order = Order {
+        cleats: false,
+        programme: Programme::fast(),
+        effects: vec![effect],
+        ..Order::clean(axle, seed)
+    };
+    make(order, &campaign).expect("a campaign");
+    discover(&campaign, None)
+}
+
+/// The answer to a case of the blind matrix.
+fn of_matrix(seed: u64, name: &str) -> Value {
+    let folder = tempfile::tempdir().expect("a folder");
+    let campaign = folder.path().join("campaign");
+    let case = cases(seed).into_iter().find(|case| case.name == name);
     make(case.expect("a case of the matrix").order, &campaign).expect("a campaign");
-    let answer = discover(&campaign, None);
+    discover(&campaign, None)
+}
+
+/// Cleat runs alone, whose base fit ends far off with the tyre at its bound: no candidate gains anything to first order there.
+#[test]
+fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
+    let answer = of_matrix(51, "cleats alone: suspended_mass@subframe 18 seed 51");
     assert_eq!(answer["verdict"], "found", "{answer}");
     assert_eq!(answer["effects"][0]["name"], "suspended_mass", "{answer}");
     assert_eq!(answer["effects"][0]["at"], "subframe", "{answer}");
     assert!(answer["gap"]["held_out"]["after"].as_f64() < Some(1.1), "{answer}");
 }
 
-/// A stop that damps on the way out alone, behind a check valve: the law of the damper says where it acts, and in which direction.
+/// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which explain as much of
+/// the residual. Resampled data do not bear that out, so the two stay the answer.
+#[test]
+fn a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it() {
+    let answer = of_matrix(41, "hardware bushing_relaxation@powertrain_mount seed 41");
+    assert_eq!(answer["verdict"], "class", "{answer}");
+    let effects = answer["effects"].as_array().expect("effects");
+    let mut names: Vec<&str> = effects.iter().filter_map(|own| own["name"].as_str()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["bushing_relaxation", "hydraulic_mount"], "{answer}");
+    assert!(effects.iter().all(|own| own["at"] == "powertrain_mount"), "{answer}");
+}
+
+/// A stop with a check valve damps in one direction of travel: the law of the damper says where it acts, and on which stroke.
 #[test]
 fn a_law_of_the_travel_knows_a_check_valve() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let campaign = folder.path().join("campaign");
     let stop = [("gap", 0.006), ("c_per_metre", 600e3)];
-    let order = Order {
-        cleats: false,
-        programme: Programme::fast(),
-        effects: vec![Hidden::new("hydraulic_stop", "damper", &stop)],
-        ..Order::clean("a", 4713)
-    };
-    make(order, &campaign).expect("a campaign");
-    let answer = discover(&campaign, None);
+    let answer = of_short_sweeps("a", 4713, Hidden::new("hydraulic_stop", "damper", &stop));
     assert_eq!(answer["verdict"], "unknown", "{answer}");
     let learned = &answer["learned"];
     assert_eq!(learned["laws"][0]["name"], "position_damping_law", "{learned}");
@@ -614,16 +636,7 @@ fn a_law_of_the_travel_knows_a_check_valve() {
 /// A drag that grows with the square of the speed: the catalogue's linear one is certain and closes little of the gap.
 #[test]
 fn a_law_is_learned_between_a_mass_and_the_ground() {
-    let folder = tempfile::tempdir().expect("a folder");
-    let campaign = folder.path().join("campaign");
-    let order = Order {
-        cleats: false,
-        programme: Programme::fast(),
-        effects: vec![Hidden::new("quadratic_drag", "body", &[("c2", 2500.0)])],
-        ..Order::clean("c", 4712)
-    };
-    make(order, &campaign).expect("a campaign");
-    let answer = discover(&campaign, None);
+    let answer = of_short_sweeps("c", 4712, Hidden::new("quadratic_drag", "body", &[("c2", 2500.0)]));
     assert_eq!(answer["verdict"], "unknown", "{answer}");
     let learned = &answer["learned"];
     assert_eq!(learned["laws"][0]["name"], "drag_law", "{learned}");
