@@ -65,6 +65,8 @@ const FINAL_GROWTH: f64 = 0.004;
 /// Designs that confirm a box are so many times those that judge it as it grows: the fewer they are, the more of them must be good, and
 /// the smaller is the box.
 const CONFIRMING: usize = 4;
+/// Level of significance: a worse box would give as many good designs by chance once in twenty times.
+const BY_CHANCE: f64 = 0.05;
 /// All designs that are evaluated are no more than so many times those that confirm a box.
 const MOST_CONFIRMED: usize = 40;
 
@@ -311,7 +313,7 @@ fn judged(task: &Task<'_>, sides: &Sides, drawn: &[Drawn], evaluated: usize) -> 
 fn needed(count: usize, probability: f64) -> f64 {
     let enough = (0..=count)
         .rev()
-        .take_while(|&good| tail(good, count, probability) < 0.05);
+        .take_while(|&good| tail(good, count, probability) < BY_CHANCE);
     enough.last().unwrap_or(count) as f64 / count as f64
 }
 
@@ -321,7 +323,7 @@ fn lower_bound(good: usize, count: usize) -> f64 {
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..60 {
         let middle = 0.5 * (low + high);
-        if tail(good, count, middle) < 0.05 {
+        if tail(good, count, middle) < BY_CHANCE {
             low = middle
         } else {
             high = middle
