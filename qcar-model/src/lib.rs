@@ -112,7 +112,9 @@ pub trait Model: Send + Sync {
     /// [`Model::response`] of several prepared parameter sets. Of each line there are, one after the other, a row for each output with its
     /// real parts, one for each with its imaginary parts, and `with_jacobian` the same of the parameter Jacobian. The bits are the same.
     ///
-    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use them at once.
+    /// The rows of all lines of eight sets seldom fit into a cache: it pays to ask for some lines at a time, and to use them at once. A
+    /// model without such code of its own computes one set after the other, and a call of [`Model::response`] for each set with all its
+    /// lines is faster.
     fn response_sets(
         &self,
         excitation: usize,
