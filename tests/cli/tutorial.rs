@@ -25,7 +25,9 @@ fn the_tutorial_leads_where_it_says() {
             }
         }
     }
-    assert!(folder.path().join("mine/found/gap.svg").exists());
+    for written in ["found/gap.svg", "rig_study/report.html", "my_axle.fmu"] {
+        assert!(folder.path().join("mine").join(written).exists(), "{written}");
+    }
 }
 
 fn shows_refusal(block: &Block) -> bool {
