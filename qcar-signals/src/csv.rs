@@ -22,6 +22,9 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
         .map(|(_, row)| row.iter().map(|cell| decimals.cell(cell)).collect())
         .collect();
     let Some(layout) = Layout::find(&cells) else {
+        if is_binary(&text) {
+            return Err(of_no_format(bytes));
+        }
         let found = format!("no row of numbers among the first {} lines", head.len());
         let remedy = "export the table with one row a sample; separators may be , ; tab | or spaces";
         return Err(Fault::new(Place::File, found, "names and columns of numbers", remedy));
@@ -35,6 +38,22 @@ pub(crate) fn read(bytes: &[u8]) -> Read<Recording> {
     };
     filled.add_to(&mut recording, "", &place)?;
     Ok(recording)
+}
+
+/// Whether there are characters that no table has. (`1a` ended texts of DOS.)
+fn is_binary(text: &str) -> bool {
+    text.contains(|letter: char| letter.is_control() && !letter.is_whitespace() && letter != '\u{1a}')
+}
+
+/// Binary data that come here begin like none of the other formats.
+fn of_no_format(bytes: &[u8]) -> Box<Fault> {
+    let beginning = bytes[..bytes.len().min(8)].escape_ascii();
+    Fault::new(
+        Place::Byte(0),
+        format!("binary data that begin with `{beginning}`"),
+        "the beginning of MDF (`MDF`), RPC III (`FORMAT`), TDMS (`TDSm`), MAT (`MATLAB`), UFF (`-1`) or .xlsx (`PK`), or a text",
+        "export the recording in one of these formats; if it is in one, its beginning is damaged: copy it again",
+    )
 }
 
 /// The text, without its byte order mark.

@@ -353,6 +353,28 @@ fn multiplexed_groups_hold_the_same_as_demultiplexed_ones() {
 }
 
 #[test]
+fn a_file_that_begins_like_no_format_is_refused_for_its_beginning() {
+    for name in [
+        "mdf/plain_3groups.mf4",
+        "rpc/short_4frames_group.tim",
+        "tdms/waveform_2segments.tdms",
+        "mat/dspace_v6.mat",
+        "uff/sample_58b.uff",
+        "table/kc_bounce.xlsx",
+    ] {
+        let mut file = fs::read(samples().join(name)).unwrap();
+        // The version of a MAT file is at byte 124.
+        file[..128].fill(0);
+        file[..8].copy_from_slice(b"\0rubbish");
+        let fault = recognise(&file).expect_err(name).to_string();
+        says(
+            &fault,
+            &["byte 0", r"begin with `\x00rubbish`", "`TDSm`", "copy it again"],
+        );
+    }
+}
+
+#[test]
 fn a_channel_that_two_groups_have_needs_its_group() {
     // The channel of the second group gets the name of one of the first.
     let mut file = fs::read(samples().join("mdf/plain_3groups.mf4")).unwrap();

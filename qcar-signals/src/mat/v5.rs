@@ -35,7 +35,9 @@ pub(super) fn variables(file: Bytes, wanted: &Wanted) -> Read<Vec<Variable>> {
     while at < file.len() {
         let element = element(&file, at).map_err(|mut fault| {
             let names: Vec<&str> = variables.iter().map(|variable| variable.name.as_str()).collect();
-            fault.found += &format!("; {} variables before it are whole: {}", names.len(), names.join(", "));
+            if !names.is_empty() {
+                fault.found += &format!("; {} variables before it are whole: {}", names.len(), names.join(", "));
+            }
             match name_of_packed(&file, at) {
                 Some(name) => fault.of(&name),
                 None => fault,
