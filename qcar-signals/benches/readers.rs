@@ -1,0 +1,70 @@
+//! Measured files of 64 MB of samples in memory: read into channels, of which every sample is then requested once as a double.
+//!
+//! The rate is that of the samples as the file stores them (two bytes for short integers, eight for doubles), without times, names and
+//! padding. A number in a text has no width of its own: text has the rate of the whole file.
+
+#[path = "../../tests/rig_files/writers/mod.rs"]
+#[expect(dead_code, reason = "texts and workbooks are written by tests alone")]
+mod writers;
+
+use divan::Bencher;
+use divan::counter::BytesCount;
+use qcar_signals::read::recognise;
+use writers::{Channel, Group};
+
+fn main() {
+    divan::main();
+}
+
+const CHANNELS: usize = 16;
+/// In each format.
+const BYTES: usize = 64_000_000;
+
+/// Sixteen channels with samples of so many bytes.
+fn group(width: usize) -> Group {
+    let samples = BYTES / CHANNELS / width;
+    let wave = |channel: usize| {
+        (0..samples)
+            .map(|at| ((at + 31 * channel) as f64 * 0.01).sin())
+            .collect()
+    };
+    let channel = |at: usize| Channel::new(&format!("channel_{at}"), "m/s^2", wave(at));
+    Group {
+        rate: 1000.0,
+        channels: (0..CHANNELS).map(channel).collect(),
+    }
+}
+
+const SHORT: usize = 2;
+const DOUBLE: usize = 8;
+
+/// A format, and what writes a file of it.
+type Format = (&'static str, fn() -> Vec<u8>);
+
+const BINARY: [Format; 5] = [
+    ("mat_5", || writers::mat5::file(&group(DOUBLE))),
+    ("mdf_4", || writers::mdf4::file(&[group(DOUBLE)])),
+    ("rpc_3", || writers::rpc::file(&group(SHORT))),
+    ("tdms", || writers::tdms::file(&group(DOUBLE))),
+    ("uff_58b", || writers::uff::binary(&group(DOUBLE))),
+];
+
+#[divan::bench(sample_count = 10, args = BINARY.map(|(name, _)| name))]
+fn binary(bencher: Bencher<'_, '_>, name: &str) {
+    let of_name = BINARY.iter().find(|(own, _)| *own == name);
+    let file = of_name.expect("it is one of them").1();
+    bencher.counter(BytesCount::new(BYTES)).bench_local(|| sum(&file));
+}
+
+#[divan::bench(sample_count = 10)]
+fn uff_58_text(bencher: Bencher<'_, '_>) {
+    let file = writers::uff::file(&group(DOUBLE));
+    bencher.counter(BytesCount::new(file.len())).bench_local(|| sum(&file));
+}
+
+/// Of all samples of all channels.
+fn sum(file: &[u8]) -> f64 {
+    let recording = recognise(file).expect("it was written to be read");
+    assert_eq!(recording.signals.len(), CHANNELS);
+    recording.signals.iter().flat_map(|signal| signal.samples.iter()).sum()
+}
