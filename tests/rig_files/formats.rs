@@ -134,6 +134,11 @@ fn uff_58_gives_the_same_fit() {
 }
 
 #[test]
+fn uff_58b_gives_the_same_fit() {
+    same("uff", uff::binary);
+}
+
+#[test]
 fn mat_5_gives_the_same_fit() {
     same("mat", mat5::file);
 }
