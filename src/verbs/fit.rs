@@ -33,6 +33,8 @@ use crate::verbs::{Format, each_once};
 
 // Parameters that only a K&C curve determines.
 mod clamped;
+// The distinct minima as text.
+mod minima;
 // Notes and warnings about a fit.
 mod notices;
 // The result as text and JSON.

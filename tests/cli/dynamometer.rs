@@ -439,6 +439,11 @@ fn what_one_stroke_cannot_tell_apart_is_named_with_its_remedy() {
         );
     }
     let path = folder.path().to_str().unwrap();
+    let told = succeeds(&["fit", path]);
+    assert!(
+        told.contains("`qcar plan CAMPAIGN --parameters f_seal,k_seal`"),
+        "{told}"
+    );
     let text = succeeds(&["plan", path, "--parameters", "f_seal,k_seal", "--format", "json"]);
     let plan: Value = serde_json::from_str(&text).unwrap();
     let first = &plan["further"][0];

@@ -38,6 +38,36 @@ fn what_is_kept_stays_and_says_so() {
     assert_eq!(fit["parameters"]["c_wheel_x"]["why_no_stderr"]["reason"], "not_seen");
 }
 
+/// One channel alone lets a search take one resonance for another. The text has the values of each minimum, those of JSON.
+#[test]
+fn distinct_minima_are_shown_with_their_costs_and_parameters() {
+    let line = [AXLE, "--channels", "pad_to_body", "--starts", "60"];
+    let fit = fitted(&line);
+    let minima = fit["minima"].as_array().unwrap();
+    assert!(minima.len() > 1, "{minima:?}");
+    let text = succeeds(&[&["fit"], &line[..]].concat());
+    let (_, table) = text.split_once("distinct minima, of which 1 is the result\n").unwrap();
+    let row = |name: &str, skipped: usize| -> Vec<f64> {
+        let row = table.lines().find(|line| line.split_whitespace().next() == Some(name));
+        let cells = row.unwrap().split_whitespace().skip(skipped);
+        cells.map(|cell| cell.parse().unwrap()).collect()
+    };
+    let rows = [
+        ("cost", 1, "/cost"),
+        ("starts", 1, "/starts"),
+        ("k_tire", 2, "/parameters/k_tire"),
+    ];
+    for (name, skipped, key) in rows {
+        let shown = row(name, skipped);
+        assert_eq!(shown.len(), minima.len(), "{table}");
+        for (shown, own) in shown.iter().zip(minima) {
+            let exact = own.pointer(key).unwrap().as_f64().unwrap();
+            assert!((shown / exact - 1.0).abs() < 1e-3, "{name}: {shown} and {exact}");
+        }
+    }
+    assert!(!succeeds(&["fit", AXLE, "--starts", "2"]).contains("distinct minima"));
+}
+
 /// Friction as stiff as this has no linear stand-in at any level; the generator shares no code with what fits.
 #[test]
 fn a_nonlinear_model_is_fitted_to_its_truth() {

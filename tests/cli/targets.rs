@@ -263,6 +263,14 @@ fn what_cannot_be_wanted_is_refused_with_place_and_remedy() {
         &["line 8", "target.at_least", "targets that can hold together"],
     );
     refused(
+        "[front]",
+        "[[target]]\nmetric = \"mode.2.damping\"\nat_least = 0.5\n[[target]]\nmetric = \"mode.2.damping\"\nat_most = 0.2\n[front]",
+        &[
+            "target.at_most",
+            "0.2 for `mode.2.damping`, where another target has 0.5, expected",
+        ],
+    );
+    refused(
         "at_most = \"92 %\"",
         "at_most = \"2 kg\"",
         &["line 7", "a number in m/s^2"],

@@ -1,11 +1,12 @@
 //! A fit as text for people and as JSON for programs.
 
+use qcar_runtime::fit::Fit;
 use qcar_runtime::fit::bootstrap::Bootstrap;
 use qcar_runtime::fit::profile::ParameterProfile;
-use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, ParameterFit};
+use qcar_runtime::fit::report::{Bound, ChannelFit, Correlation, LocalMinimum, NoError, ParameterFit};
 use serde::Serialize;
 
-use super::Fitted;
+use super::{Fitted, minima};
 use crate::json::{self, Ordered};
 use crate::table::{Table, noted, number, or_dash};
 use crate::units;
@@ -67,6 +68,7 @@ pub(super) fn text(of: &Fitted) -> String {
     let sections = [
         summary(of),
         parameters(&of.fit.parameters),
+        distinct(&of.fit),
         profiles(&of.profiles),
         of.bootstrap.as_ref().map_or(String::new(), bootstrap),
         correlations(&of.fit.correlations),
@@ -107,7 +109,20 @@ pub(super) fn parameters(of: &[ParameterFit]) -> String {
         let errors = [parameter.stderr.map(shown), percent].map(|error| or_dash(error, 2));
         table.row([&names[..], &values, &errors, &[remark(parameter)]].concat());
     }
-    table.text()
+    table.text() + &how_to_distinguish(of)
+}
+
+/// The verb that finds what would tell parameters apart which the runs see only together.
+fn how_to_distinguish(of: &[ParameterFit]) -> String {
+    let is_one = |own: &&ParameterFit| matches!(own.why_no_stderr, Some(NoError::OnlyTogether { .. }));
+    let names: Vec<&str> = of.iter().filter(is_one).map(|own| &*own.name).collect();
+    match names[..] {
+        [] => String::new(),
+        _ => format!(
+            "note: to find the measurement that distinguishes them, use `qcar plan CAMPAIGN --parameters {}`\n",
+            names.join(",")
+        ),
+    }
 }
 
 pub(super) fn remark(of: &ParameterFit) -> String {
@@ -127,6 +142,21 @@ pub(super) fn remark(of: &ParameterFit) -> String {
         (None, None, Some(why), None) => why.sentence(),
         (None, None, None, None) => String::new(),
     }
+}
+
+/// Cost, number of searches and parameters of each minimum.
+fn distinct(of: &Fit) -> String {
+    let figures = |own: &LocalMinimum| vec![number(own.cost, 4), own.starts.to_string()];
+    let Some((best, others)) = of.minima.split_first() else {
+        return String::new();
+    };
+    let fitted = || of.parameters.iter().filter(|own| own.fitted);
+    let others = others.iter().map(|own| minima::Other {
+        figures: figures(own),
+        values: fitted().map(|of| own.parameters.get(&of.name).copied()).collect(),
+    });
+    let named: Vec<(&str, String)> = ["cost", "starts"].into_iter().zip(figures(best)).collect();
+    minima::text(&named, &of.parameters, &others.collect::<Vec<_>>())
 }
 
 pub(super) fn profiles(of: &[ParameterProfile]) -> String {

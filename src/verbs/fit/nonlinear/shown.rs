@@ -9,7 +9,7 @@ use super::Nonlinear;
 use crate::json::{self, Ordered};
 use crate::left;
 use crate::table::{Table, noted, number};
-use crate::verbs::fit::render;
+use crate::verbs::fit::{minima, render};
 
 /// Residuals of more standard deviations than this are not chance: three of a normal distribution.
 const MUCH: f64 = 3.0;
@@ -148,11 +148,26 @@ impl Nonlinear {
             [] => String::new(),
             some => format!("\n{}", render::profiles(some)),
         };
+        let minima = match self.minima() {
+            none if none.is_empty() => none,
+            some => format!("\n{some}"),
+        };
         format!(
-            "{out}\n{}{profiles}\n{}",
+            "{out}\n{}{minima}{profiles}\n{}",
             render::parameters(&self.parameters),
             table.text()
         )
+    }
+
+    /// How probable each minimum is beside the result, and its parameters.
+    fn minima(&self) -> String {
+        let fitted = || self.parameters.iter().filter(|own| own.fitted);
+        let other = |own: &Minimum| minima::Other {
+            figures: vec![number(own.log_odds, 2)],
+            values: fitted().map(|of| own.named.get(&of.name).copied()).collect(),
+        };
+        let others: Vec<_> = self.found.others.iter().map(other).collect();
+        minima::text(&[("log odds against it", "0".into())], &self.parameters, &others)
     }
 
     fn other_minima(&self) -> String {

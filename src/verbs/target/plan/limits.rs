@@ -132,10 +132,12 @@ impl<'a> Planner<'a, '_> {
                     };
                     if let Some(other) = limits.iter().find(|other| contradict(other, &limit)) {
                         let of = run.as_ref().map_or(String::new(), |run| format!(" on {run}"));
-                        let found = format!(
-                            "{value} {unit} for `{name}`{of}, where another target has {} {unit}",
-                            other.value
-                        );
+                        let shown = |value: f64| match unit {
+                            "1" => value.to_string(),
+                            unit => format!("{value} {unit}"),
+                        };
+                        let (here, there) = (shown(value), shown(other.value));
+                        let found = format!("{here} for `{name}`{of}, where another target has {there}");
                         self.wrong(
                             at,
                             key,
