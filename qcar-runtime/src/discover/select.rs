@@ -110,6 +110,7 @@ pub fn discover(
             probability[1] > evidence.numbers.certain()
         };
         let law = law.filter(is_certain);
+        let law = law.filter(|law| contradicts(law, &sets[found], evidence));
         discovery.prefer(law.map(|law| learn::told(alone, law, evidence)));
     }
     if discovery.verdict == Verdict::None {
@@ -202,6 +203,14 @@ fn unexchanged(sets: &[Set], evidence: &Evidence) -> Option<usize> {
 fn unreduced(sets: &[Set]) -> Option<usize> {
     let best = best(sets);
     (!sets[best].reduced && sets[best].assembly.effects().len() > 1).then_some(best)
+}
+
+/// True if a learned law contradicts the named effects: it stands where they name nothing, or it explains most of what
+/// they leave. A law that fits a little better at the same place confirms the place, and a name says more.
+fn contradicts(law: &Set, found: &Set, evidence: &Evidence) -> bool {
+    let named: Vec<&str> = found.named().map(|own| own.at.as_str()).collect();
+    let agrees = law.named().all(|own| named.contains(&own.at.as_str()));
+    !agrees || closed(&found.explanation, &law.explanation, evidence) >= GREATER_PART
 }
 
 /// True if a learned law must be tried against the answer: the answer has several effects, leaves a significant part of
