@@ -604,17 +604,28 @@ fn a_mass_is_found_from_the_start_values_where_the_base_fit_is_far_off() {
     assert!(answer["gap"]["held_out"]["after"].as_f64() < Some(1.1), "{answer}");
 }
 
-/// On hardware with flaws, a learned law has a larger evidence than a relaxing bushing and a hydraulic mount, which explain as much of
-/// the residual. Resampled data do not bear that out, so the two stay the answer.
+/// On hardware with flaws, a learned law is more probable than a relaxing bushing and a hydraulic mount, by resampled data too, but
+/// explains only 0.3 % more of the residual than these. It stands at the same place, so the two stay the answer.
 #[test]
-fn a_law_takes_the_place_of_names_only_if_resampled_data_prefer_it() {
-    let answer = of_matrix(41, "hardware bushing_relaxation@powertrain_mount seed 41");
+fn names_stand_where_a_law_at_their_place_explains_little_more() {
+    let answer = of_matrix(61, "hardware bushing_relaxation@powertrain_mount seed 61");
     assert_eq!(answer["verdict"], "class", "{answer}");
     let effects = answer["effects"].as_array().expect("effects");
     let mut names: Vec<&str> = effects.iter().filter_map(|own| own["name"].as_str()).collect();
     names.sort_unstable();
     assert_eq!(names, ["bushing_relaxation", "hydraulic_mount"], "{answer}");
     assert!(effects.iter().all(|own| own["at"] == "powertrain_mount"), "{answer}");
+}
+
+/// K&C curves reach three times the travel of the sweeps. The rate of this spring is 1.7 times that at rest at the end of the sweeps, and 19
+/// times at the end of the K&C curves.
+#[test]
+fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
+    let spring = Hidden::new("sinh_spring", "spring", &[("length", 0.015)]);
+    let learned = &of_short_sweeps("c", 4714, spring)["learned"];
+    assert_eq!(learned["laws"][0]["name"], "elastic_law", "{learned}");
+    assert_eq!(learned["at"], "spring", "{learned}");
+    assert!(learned["explained"].as_f64() > Some(0.95), "{learned}");
 }
 
 /// A stop with a check valve damps in one direction of travel: the law of the damper says where it acts, and on which stroke.
