@@ -621,8 +621,8 @@ fn names_stand_where_a_law_at_their_place_explains_little_more() {
 /// times at the end of the K&C curves.
 #[test]
 fn a_law_of_a_spring_reaches_the_travel_of_kc_curves() {
-    let spring = Hidden::new("sinh_spring", "spring", &[("length", 0.015)]);
-    let learned = &of_short_sweeps("c", 4714, spring)["learned"];
+    let answer = of_matrix(61, "sinh_spring@spring 0 seed 61");
+    let learned = &answer["learned"];
     assert_eq!(learned["laws"][0]["name"], "elastic_law", "{learned}");
     assert_eq!(learned["at"], "spring", "{learned}");
     assert!(learned["explained"].as_f64() > Some(0.95), "{learned}");
