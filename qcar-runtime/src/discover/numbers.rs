@@ -38,7 +38,7 @@ pub struct Numbers {
 pub const MOST_EFFECTS: usize = 3;
 
 /// Share of the excess residual on the held-out runs that an answer must explain. An effect that explains less is only
-/// a candidate. A learned law replaces the answer if it is more probable.
+/// a candidate. A learned law at the place of a named effect must explain this share of what the name leaves.
 pub const GREATER_PART: f64 = 0.5;
 
 /// Standard deviations by which a mean square must exceed its expected value under noise: the one-sided 5 % quantile of
