@@ -16,6 +16,7 @@ mod fits;
 mod help;
 mod interruption;
 mod json_reference;
+mod laws;
 mod newcomer;
 mod plans;
 mod published;
