@@ -93,6 +93,17 @@ const TARGETS: [&str; 9] = [
     include_str!("report/js/target/target.js"),
 ];
 
+/// The sections of sensitivities; the last one starts.
+const SENSITIVITIES: [&str; 7] = [
+    include_str!("report/js/sensitivity/bars.js"),
+    include_str!("report/js/sensitivity/summary.js"),
+    include_str!("report/js/sensitivity/tornado.js"),
+    include_str!("report/js/sensitivity/matrix.js"),
+    include_str!("report/js/sensitivity/doubt.js"),
+    include_str!("report/js/sensitivity/sobol.js"),
+    include_str!("report/js/sensitivity/sensitivity.js"),
+];
+
 /// What a page reports.
 #[derive(Clone, Copy)]
 pub enum Report {
@@ -102,6 +113,8 @@ pub enum Report {
     Comparison,
     /// What an axle must be.
     Targets,
+    /// What its metrics depend on.
+    Sensitivities,
 }
 
 impl Report {
@@ -110,6 +123,7 @@ impl Report {
             Report::Study => &STUDY,
             Report::Comparison => &COMPARISON,
             Report::Targets => &TARGETS,
+            Report::Sensitivities => &SENSITIVITIES,
         }
     }
 }
@@ -168,7 +182,7 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let pages = [Report::Study, Report::Comparison, Report::Targets]
+        let pages = [Report::Study, Report::Comparison, Report::Targets, Report::Sensitivities]
             .map(|report| page(report, "t", &0, None))
             .concat();
         for loader in [

@@ -15,6 +15,7 @@ use crate::files::{folder_for_results, put};
 use crate::json;
 use crate::parameters::Setting;
 use crate::progress::while_counting;
+use crate::report::{Report, page};
 use crate::roads;
 use crate::table::Table;
 use crate::terminal::prose;
@@ -93,7 +94,7 @@ pub struct Arguments {
     /// Print the names of all metrics and stop
     #[arg(long)]
     list: bool,
-    /// Write sensitivity.json, sensitivity.csv and sensitivity.svg into this folder
+    /// Write report.html, sensitivity.json, sensitivity.csv and sensitivity.svg into this folder
     #[arg(long, value_name = "DIR", value_parser = folder_for_results)]
     out: Option<PathBuf>,
     /// Output format
@@ -207,6 +208,12 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
         put(folder, "sensitivity.json", &json::line(&found))?;
         put(folder, "sensitivity.csv", &render::csv(&found))?;
         put(folder, "sensitivity.svg", &figure::svg(&found))?;
+        let title = format!("{}: sensitivities", found.model);
+        put(
+            folder,
+            "report.html",
+            &page(Report::Sensitivities, &title, &found, None),
+        )?;
     }
     Ok(match arguments.format {
         TableFormat::Text => prose(&render::text(&found)),

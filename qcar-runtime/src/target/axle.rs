@@ -1,7 +1,9 @@
 //! An axle on its ground as designs: knobs move its parameters, readings are its results.
 
+use rayon::prelude::*;
+
 use super::task::Designs;
-use crate::metric::Ground;
+use crate::metric::{Ground, MetricError};
 use crate::response::parameters::Values;
 use crate::sensitivity::Chance;
 
@@ -58,18 +60,27 @@ impl Axle<'_> {
     }
 }
 
+/// Designs whose rides are simulated side by side: more than there are lanes, so that few lanes are empty at the end.
+const ABREAST: usize = 12;
+
 impl Axle<'_> {
-    fn results(&self, parameters: &Values) -> Option<Vec<f64>> {
-        let mut values = self.ground.measure(parameters).ok()?;
+    fn results(&self, measured: Result<Vec<f64>, MetricError>) -> Option<Vec<f64>> {
+        let mut values = measured.ok()?;
         let means: Vec<f64> = self.means.iter().map(|of| mean(of, |at| values[at])).collect();
         values.extend(means);
         values.iter().all(|value| value.is_finite()).then_some(values)
+    }
+
+    fn results_of_all(&self, designs: &[Values]) -> Vec<Option<Vec<f64>>> {
+        let parts = designs.par_chunks(ABREAST);
+        let measured = parts.flat_map_iter(|designs| self.ground.measure_all(designs));
+        measured.map(|measured| self.results(measured)).collect()
     }
 }
 
 impl Designs for Axle<'_> {
     fn values(&self, design: &[f64]) -> Option<Vec<f64>> {
-        self.results(&self.values_of(design))
+        self.results(self.ground.measure(&self.values_of(design)))
     }
 
     fn is_certain(&self) -> bool {
@@ -77,7 +88,18 @@ impl Designs for Axle<'_> {
     }
 
     fn drawn(&self, design: &[f64], number: u64) -> Option<Vec<f64>> {
-        self.results(&self.chance.draw(&self.values_of(design), number))
+        self.results(self.ground.measure(&self.chance.draw(&self.values_of(design), number)))
+    }
+
+    fn values_of_all(&self, designs: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
+        let designs: Vec<Values> = designs.iter().map(|design| self.values_of(design)).collect();
+        self.results_of_all(&designs)
+    }
+
+    fn drawn_of_all(&self, designs: &[(Vec<f64>, u64)]) -> Vec<Option<Vec<f64>>> {
+        let draw = |(design, number): &(Vec<f64>, u64)| self.chance.draw(&self.values_of(design), *number);
+        let designs: Vec<Values> = designs.iter().map(draw).collect();
+        self.results_of_all(&designs)
     }
 
     fn slopes(&self, design: &[f64]) -> Option<Vec<Vec<f64>>> {

@@ -1,7 +1,5 @@
 //! The surroundings of a box: designs in the plane of two knobs, good and bad.
 
-use rayon::prelude::*;
-
 use super::space::Space;
 use super::task::{Task, is_met};
 use crate::random::SplitMix;
@@ -28,13 +26,17 @@ pub struct Dot {
 pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed: u64) -> Cut {
     let points = SplitMix::new(seed).hypercube(count, task.knobs.len());
     let task = task.without_margins();
-    let dot = |(number, point): (usize, Vec<f64>)| {
+    let design = |(number, point): (usize, Vec<f64>)| {
         let value = |k: usize| match knobs.contains(&k) {
             true => task.knobs[k].at(point[k]),
             false => space.intervals[k][0] + point[k] * (space.intervals[k][1] - space.intervals[k][0]),
         };
-        let design: Vec<f64> = (0..point.len()).map(value).collect();
-        let excess = task.excesses(&design, &task.designs.drawn(&design, number as u64)?);
+        ((0..point.len()).map(value).collect(), number as u64)
+    };
+    let designs: Vec<(Vec<f64>, u64)> = points.into_iter().enumerate().map(design).collect();
+    let results = task.designs.drawn_of_all(&designs);
+    let dot = |((design, _), values): ((Vec<f64>, u64), Option<Vec<f64>>)| {
+        let excess = task.excesses(&design, &values?);
         let most = excess
             .iter()
             .enumerate()
@@ -48,6 +50,6 @@ pub fn cut(task: &Task<'_>, space: &Space, knobs: [usize; 2], count: usize, seed
     };
     Cut {
         knobs,
-        dots: points.into_par_iter().enumerate().filter_map(dot).collect(),
+        dots: designs.into_iter().zip(results).filter_map(dot).collect(),
     }
 }

@@ -2,8 +2,6 @@
 //!
 //! NSGA-II (Deb, Pratap, Agarwal and Meyarivan, IEEE Trans. Evol. Comp. 6, 2002) with its constrained domination.
 
-use rayon::prelude::*;
-
 use super::task::{Sense, TOLERANCE, Task};
 use crate::progress::Told;
 use crate::random::SplitMix;
@@ -77,7 +75,7 @@ pub fn front(
     let mut random = SplitMix::new(settings.seed);
     let mut points: Vec<Vec<f64>> = known.iter().map(|design| task.places(design)).collect();
     points.extend(random.hypercube(settings.population, task.knobs.len()));
-    let mut members = evaluated(task, aims, points);
+    let mut members = evaluated(task, aims, &points);
     let mut count = settings.population + known.len();
     sort(&mut members);
     for generation in 0..settings.generations {
@@ -92,7 +90,7 @@ pub fn front(
         });
         let children: Vec<Vec<f64>> = children.collect();
         count += children.len();
-        members.extend(evaluated(task, aims, children));
+        members.extend(evaluated(task, aims, &children));
         sort(&mut members);
     }
     told(settings.generations, settings.generations);
@@ -102,10 +100,11 @@ pub fn front(
     }
 }
 
-fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: Vec<Vec<f64>>) -> Vec<Member> {
-    let member = |places: Vec<f64>| {
-        let design = task.had(&task.design(&places));
-        let values = task.designs.values(&design)?;
+fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: &[Vec<f64>]) -> Vec<Member> {
+    let designs: Vec<Vec<f64>> = points.iter().map(|places| task.had(&task.design(places))).collect();
+    let results = task.designs.values_of_all(&designs);
+    let member = |(design, values): (Vec<f64>, Option<Vec<f64>>)| {
+        let values = values?;
         let excess = task.excesses(&design, &values);
         let aim = |(result, sense): &(usize, Sense)| match sense {
             Sense::AtMost => values[*result],
@@ -120,7 +119,7 @@ fn evaluated(task: &Task<'_>, aims: &[(usize, Sense)], points: Vec<Vec<f64>>) ->
             room: 0.0,
         })
     };
-    points.into_par_iter().filter_map(member).collect()
+    designs.into_iter().zip(results).filter_map(member).collect()
 }
 
 fn points_of(task: &Task<'_>, members: Vec<Member>) -> Vec<Point> {

@@ -81,10 +81,14 @@ struct State {
 
 impl State {
     fn at(task: &Task<'_>, places: Vec<f64>, price: f64) -> Option<Self> {
+        let values = task.designs.values(&task.design(&places))?;
+        Some(Self::with(task, places, values, price))
+    }
+
+    fn with(task: &Task<'_>, places: Vec<f64>, values: Vec<f64>, price: f64) -> Self {
         let design = task.design(&places);
-        let values = task.designs.values(&design)?;
         let excess = task.excesses(&design, &values);
-        Some(Self {
+        Self {
             cost: task.cost(&design) + task.missed(&excess),
             broken: task.broken(&excess, &task.margins(MARGIN)),
             met: task.holds(&excess),
@@ -94,7 +98,7 @@ impl State {
             excess,
             price,
             effort: [1, 0],
-        })
+        }
     }
 
     fn merit(&self) -> f64 {
@@ -120,10 +124,11 @@ fn starts(task: &Task<'_>, seed: u64) -> Vec<State> {
     let price = price(task);
     let today = task.places(&task.today());
     let points = SplitMix::new(seed).hypercube(LOOKS, task.knobs.len());
-    let looked = points
-        .into_par_iter()
-        .filter_map(|places| State::at(task, places, price));
-    let mut looked: Vec<State> = looked.collect();
+    let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
+    let looked = points.into_iter().zip(task.designs.values_of_all(&designs));
+    let mut looked: Vec<State> = looked
+        .filter_map(|(places, values)| Some(State::with(task, places, values?, price)))
+        .collect();
     looked.sort_by(|a, b| a.merit().total_cmp(&b.merit()));
     looked.truncate(STARTS);
     State::at(task, today, price).into_iter().chain(looked).collect()

@@ -2,13 +2,11 @@
 //!
 //! Zimmermann and von Hoessle, "Computing solution spaces for robust design", Int. J. Numer. Meth. Engng 94 (2013) 290–307: a box
 //! grows to all sides, designs are drawn in it, and sides are cut off that hold bad ones while as few good ones as possible go
-//! with them; at the end it grows no more. How probable a good design is in the box is then judged by designs that had no part
-//! in finding it.
+//! with them; at the end it takes in whatever lies around it as long as enough designs are good. How probable a good design is in the
+//! box is then judged by designs that had no part in finding it.
 //!
 //! Where results are not certain, the box is found with the margins of the limits, in which all is certain, and judged by results as they
 //! may turn out: then the probability is that over designs and results together.
-
-use rayon::prelude::*;
 
 use super::task::{Task, is_met};
 use crate::progress::Told;
@@ -59,16 +57,21 @@ pub struct Space {
 const GROWTH: f64 = 0.08;
 /// Good designs from which cuts are tried.
 const ANCHORS: usize = 16;
-/// Largest number of rounds in which a box that is good enough is enlarged a little.
-const FINAL_ROUNDS: usize = 30;
-const FINAL_GROWTH: f64 = 0.004;
-/// Designs that confirm a box are so many times those that judge it as it grows: the fewer they are, the more of them must be good, and
-/// the smaller is the box.
-const CONFIRMING: usize = 4;
+/// Largest number of rounds in which a box takes in what lies around it,
+const FINAL_ROUNDS: usize = 8;
+/// at each end of each interval this part of its length, in so many steps.
+const SURROUNDINGS: f64 = 0.05;
+const STEPS: usize = 20;
+/// Designs that confirm a box are so many times the fewest that could: the fewer they are, the more of them must be good, and the smaller is
+/// the box.
+const CONFIRMING: usize = 8;
 /// Level of significance: a worse box would give as many good designs by chance once in twenty times.
 const BY_CHANCE: f64 = 0.05;
-/// All designs that are evaluated are no more than so many times those that confirm a box.
-const MOST_CONFIRMED: usize = 40;
+/// A box that does not confirm is shrunk, at both ends of each interval by this part of its length; one that does grows as much.
+const ADJUSTMENT: f64 = 0.01;
+/// Confirmations at most, before a box is confirmed and after it.
+const CONFIRMATIONS: usize = 16;
+const FURTHER: usize = 3;
 
 /// A box in places of the knobs.
 type Sides = Vec<[f64; 2]>;
@@ -105,35 +108,43 @@ pub fn space(task: &Task<'_>, known: &[Vec<f64>], settings: Settings, told: Told
         .samples
         .max((2.0 * 3.0 / (1.0 - settings.probability).max(1e-4)).ceil() as usize);
     let confirming = CONFIRMING * judges;
-    let needed = needed(confirming, settings.probability);
-    let mut best = None;
+    let enough = probably_enough(confirming, settings.probability);
     for round in 0..FINAL_ROUNDS {
         told(settings.rounds + round, rounds);
-        let drawn = turned_out(&real, &sides, judges, &mut random);
-        evaluated += drawn.len();
-        if judged(&real, &sides, &drawn, evaluated).probability >= needed {
-            best = Some(sides.clone());
-            grow(&mut sides, FINAL_GROWTH);
-        } else if best.is_some() {
+        let around = grown(&sides, SURROUNDINGS);
+        if around == sides {
             break;
-        } else if task.designs.is_certain() {
-            sides = trimmed(&sides, &drawn).unwrap_or_else(|| shrunk(&sides));
-        } else {
+        }
+        let drawn = turned_out(&real, &around, confirming, &mut random);
+        evaluated += drawn.len();
+        match largest_within(&sides, &around, &drawn, enough) {
+            Some(STEPS) => sides = around,
+            Some(step) => {
+                sides = between(&sides, &around, step);
+                break;
+            }
+            None if task.designs.is_certain() => {
+                let inside: Vec<Drawn> = drawn.into_iter().filter(|own| holds(&sides, &own.places)).collect();
+                sides = trimmed(&sides, &inside).unwrap_or_else(|| shrunk(&sides));
+            }
             // A bad result says little of its place.
-            sides = shrunk(&shrunk(&sides));
+            None => sides = shrunk(&shrunk(&sides)),
         }
     }
     told(rounds, rounds);
     Some(confirmed(
         &real,
-        best.unwrap_or(sides),
+        sides,
         (settings.probability, confirming),
         evaluated,
         &mut random,
     ))
 }
 
-/// A box as designs judge it that had no part in finding it; where they find too many bad ones, one that is a little smaller.
+/// A box as designs judge it that had no part in finding it. Where they find too many bad ones, it shrinks until they do not; then it
+/// grows step by step as long as they do not. Since growth ends at the first box that does not confirm, one that holds less than the
+/// probability is the result no more often than the level of significance says (Maurer, Hothorn and Lehmacher, "Multiple comparisons in
+/// drug clinical trials and preclinical assays: a-priori ordered hypotheses", 1995).
 fn confirmed(
     task: &Task<'_>,
     mut sides: Sides,
@@ -141,15 +152,56 @@ fn confirmed(
     mut evaluated: usize,
     random: &mut SplitMix,
 ) -> Space {
-    loop {
-        let drawn = turned_out(task, &sides, confirming, random);
+    let mut judge = |sides: &Sides| {
+        let drawn = turned_out(task, sides, confirming, random);
         evaluated += drawn.len();
-        let judged = judged(task, &sides, &drawn, evaluated);
-        if judged.at_least >= probability || evaluated > MOST_CONFIRMED * confirming {
-            return judged;
+        judged(task, sides, &drawn, evaluated)
+    };
+    let mut best = judge(&sides);
+    for _ in 1..CONFIRMATIONS {
+        if best.at_least >= probability {
+            break;
         }
         sides = shrunk(&sides);
+        best = judge(&sides);
     }
+    for _ in 0..FURTHER {
+        let further = grown(&sides, ADJUSTMENT);
+        if best.at_least < probability || further == sides {
+            break;
+        }
+        let next = judge(&further);
+        best.evaluated = next.evaluated;
+        if next.at_least < probability {
+            break;
+        }
+        (sides, best) = (further, next);
+    }
+    best
+}
+
+/// A share of good designs at which a box probably confirms: one standard deviation above what is needed.
+fn probably_enough(confirming: usize, probability: f64) -> f64 {
+    let scatter = (probability * (1.0 - probability) / confirming as f64).sqrt();
+    (needed(confirming, probability) + scatter).min(1.0)
+}
+
+/// The last step from a box to one around it, in which `drawn` lie, at which enough of the designs inside are good; none where not even in
+/// the box itself.
+fn largest_within(sides: &Sides, around: &Sides, drawn: &[Drawn], enough: f64) -> Option<usize> {
+    (0..=STEPS).rev().find(|&step| {
+        let sides = between(sides, around, step);
+        let inside = || drawn.iter().filter(|own| holds(&sides, &own.places));
+        let good = inside().filter(|own| own.good).count();
+        good as f64 >= enough * inside().count() as f64
+    })
+}
+
+fn between(sides: &Sides, around: &Sides, step: usize) -> Sides {
+    let part = step as f64 / STEPS as f64;
+    let end = |from: f64, to: f64| from + part * (to - from);
+    let pairs = sides.iter().zip(around);
+    pairs.map(|(own, other)| [end(own[0], other[0]), end(own[1], other[1])]).collect()
 }
 
 /// The good design that is furthest inside all limits.
@@ -172,9 +224,17 @@ fn grow(sides: &mut Sides, by: f64) {
     }
 }
 
+/// Each interval longer at both ends, by a part of its length.
+fn grown(sides: &Sides, part: f64) -> Sides {
+    let grow = |[low, high]: &[f64; 2]| {
+        let by = part * (high - low);
+        [(low - by).max(0.0), (high + by).min(1.0)]
+    };
+    sides.iter().map(grow).collect()
+}
+
 fn shrunk(sides: &Sides) -> Sides {
-    let shrink = |[low, high]: &[f64; 2]| [low + 0.01 * (high - low), high - 0.01 * (high - low)];
-    sides.iter().map(shrink).collect()
+    grown(sides, -ADJUSTMENT)
 }
 
 /// Designs all over a box.
@@ -188,8 +248,10 @@ fn inside(sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Vec<f64>> {
 
 /// Designs with the results that they should have.
 fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> Vec<Drawn> {
-    let points = inside(sides, count, random).into_par_iter();
-    points.map(|places| drawn_at(task, places)).collect()
+    let points = inside(sides, count, random);
+    let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
+    let results = points.into_iter().zip(task.designs.values_of_all(&designs));
+    results.map(|(places, values)| judged_at(task, places, values)).collect()
 }
 
 /// Designs with results as they may turn out.
@@ -197,13 +259,13 @@ fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMi
     if task.designs.is_certain() {
         return draw(task, sides, count, random);
     }
-    let points = inside(sides, count, random).into_iter();
-    let numbered: Vec<(Vec<f64>, u64)> = points.map(|places| (places, random.bits())).collect();
-    let own = |(places, number): (Vec<f64>, u64)| {
-        let values = task.designs.drawn(&task.design(&places), number);
-        judged_at(task, places, values)
-    };
-    numbered.into_par_iter().map(own).collect()
+    let points = inside(sides, count, random);
+    let designs: Vec<(Vec<f64>, u64)> = points
+        .iter()
+        .map(|places| (task.design(places), random.bits()))
+        .collect();
+    let results = points.into_iter().zip(task.designs.drawn_of_all(&designs));
+    results.map(|(places, values)| judged_at(task, places, values)).collect()
 }
 
 fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {

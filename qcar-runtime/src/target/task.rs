@@ -1,5 +1,7 @@
 //! Limits of results, and the knobs that may change to meet them.
 
+use rayon::prelude::*;
+
 /// Results of designs; a design has a value for each knob.
 pub trait Designs: Sync {
     /// The results of a design; `None` if it has none.
@@ -16,6 +18,19 @@ pub trait Designs: Sync {
     /// The results of a design in the draw of this number; `None` if it has none.
     fn drawn(&self, design: &[f64], _number: u64) -> Option<Vec<f64>> {
         self.values(design)
+    }
+
+    /// [`Designs::values`] of each of several designs, in parallel.
+    fn values_of_all(&self, designs: &[Vec<f64>]) -> Vec<Option<Vec<f64>>> {
+        designs.par_iter().map(|design| self.values(design)).collect()
+    }
+
+    /// [`Designs::drawn`] of each of several designs with the number of its draw, in parallel.
+    fn drawn_of_all(&self, designs: &[(Vec<f64>, u64)]) -> Vec<Option<Vec<f64>>> {
+        designs
+            .par_iter()
+            .map(|(design, number)| self.drawn(design, *number))
+            .collect()
     }
 }
 

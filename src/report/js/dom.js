@@ -70,6 +70,11 @@ function drawn(element) {
   if (owner) owner.setAttribute('data-drawn', '');
 }
 
+// A section whose figures are drawn with it.
+function drawAll(element) {
+  return { element, draw: () => element.querySelectorAll('figure').forEach((own) => drawn(own)) };
+}
+
 function details(summary, ...children) {
   const part = h('details', { open: view.printing || view.opened.has(summary) });
   const clicked = () => view.opened[part.open ? 'delete' : 'add'](summary);

@@ -34,6 +34,6 @@ function sample(role, filled = role === 'band') {
   );
 }
 
-function key(role, text) {
-  return h('span', { class: `key ${role}` }, sample(role), text);
+function key(role, text, filled) {
+  return h('span', { class: `key ${role}` }, sample(role, filled), text);
 }

@@ -3,7 +3,6 @@
 use qcar_runtime::metric::Ground;
 use qcar_runtime::sensitivity::{Interval, Source, direction};
 use qcar_runtime::target::{Axle, Designs, Found, Task, is_met, search};
-use rayon::prelude::*;
 use serde::Serialize;
 
 use super::plan::Plan;
@@ -92,8 +91,9 @@ pub(super) fn keep_away(task: &mut Task<'_>, axle: &Axle<'_>, about: &Found, pro
 
 /// Results of a design as they may turn out, from the draw of a number on.
 fn draws(axle: &Axle<'_>, design: &[f64], first: u64) -> Vec<Option<Vec<f64>>> {
-    let numbers = (0..DRAWS as u64).into_par_iter();
-    numbers.map(|number| axle.drawn(design, first + number)).collect()
+    let numbers = first..first + DRAWS as u64;
+    let draws: Vec<(Vec<f64>, u64)> = numbers.map(|number| (design.to_vec(), number)).collect();
+    axle.drawn_of_all(&draws)
 }
 
 /// How often targets hold at a design.

@@ -48,7 +48,3 @@ function plane(kind, name, axes, dots, shapes = () => []) {
     ),
   );
 }
-
-function drawAll(element) {
-  return { element, draw: () => element.querySelectorAll('figure').forEach((own) => drawn(own)) };
-}

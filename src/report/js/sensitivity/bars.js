@@ -1,0 +1,79 @@
+// Bars from zero, one below the other: names on the left, values at their ends.
+
+const BARS = { width: 440, left: 136, right: 44, row: 20, top: 6, bottom: 34 };
+
+// `rows` are `{name, value, said, role, inner?, interval?}`: an `inner` bar is a part of the whole one, an `interval` a line across its
+// end. `across` stands below the axis.
+function bars(kind, name, rows, across) {
+  const ends = rows.flatMap(({ value, interval }) => [value, ...(interval || [])]);
+  const [low, high] = [Math.min(0, ...ends), Math.max(0, ...ends)];
+  const isSigned = low < 0;
+  // Room for values beyond the ends of the bars.
+  const [left, right] = [BARS.left + (isSigned ? BARS.right : 0), BARS.width - BARS.right];
+  const floor = BARS.top + BARS.row * rows.length;
+  const x = (value) => left + ((right - left) * (value - low)) / (high - low || 1);
+  const label = (at, up, anchor, text) => svg('text', { x: at, y: up, 'text-anchor': anchor }, text);
+  const ticks = evenTicks(low, high || 1, 5).map((v) => [
+    svg('path', { d: `M${x(v)} ${BARS.top}V${floor}`, style: 'stroke:var(--grid)' }),
+    label(x(v), floor + 14, 'middle', plain(v, 3)),
+  ]);
+  const bar = (value, height, middle, style) =>
+    svg('rect', {
+      x: Math.min(x(0), x(value)),
+      y: middle - height / 2,
+      width: Math.abs(x(value) - x(0)),
+      height,
+      style,
+    });
+  const body = rows.map((row, at) => {
+    const middle = BARS.top + BARS.row * (at + 0.5);
+    const beyond = row.interval ? (row.value < 0 ? row.interval[0] : row.interval[1]) : row.value;
+    const colour = `fill:var(--${row.role})`;
+    return svg(
+      'g',
+      {},
+      svg('title', {}, `${row.name}: ${row.said}`),
+      label(BARS.left - 8, middle + 4, 'end', row.name),
+      bar(row.value, 12, middle, row.inner === undefined ? colour : `${colour};fill-opacity:0.35`),
+      row.inner === undefined ? null : bar(Math.max(0, row.inner), 12, middle, colour),
+      row.interval
+        ? svg('path', {
+            d: `M${x(row.interval[0])} ${middle}H${x(row.interval[1])}M${x(row.interval[0])} ${middle - 4}v8M${x(row.interval[1])} ${middle - 4}v8`,
+            style: 'stroke:var(--ink);fill:none',
+          })
+        : null,
+      label(x(beyond) + (row.value < 0 ? -5 : 5), middle + 4, row.value < 0 ? 'end' : 'start', row.said),
+    );
+  });
+  const spoken = rows.map((row) => `${row.name} ${row.said}`).join(', ');
+  const height = floor + BARS.bottom;
+  return captioned(
+    kind,
+    name,
+    svg(
+      'svg',
+      { class: 'plane', viewBox: `0 0 ${BARS.width} ${height}`, role: 'img', 'aria-label': `${name}: ${spoken}` },
+      ticks,
+      svg('path', { d: `M${x(0)} ${BARS.top}V${floor}`, style: 'stroke:var(--muted)' }),
+      body,
+      label((left + right) / 2, height - 4, 'middle', across),
+    ),
+  );
+}
+
+// Of `[name, value]` the largest, by size.
+function largest(pairs, most) {
+  const known = pairs.filter(([, value]) => Number.isFinite(value) && value !== 0);
+  return known.sort((a, b) => Math.abs(b[1]) - Math.abs(a[1])).slice(0, most);
+}
+
+// So many metrics stand beside each other in a table.
+const ACROSS = 6;
+
+function metricTables(caption, of, columns, rows) {
+  const parts = [...Array(Math.ceil(of.length / ACROSS)).keys()].map((n) => of.slice(ACROSS * n, ACROSS * (n + 1)));
+  return parts.map((metrics) => {
+    const name = parts.length > 1 ? `${caption}: ${metrics[0].name} to ${metrics[metrics.length - 1].name}` : caption;
+    return table(name, [['', 'text'], ...metrics.map((own) => [columns(own), 'number'])], rows(metrics));
+  });
+}

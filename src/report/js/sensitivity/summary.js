@@ -1,0 +1,67 @@
+// The metrics with what is known of them, and what they depend on most.
+
+function summary(data) {
+  const { metrics, parameters, runs } = data;
+  const notices = data.notices.map((text) => h('p', { class: 'note caution' }, text));
+  if (!metrics.length) {
+    const words = 'The model has no metric that could be measured on these runs.';
+    return { element: section('summary', 'Metrics', h('p', { class: 'lead' }, words), notices) };
+  }
+  const isDoubted = metrics.some((own) => own.doubt);
+  const columns = [
+    ['metric', 'text'],
+    ['value', 'number'],
+    ...(isDoubted ? [['95 % interval', 'text']] : []),
+    ...(parameters.length ? [['moved most by', 'text']] : []),
+    ['meaning', 'sentence'],
+  ];
+  const strongest = (own) =>
+    largest(Object.entries(own.elasticities), 2)
+      .map(([name, value]) => `${name} ${signedNumber(value)}`)
+      .join(', ');
+  const rows = metrics.map((own) => [
+    own.name,
+    quantity(own.value, own.unit),
+    ...(isDoubted ? [own.doubt ? own.doubt.interval.map((end) => quantity(end, own.unit)).join(' … ') : '–'] : []),
+    ...(parameters.length ? [strongest(own) || 'none'] : []),
+    h('span', { class: 'doc' }, own.doc),
+  ]);
+  const ridden = metrics.some((own) => Object.keys(own.values).length > 1);
+  return {
+    element: section(
+      'summary',
+      'Metrics',
+      h('p', { class: 'lead' }, lead(data)),
+      notices,
+      ridden ? h('p', {}, `Metrics of rides are means over ${runs.length} runs.`) : null,
+      table('Metrics', columns, rows),
+      ridden ? details('Values of each run', runTables(data)) : null,
+    ),
+  };
+}
+
+function lead({ metrics, parameters }) {
+  const names = byWeight(metrics, parameters).slice(0, 3);
+  if (!names.length) return 'No parameter can vary: all are known or zero.';
+  const listed = names.length > 1 ? `${names.slice(0, -1).join(', ')} and ${names[names.length - 1]}` : names[0];
+  return `Of ${parameters.length} parameters, ${listed} ${names.length > 1 ? 'move' : 'moves'} a metric most.`;
+}
+
+// Names of the parameters, that which moves any metric most first.
+function byWeight(metrics, parameters) {
+  const size = (value) => (Number.isFinite(value) ? Math.abs(value) : 0);
+  const weight = ({ name }) => Math.max(...metrics.map((own) => size(own.elasticities[name])));
+  return [...parameters].sort((a, b) => weight(b) - weight(a)).map(({ name }) => name);
+}
+
+function runTables({ metrics, runs }) {
+  const ridden = metrics.filter((own) => Object.keys(own.values).some((run) => runs.includes(run)));
+  const cell = (own, run) => (run in own.values ? number(inUnit(own.values[run], own.unit).value) : '–');
+  return metricTables('Values of each run', ridden, (own) => headed(own.name, own.unit), (some) =>
+    runs.map((run) => [runName(run), ...some.map((own) => cell(own, run))]),
+  );
+}
+
+function signedNumber(value) {
+  return `${value > 0 ? '+' : ''}${number(value, 2)}`;
+}
