@@ -182,9 +182,14 @@ mod tests {
 
     #[test]
     fn nothing_is_loaded_from_elsewhere() {
-        let pages = [Report::Study, Report::Comparison, Report::Targets, Report::Sensitivities]
-            .map(|report| page(report, "t", &0, None))
-            .concat();
+        let pages = [
+            Report::Study,
+            Report::Comparison,
+            Report::Targets,
+            Report::Sensitivities,
+        ]
+        .map(|report| page(report, "t", &0, None))
+        .concat();
         for loader in [
             "src=",
             "href=\"http",

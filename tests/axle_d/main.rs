@@ -3,8 +3,11 @@
 #[path = "../../benches/cleat/mod.rs"]
 mod cleat;
 
+mod general;
+
 mod abreast;
 mod cleat_run;
 mod kc_rig;
 mod metrics;
+mod space;
 mod tangent;

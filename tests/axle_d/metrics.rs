@@ -6,18 +6,24 @@ use qcar_runtime::metric::{Course, Ground, What};
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::sensitivity::{Doubt, elasticities};
+use qcar_runtime::simulate::{Method, Settings};
 
 use super::cleat;
+use super::general::General;
+
+const COURSES: [&str; 2] = ["30kmh_20mm", "40kmh_30mm"];
 
 fn ground(values: &Values) -> Ground<'static> {
+    ground_of(&AxleD, values, &COURSES)
+}
+
+fn ground_of<'a>(model: &'a dyn Model, values: &Values, courses: &[&str]) -> Ground<'a> {
     let parameters = cleat::parameters();
     let car = cleat::car(&parameters);
-    let courses = Course::standard().expect("the standard cleats are roads");
-    let some = courses
-        .into_iter()
-        .filter(|course| ["30kmh_20mm", "40kmh_30mm"].contains(&course.name.as_str()));
+    let all = Course::standard().expect("the standard cleats are roads");
+    let some = all.into_iter().filter(|course| courses.contains(&course.name.as_str()));
     Ground::new(
-        &AxleD,
+        model,
         values,
         &RoleNames::default(),
         Some((car.tyre, car.load)),
@@ -46,20 +52,22 @@ fn differences(ground: &Ground<'_>, values: &Values, parameter: usize, part: f64
         .collect()
 }
 
-fn hold(chosen: fn(What) -> bool, part: f64, tolerance: f64) {
-    let values = cleat::parameters();
-    let mut ground = ground(&values);
+/// Measures all metrics that are chosen from now on.
+fn choose(ground: &mut Ground<'_>, chosen: fn(What) -> bool) {
     let metrics = 0..ground.metrics().len();
     let readings = metrics
         .filter(|&at| chosen(ground.metrics()[at].what))
         .flat_map(|at| ground.readings_of(at))
         .collect();
     ground.choose(readings);
-    let parameters = open();
-    assert!(parameters.len() > 15 && !ground.readings().is_empty());
-    let found = elasticities(&ground, &values, &parameters).expect("they are measured");
+    assert!(!ground.readings().is_empty());
+}
+
+fn hold(ground: &Ground<'_>, parameters: &[usize], part: f64, tolerance: f64) {
+    let values = cleat::parameters();
+    let found = elasticities(ground, &values, parameters).expect("they are measured");
     for (k, &parameter) in parameters.iter().enumerate() {
-        for (at, difference) in differences(&ground, &values, parameter, part).into_iter().enumerate() {
+        for (at, difference) in differences(ground, &values, parameter, part).into_iter().enumerate() {
             let (found, exact) = (found.elasticities[at][k], difference / found.values[at]);
             let name = &ground.metrics()[ground.readings()[at].metric].name;
             assert!(
@@ -75,14 +83,54 @@ fn hold(chosen: fn(What) -> bool, part: f64, tolerance: f64) {
 /// less well.
 #[test]
 fn derivatives_of_vibrations_and_resonances_are_limits_of_differences() {
-    hold(|what| !what.is_ridden(), 2e-4, 1e-5);
+    let mut ground = ground(&cleat::parameters());
+    choose(&mut ground, |what| !what.is_ridden());
+    let parameters = open();
+    assert!(parameters.len() > 15);
+    hold(&ground, &parameters, 2e-4, 1e-5);
 }
 
-/// Differences of rides at the usual tolerance have an error of their own: 3e-4 of a peak over a step of 2e-3, were it random
-/// from ride to ride. It is not, and a tenth of it is left.
+fn exact(tolerance: f64) -> Settings {
+    Settings {
+        method: Method::Adaptive(tolerance),
+        ..Settings::default()
+    }
+}
+
+/// One parameter of each kind, on rides so exact that their differences have seven digits.
 #[test]
 fn derivatives_of_ridden_metrics_are_limits_of_differences() {
-    hold(What::is_ridden, 2e-3, 0.015);
+    let model = General::new();
+    let mut ground = ground_of(&model, &cleat::parameters(), &COURSES[1..]).riding(exact(1e-14));
+    choose(&mut ground, What::is_ridden);
+    let kinds = ["m_wheel", "k_tire", "c_wheel_z", "k_wheel_x", "mr_damper"];
+    let place = |name: &&str| model.about().parameters.iter().position(|own| own.name == **name);
+    let parameters: Vec<usize> = kinds.iter().filter_map(place).collect();
+    assert_eq!(parameters.len(), kinds.len());
+    hold(&ground, &parameters, 1e-4, 1e-6);
+}
+
+/// The rides of a linear axle are shortcuts at a tolerance of 1e-6. No elasticity is off by more than 5e-4 for it.
+#[test]
+fn elasticities_at_the_usual_tolerance_are_those_of_exact_rides() {
+    let values = cleat::parameters();
+    let model = General::new();
+    let (mut usual, mut exact) = (
+        ground(&values),
+        ground_of(&model, &values, &COURSES).riding(exact(1e-11)),
+    );
+    let of = |ground: &mut Ground<'_>| {
+        choose(ground, What::is_ridden);
+        elasticities(ground, &values, &open()).expect("they are measured")
+    };
+    let (found, limit) = (of(&mut usual), of(&mut exact));
+    let pairs = found
+        .elasticities
+        .iter()
+        .flatten()
+        .zip(limit.elasticities.iter().flatten());
+    let worst = pairs.map(|(found, limit)| (found - limit).abs()).fold(0.0, f64::max);
+    assert!(worst < 5e-4, "{worst:e}");
 }
 
 #[test]

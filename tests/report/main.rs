@@ -9,6 +9,8 @@ mod swept;
 mod browser;
 // The report on A4.
 mod paper;
+// Elasticities, their uncertainty and Sobol indices.
+mod sensitivities;
 // Responses that the page computes.
 mod sliders;
 // The measured car beside today's axle and the design.
@@ -333,7 +335,13 @@ fn compare(subject: &str) -> String {
     page_in(folder.path())
 }
 
-fn check(found: &Value, (width, place): (u64, &str), wanted: &[&str]) {
+fn check(found: &Value, at: (u64, &str), wanted: &[&str]) {
+    check_page(found, at, wanted);
+    assert!(strings(&found["keyboard"]["plot"]).len() > 2, "{}", at.1);
+}
+
+/// A page without plots that answer to a pointer.
+fn check_page(found: &Value, (width, place): (u64, &str), wanted: &[&str]) {
     for list in ["errors", "violations", "blank", "requests", "faint", "unnamed"] {
         assert_eq!(found[list], Value::Array(Vec::new()), "{list} at {place}");
     }
@@ -352,7 +360,6 @@ fn check(found: &Value, (width, place): (u64, &str), wanted: &[&str]) {
     for figure in wanted {
         assert!(figures(found).contains(figure), "no {figure} at {place}");
     }
-    assert!(strings(&found["keyboard"]["plot"]).len() > 2, "{place}");
     assert_ne!(found["themes"][0], found["themes"][1], "{place}");
 }
 

@@ -30,8 +30,16 @@ impl Studied {
         Self::once("targets", ["target", file], &[Path::new(file), Path::new(campaign)])
     }
 
+    /// Sensitivities of a shipped campaign, with uncertainty and Sobol indices.
+    #[allow(dead_code, reason = "not every test program looks at sensitivities")]
+    pub fn sensitivities() -> Self {
+        let campaign = "models/campaigns/axle_a_rig";
+        let line = ["sensitivity", campaign, "--tolerance", "k_tire=5%", "--sobol", "400"];
+        Self::once("sensitivities", line, &[Path::new(campaign)])
+    }
+
     /// What a verb makes of a subject, unless that is there already from the same program and the same files.
-    fn once(name: &str, arguments: [&str; 2], of: &[&Path]) -> Self {
+    fn once<const N: usize>(name: &str, arguments: [&str; N], of: &[&Path]) -> Self {
         let place = Path::new(env!("CARGO_TARGET_TMPDIR")).join("studies").join(name);
         fs::create_dir_all(&place).unwrap();
         let [folder, printed, subject] = ["results", "printed", "subject"].map(|name| place.join(name));
@@ -50,7 +58,7 @@ impl Studied {
     }
 }
 
-fn run(arguments: [&str; 2], out: &Path) -> String {
+fn run<const N: usize>(arguments: [&str; N], out: &Path) -> String {
     let _ = fs::remove_dir_all(out);
     let output = Command::new(env!("CARGO_BIN_EXE_qcar"))
         .args(arguments)

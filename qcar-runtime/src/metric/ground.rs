@@ -32,6 +32,7 @@ pub struct Ground<'a> {
     /// Place of the output that feels an obstacle first.
     wheel: Option<usize>,
     impossible: Option<Box<Impossible<'a>>>,
+    settings: Settings,
 }
 
 /// Why parameters are not physical; `None` if they are.
@@ -108,7 +109,15 @@ impl<'a> Ground<'a> {
             readings: Vec::new(),
             wheel,
             impossible: None,
+            settings: Settings::default(),
         }
+    }
+
+    /// Simulates rides with these settings instead of the default ones.
+    #[must_use]
+    pub fn riding(mut self, settings: Settings) -> Self {
+        self.settings = settings;
+        self
     }
 
     /// Measures no axle for whose parameters there is a reason that it cannot be.
@@ -266,7 +275,7 @@ impl<'a> Ground<'a> {
             let course = &self.courses[runs[number].1];
             found[number] = Some(self.signals(course, ride.map(|ride| self.tangent_of(ride))));
         };
-        rides_abreast(&car, &ridden, &Settings::default(), &self.kept(), done);
+        rides_abreast(&car, &ridden, &self.settings, &self.kept(), done);
         found.into_iter().map(|own| own.expect("each ride ends")).collect()
     }
 
@@ -283,11 +292,11 @@ impl<'a> Ground<'a> {
 
     fn drive(&self, values: &Values, course: usize, directions: &[Vec<f64>]) -> Result<Signals, MetricError> {
         let course = &self.courses[course];
-        let (car, drive, settings) = (self.car(values), course.drive(), Settings::default());
+        let (car, drive) = (self.car(values), course.drive());
         let found = if directions.is_empty() {
-            ride(&car, &drive, &settings).map(|ride| self.tangent_of(ride))
+            ride(&car, &drive, &self.settings).map(|ride| self.tangent_of(ride))
         } else {
-            tangent(&car, &drive, &settings, directions).map(|tangent| self.with_added(tangent))
+            tangent(&car, &drive, &self.settings, directions).map(|tangent| self.with_added(tangent))
         };
         self.signals(course, found)
     }

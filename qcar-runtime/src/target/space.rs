@@ -67,11 +67,12 @@ const STEPS: usize = 20;
 const CONFIRMING: usize = 8;
 /// Level of significance: a worse box would give as many good designs by chance once in twenty times.
 const BY_CHANCE: f64 = 0.05;
-/// A box that does not confirm is shrunk, at both ends of each interval by this part of its length; one that does grows as much.
-const ADJUSTMENT: f64 = 0.01;
-/// Confirmations at most, before a box is confirmed and after it.
+/// A box that does not confirm is shrunk at both ends of each interval by this part of its length; one that does grows by the other.
+const SHRINKAGE: f64 = 0.01;
+const FURTHER: f64 = 0.015;
+/// Largest number of confirmations until one succeeds, and of those after it.
 const CONFIRMATIONS: usize = 16;
-const FURTHER: usize = 3;
+const FURTHER_ONES: usize = 4;
 
 /// A box in places of the knobs.
 type Sides = Vec<[f64; 2]>;
@@ -165,8 +166,8 @@ fn confirmed(
         sides = shrunk(&sides);
         best = judge(&sides);
     }
-    for _ in 0..FURTHER {
-        let further = grown(&sides, ADJUSTMENT);
+    for _ in 0..FURTHER_ONES {
+        let further = grown(&sides, FURTHER);
         if best.at_least < probability || further == sides {
             break;
         }
@@ -201,7 +202,9 @@ fn between(sides: &Sides, around: &Sides, step: usize) -> Sides {
     let part = step as f64 / STEPS as f64;
     let end = |from: f64, to: f64| from + part * (to - from);
     let pairs = sides.iter().zip(around);
-    pairs.map(|(own, other)| [end(own[0], other[0]), end(own[1], other[1])]).collect()
+    pairs
+        .map(|(own, other)| [end(own[0], other[0]), end(own[1], other[1])])
+        .collect()
 }
 
 /// The good design that is furthest inside all limits.
@@ -234,7 +237,7 @@ fn grown(sides: &Sides, part: f64) -> Sides {
 }
 
 fn shrunk(sides: &Sides) -> Sides {
-    grown(sides, -ADJUSTMENT)
+    grown(sides, -SHRINKAGE)
 }
 
 /// Designs all over a box.
@@ -251,7 +254,9 @@ fn draw(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMix) -> 
     let points = inside(sides, count, random);
     let designs: Vec<Vec<f64>> = points.iter().map(|places| task.design(places)).collect();
     let results = points.into_iter().zip(task.designs.values_of_all(&designs));
-    results.map(|(places, values)| judged_at(task, places, values)).collect()
+    results
+        .map(|(places, values)| judged_at(task, places, values))
+        .collect()
 }
 
 /// Designs with results as they may turn out.
@@ -265,7 +270,9 @@ fn turned_out(task: &Task<'_>, sides: &Sides, count: usize, random: &mut SplitMi
         .map(|places| (task.design(places), random.bits()))
         .collect();
     let results = points.into_iter().zip(task.designs.drawn_of_all(&designs));
-    results.map(|(places, values)| judged_at(task, places, values)).collect()
+    results
+        .map(|(places, values)| judged_at(task, places, values))
+        .collect()
 }
 
 fn drawn_at(task: &Task<'_>, places: Vec<f64>) -> Drawn {

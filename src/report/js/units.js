@@ -29,7 +29,7 @@ function inUnit(value, unit) {
 
 // `m/s^2` as m/s², `N s/m` with a dot.
 function pretty(unit) {
-  return unit.replace(/\^(\d)/g, (_, power) => superscript(Number(power))).replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
+  return unit.replace(/\^(\d+(\.\d+)?)/g, (_, power) => superscript(power)).replace(/([A-Za-z]) ([A-Za-z])/g, '$1·$2');
 }
 
 function withUnit(text, unit) {

@@ -5,7 +5,11 @@ const BARS = { width: 440, left: 136, right: 44, row: 20, top: 6, bottom: 34 };
 // `rows` are `{name, value, said, role, inner?, interval?}`: an `inner` bar is a part of the whole one, an `interval` a line across its
 // end. `across` stands below the axis.
 function bars(kind, name, rows, across) {
-  const ends = rows.flatMap(({ value, interval }) => [value, ...(interval || [])]);
+  const ends = rows.flatMap(({ value, inner, interval }) => [
+    value,
+    Math.max(0, inner || 0),
+    ...(interval || []),
+  ]);
   const [low, high] = [Math.min(0, ...ends), Math.max(0, ...ends)];
   const isSigned = low < 0;
   // Room for values beyond the ends of the bars.
@@ -27,7 +31,7 @@ function bars(kind, name, rows, across) {
     });
   const body = rows.map((row, at) => {
     const middle = BARS.top + BARS.row * (at + 0.5);
-    const beyond = row.interval ? (row.value < 0 ? row.interval[0] : row.interval[1]) : row.value;
+    const beyond = row.value < 0 ? row.value : Math.max(row.value, row.inner || 0, ...(row.interval || []));
     const colour = `fill:var(--${row.role})`;
     return svg(
       'g',
@@ -61,19 +65,35 @@ function bars(kind, name, rows, across) {
   );
 }
 
+// Next to the largest bar, one that is smaller than this part of it is not seen.
+const SEEN = 0.01;
+
 // Of `[name, value]` the largest, by size.
 function largest(pairs, most) {
   const known = pairs.filter(([, value]) => Number.isFinite(value) && value !== 0);
-  return known.sort((a, b) => Math.abs(b[1]) - Math.abs(a[1])).slice(0, most);
+  const sorted = known.sort((a, b) => Math.abs(b[1]) - Math.abs(a[1])).slice(0, most);
+  return sorted.filter(([, value]) => Math.abs(value) >= SEEN * Math.abs(sorted[0][1]));
+}
+
+// A share as percent; what rounding has left of none is none.
+function share(of) {
+  return Math.abs(of) < 5e-4 ? '0 %' : percent(of);
+}
+
+// Metrics in parts of no more than `most`, each with a name.
+function parted(caption, metrics, most) {
+  const count = Math.ceil(metrics.length / most);
+  const each = Math.ceil(metrics.length / count);
+  const parts = [...Array(count).keys()].map((n) => metrics.slice(each * n, each * (n + 1)));
+  const ends = (part) => (count > 1 ? `: ${part[0].name} to ${part[part.length - 1].name}` : '');
+  return parts.map((part) => [caption + ends(part), part]);
 }
 
 // So many metrics stand beside each other in a table.
 const ACROSS = 6;
 
-function metricTables(caption, of, columns, rows) {
-  const parts = [...Array(Math.ceil(of.length / ACROSS)).keys()].map((n) => of.slice(ACROSS * n, ACROSS * (n + 1)));
-  return parts.map((metrics) => {
-    const name = parts.length > 1 ? `${caption}: ${metrics[0].name} to ${metrics[metrics.length - 1].name}` : caption;
-    return table(name, [['', 'text'], ...metrics.map((own) => [columns(own), 'number'])], rows(metrics));
-  });
+function metricTables(caption, metrics, columns, rows) {
+  return parted(caption, metrics, ACROSS).map(([name, part]) =>
+    table(name, [['', 'text'], ...part.map((own) => [columns(own), 'number'])], rows(part)),
+  );
 }

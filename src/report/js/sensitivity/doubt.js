@@ -1,8 +1,6 @@
 // How sure each metric is, and which parameters its uncertainty comes from.
 
 const DOUBT_BARS = 8;
-// Smaller shares are not drawn.
-const SMALLEST_SHARE = 0.005;
 
 function doubt({ metrics }) {
   const doubted = metrics.filter((own) => own.doubt && own.doubt.deviation > 0);
@@ -19,13 +17,12 @@ function doubt({ metrics }) {
     quantity(own.value, own.unit),
     quantity(own.doubt.deviation, own.unit, 2),
     own.doubt.interval.map((end) => quantity(end, own.unit)).join(' … '),
-    ...Object.values(own.doubt.sources).map((share) => percent(share, 2)),
+    ...Object.values(own.doubt.sources).map(share),
   ]);
   const one = (own) => {
-    const shares = largest(Object.entries(own.doubt.shares), DOUBT_BARS);
-    const shown = shares.filter(([, share]) => Math.abs(share) > SMALLEST_SHARE);
-    const bar = ([name, share]) => ({ name, value: 100 * share, said: percent(share), role: share < 0 ? 'before' : 'after' });
-    return bars('shares', own.name, shown.map(bar), '% of the variance');
+    const bar = ([name, part]) => ({ name, value: 100 * part, said: share(part), role: part < 0 ? 'before' : 'after' });
+    const rows = largest(Object.entries(own.doubt.shares), DOUBT_BARS).map(bar);
+    return bars('shares', own.name, rows, '% of the variance');
   };
   return drawAll(
     section(

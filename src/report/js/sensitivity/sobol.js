@@ -6,28 +6,27 @@ function sobol({ metrics, parameters, global }) {
   if (!global) return null;
   const indexed = metrics.filter((own) => own.sobol);
   const one = (own) => {
-    const sorted = Object.entries(own.sobol).sort((a, b) => b[1].total - a[1].total);
-    const hundred = (values) => values.map((value) => 100 * value);
-    const rows = sorted.slice(0, SOBOL_BARS).map(([name, index]) => ({
+    const totals = Object.entries(own.sobol).map(([name, index]) => [name, index.total]);
+    const rows = largest(totals, SOBOL_BARS).map(([name, total]) => ({
       name,
-      value: 100 * index.total,
-      inner: 100 * index.first,
-      interval: hundred(index.total_interval),
-      said: percent(index.total),
+      value: 100 * total,
+      inner: 100 * own.sobol[name].first,
+      interval: own.sobol[name].total_interval.map((end) => 100 * end),
+      said: share(total),
       role: 'after',
     }));
     return bars('sobol', own.name, rows, '% of the variance');
   };
   const columns = [
     ['parameter', 'text'],
-    ['alone, %', 'number'],
+    ['alone', 'number'],
     ['95 %', 'text'],
-    ['with others, %', 'number'],
+    ['with others', 'number'],
     ['95 %', 'text'],
   ];
   const cells = ({ first, first_interval: alone, total, total_interval: together }) => {
-    const share = (value) => number(100 * value, 2);
-    return [share(first), alone.map(share).join(' … '), share(total), together.map(share).join(' … ')];
+    const span = (ends) => ends.map(share).join(' … ');
+    return [share(first), span(alone), share(total), span(together)];
   };
   const tables = indexed.map((own) =>
     table(
@@ -44,9 +43,9 @@ function sobol({ metrics, parameters, global }) {
       h(
         'p',
         {},
-        `Each parameter is uniform within ±${percent(global.spread, 3)} of its value, ${global.designs} designs. A bar is the share of the variance in which the parameter takes part with others, its `,
+        `Shares of the variance for parameters that are uniform within ±${percent(global.spread, 3)} of their values, from ${global.designs} designs. The whole bar is the share of a parameter with others, its `,
         key('after', 'solid part', true),
-        ` the share that is its alone; the line is the 95 % confidence interval of the former.${failed}`,
+        ` that of the parameter alone. The line is the 95 % confidence interval of the former.${failed}`,
       ),
       h('div', { class: 'columns two' }, indexed.map(one)),
       parameters.length ? details('Indices as tables', tables) : null,

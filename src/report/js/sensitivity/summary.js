@@ -24,7 +24,7 @@ function summary(data) {
     quantity(own.value, own.unit),
     ...(isDoubted ? [own.doubt ? own.doubt.interval.map((end) => quantity(end, own.unit)).join(' … ') : '–'] : []),
     ...(parameters.length ? [strongest(own) || 'none'] : []),
-    h('span', { class: 'doc' }, own.doc),
+    h('span', { class: 'doc' }, own.doc.replace(/`/g, '')),
   ]);
   const ridden = metrics.some((own) => Object.keys(own.values).length > 1);
   return {
