@@ -90,7 +90,7 @@ function parted(caption, metrics, most) {
 }
 
 // So many metrics stand beside each other in a table.
-const ACROSS = 6;
+const ACROSS = 5;
 
 function metricTables(caption, metrics, columns, rows) {
   return parted(caption, metrics, ACROSS).map(([name, part]) =>
