@@ -195,14 +195,19 @@
     await frame();
     await frame();
     const text = async () => {
-      part.querySelector('[data-figure=tried-magnitude] .exports button:last-child').click();
+      const button = part.querySelector('[data-figure=tried-magnitude] .exports button:last-child');
+      if (!button) return null;
+      button.click();
       await reading;
       return found.saved.pop();
     };
+    const estimates = () => [...part.querySelectorAll('td .tried')].map((own) => own.textContent);
+    const heading = part.querySelector('h3');
     const inputs = [...part.querySelectorAll('.sliders input')];
     const labels = [...part.querySelectorAll('.sliders label')];
     found.tried = {
-      channel: part.querySelector('h3').textContent,
+      channel: heading && heading.textContent,
+      estimates: [estimates()],
       labels: inputs.map((own) => own.getAttribute('aria-label')),
       shown: labels.map((own) => own.querySelector('output').textContent),
       before: await text(),
@@ -212,12 +217,14 @@
     wanted.value = 500;
     wanted.dispatchEvent(new Event('input'));
     await frame();
+    found.tried.estimates.push(estimates());
     found.tried.moved = wanted.closest('label').querySelector('output').textContent;
     found.tried.after = await text();
     found.tried.overflow = document.documentElement.scrollWidth - document.documentElement.clientWidth;
     part.querySelector('.sliders button').click();
     await frame();
     found.tried.reset = await text();
+    found.tried.estimates.push(estimates());
   }
 
   // What paper shows, and whether the page is itself again afterwards.

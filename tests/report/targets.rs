@@ -31,13 +31,69 @@ fn targets_are_whole_in_a_browser() {
     }
 }
 
+/// Metrics follow a slider by their elasticities, whether the page can compute responses or, as of a nonlinear model, not.
+#[test]
+fn a_slider_moves_estimates_of_the_targets() {
+    let Some(browser) = browser_or_word() else { return };
+    let linear = page(&Studied::targets());
+    let nonlinear = linear.replace("const PROGRAM = ", "const PROGRAM = null;\nconst UNUSED = ");
+    assert_ne!(linear, nonlinear);
+    let data = data_of(&linear);
+    let (targets, parameters) = (&data["targets"], &data["parameters"]);
+    for page in [&linear, &nonlinear] {
+        let tried = &look(&browser, page, 1280, "light")["tried"];
+        let [before, after, reset] = [0, 1, 2].map(|at| strings(&tried["estimates"][at]));
+        assert_eq!(before.len(), targets.as_array().unwrap().len(), "{tried}");
+        assert_eq!(before, reset);
+        let labels = strings(&tried["labels"]);
+        let moved = labels.iter().position(|own| *own == "k_wheel_z").unwrap_or(0);
+        let [low, high] = [0, 1].map(|end| parameters[moved]["range"][end].as_f64().unwrap());
+        let part = 0.5 * (low + high) / parameters[moved]["design"].as_f64().unwrap();
+        for (at, (before, after)) in before.iter().zip(&after).enumerate() {
+            let expected = part.powf(data["elasticities"][at][moved].as_f64().unwrap());
+            // Both have three digits.
+            assert!(
+                (shown(after) / shown(before) / expected - 1.0).abs() < 0.01,
+                "{before}, {after}"
+            );
+        }
+    }
+}
+
+/// Elasticities of the targets of one metric have the mean that the tornado shows.
+#[test]
+fn elasticities_of_targets_are_those_of_their_metrics() {
+    let data = data_of(&page(&Studied::targets()));
+    let targets = data["targets"].as_array().unwrap();
+    for own in data["sensitivity"].as_array().unwrap() {
+        for (k, parameter) in data["parameters"].as_array().unwrap().iter().enumerate() {
+            let of = (0..targets.len()).filter(|&at| targets[at]["metric"] == own["metric"]);
+            let all: Vec<f64> = of.map(|at| data["elasticities"][at][k].as_f64().unwrap()).collect();
+            let mean = all.iter().sum::<f64>() / all.len() as f64;
+            let shown = own["elasticities"][parameter["name"].as_str().unwrap()]
+                .as_f64()
+                .unwrap();
+            assert!((mean - shown).abs() < 1e-8, "{own}: {mean}");
+        }
+    }
+}
+
+fn data_of(page: &str) -> Value {
+    let data = page.split("id=\"data\">").nth(1).unwrap();
+    serde_json::from_str(data.split("</script>").next().unwrap()).unwrap()
+}
+
+/// The number before a unit.
+fn shown(text: &str) -> f64 {
+    let number = text.split('\u{202f}').next().unwrap();
+    number.replace('−', "-").parse().unwrap()
+}
+
 /// The curves of the measured car are those of the campaign's files, all of a run delayed by the same number of samples, and that delay is the one at
 /// which the wheel agrees best with today's axle.
 #[test]
 fn the_measured_car_lies_beside_both_axles() {
-    let page = page(&Studied::targets());
-    let data = page.split("id=\"data\">").nth(1).unwrap();
-    let data: Value = serde_json::from_str(data.split("</script>").next().unwrap()).unwrap();
+    let data = data_of(&page(&Studied::targets()));
     let rides = data["rides"].as_array().unwrap();
     assert_eq!(rides.len(), 3);
     for ride in rides {

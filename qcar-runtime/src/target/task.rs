@@ -161,13 +161,13 @@ impl Knob {
 impl Coupling {
     /// By how much a design is beyond it, over the size of what is added up.
     pub fn excess(&self, design: &[f64], knobs: &[Knob]) -> f64 {
-        let sum: f64 = self
-            .factors
-            .iter()
-            .zip(design)
-            .map(|(factor, value)| factor * value)
-            .sum();
-        (sum - self.most) / self.size(knobs)
+        (self.sum(design) - self.most) / self.size(knobs)
+    }
+
+    /// The sum for a design.
+    pub fn sum(&self, design: &[f64]) -> f64 {
+        let pairs = self.factors.iter().zip(design);
+        pairs.map(|(factor, value)| factor * value).sum()
     }
 
     /// The derivative of that by a knob.

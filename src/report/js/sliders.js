@@ -17,16 +17,21 @@ function noSliders() {
 
 // Details that are closed until a reader wants them; only then are their figures made. `knobs` are `{name, unit, doc?, value,
 // range, gives}`, of which `gives` makes the values of parameters; `ratios` are `{channel, frequency, turns?, curves}`, of which
-// `curves(part)` are shown beside those that move.
-function sliders({ says, knobs, ratios }) {
+// `curves(part)` are shown beside those that move; what stands `beside` them, `{element, moved}`, hears the value of every knob.
+function sliders({ says, knobs, ratios, beside }) {
   if (view.printing) return { element: null };
-  const moving = knobs.filter((knob) => ratios.some((ratio) => moves(knob, ratio)));
+  const moving = beside ? knobs : knobs.filter((knob) => ratios.some((ratio) => moves(knob, ratio)));
   if (!moving.length) return { element: null };
   const place = h('div', { class: 'columns' });
   let charts = [];
   const given = () => Object.assign({}, ...moving.map((knob) => givenBy(knob)));
-  const moved = () => charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], given())));
-  const part = details('Try other values', h('p', {}, says), sliderList(moving, moved), place);
+  const moved = () => {
+    charts.forEach((pair, at) => redrawn(pair, polar(ratios[at], given())));
+    if (beside) beside.moved(moving.map(triedValue));
+  };
+  const shown = [sliderList(moving, moved), beside ? beside.element : null, place];
+  const part = details('Try other values', h('p', {}, says), shown);
+  if (beside) beside.moved(moving.map(triedValue));
   const draw = () => {
     if (charts.length || !part.open) return;
     const columns = ratios.map(triedFigure);
@@ -41,6 +46,10 @@ function moves({ value, range, gives }, ratio) {
   const other = range.find((end) => end !== value);
   const [found, moved] = [value, other].map((own) => polar(ratio, gives(own)).magnitude);
   return found.some((own, at) => own !== moved[at]);
+}
+
+function triedValue({ name, value }) {
+  return view.tried[name] === undefined ? value : view.tried[name];
 }
 
 function givenBy({ name, gives }) {
@@ -63,9 +72,9 @@ function sliderList(knobs, moved) {
 }
 
 function slider(knob, moved) {
-  const { name, unit, value, doc } = knob;
+  const { name, unit, doc } = knob;
   const place = places(knob);
-  const current = () => (view.tried[name] === undefined ? value : view.tried[name]);
+  const current = () => triedValue(knob);
   const shown = h('output', {});
   const input = h('input', { type: 'range', min: 0, max: STEPS, step: 1, 'aria-label': doc ? `${name}: ${doc}` : name });
   const told = () => {

@@ -20,6 +20,7 @@ pub(super) struct Contents<'a> {
     answer: &'a Answer,
     rides: Vec<Ride>,
     moves: Vec<Moved<'a>>,
+    elasticities: &'a [Vec<f64>],
 }
 
 /// A parameter of the model that a parameter of the file moves: `factor` times its value, and `constant`.
@@ -71,6 +72,7 @@ impl<'a> Contents<'a> {
             answer,
             rides: rides.collect(),
             moves: moves.collect(),
+            elasticities: &answer.elasticities,
         }
     }
 }

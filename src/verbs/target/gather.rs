@@ -30,6 +30,9 @@ pub(super) struct Answer {
     pub targets: Vec<Target>,
     /// By metric of the targets.
     pub sensitivity: Vec<Sensitivity>,
+    /// Of each target, by parameter: percent of its value at the design for one percent of the parameter. Empty where there are no derivatives.
+    #[serde(skip)]
+    pub elasticities: Vec<Vec<f64>>,
     pub front: Option<FrontAnswer>,
     pub space: Option<SpaceAnswer>,
     pub uncertainty: Option<Sureness>,
@@ -196,6 +199,7 @@ pub(super) fn gather(
             .map(|&knobs| cut(&task, space, knobs, DOTS, seed))
             .collect()
     });
+    let slopes = axle.slopes(&found.design);
     Some(Answer {
         subject: subject.name.clone(),
         model: subject.model.about().name.to_string(),
@@ -211,7 +215,10 @@ pub(super) fn gather(
             sureness.as_ref().zip(doubts),
         ),
         uncertainty: sureness,
-        sensitivity: sensitivity(plan, &axle, &found),
+        sensitivity: slopes
+            .as_ref()
+            .map_or(Vec::new(), |slopes| sensitivity(plan, slopes, &found)),
+        elasticities: slopes.map_or(Vec::new(), |slopes| elasticities(plan, &slopes, &found)),
         front: front.map(|front| front_answer(plan, &found, front)),
         space: space.map(|space| space_answer(plan, &space, cuts)),
     })
@@ -235,10 +242,23 @@ fn parameters(plan: &Plan, found: &Found, space: Option<&Space>) -> Vec<Paramete
     .collect()
 }
 
-fn sensitivity(plan: &Plan, axle: &Axle<'_>, found: &Found) -> Vec<Sensitivity> {
-    let Some(slopes) = axle.slopes(&found.design) else {
-        return Vec::new();
+fn elasticities(plan: &Plan, slopes: &[Vec<f64>], found: &Found) -> Vec<Vec<f64>> {
+    let relative = |value: f64, slopes: &[f64]| -> Vec<f64> {
+        let pairs = slopes.iter().zip(&found.design);
+        pairs.map(|(slope, own)| rounded(slope * own / value)).collect()
     };
+    let limits = plan
+        .limits
+        .iter()
+        .map(|limit| relative(found.values[limit.result], &slopes[limit.result]));
+    let couplings = plan
+        .couplings
+        .iter()
+        .map(|own| relative(own.sum(&found.design), &own.factors));
+    limits.chain(couplings).collect()
+}
+
+fn sensitivity(plan: &Plan, slopes: &[Vec<f64>], found: &Found) -> Vec<Sensitivity> {
     let mut metrics: Vec<&str> = Vec::new();
     for wanted in &plan.wanted[..plan.limits.len()] {
         if !metrics.contains(&&*wanted.metric) {
@@ -292,22 +312,14 @@ fn targets(
         .map(|&place| subject.model.about().parameters[place].name.to_string())
         .collect();
     let today: Vec<f64> = plan.knobs.iter().map(|knob| knob.today).collect();
-    let sum = |coupling: usize, design: &[f64]| {
-        let factors = &plan.couplings[coupling].factors;
-        factors
-            .iter()
-            .zip(design)
-            .map(|(factor, value)| factor * value)
-            .sum::<f64>()
-    };
     let target = |at: usize| {
         let wanted = &plan.wanted[at];
         let (sense, limit, values) = match plan.limits.get(at) {
             Some(own) => (own.sense, own.value, [plan.today[own.result], found.values[own.result]]),
             None => {
                 let coupling = at - plan.limits.len();
-                let values = [sum(coupling, &today), sum(coupling, &found.design)];
-                (Sense::AtMost, plan.couplings[coupling].most, values)
+                let own = &plan.couplings[coupling];
+                (Sense::AtMost, own.most, [own.sum(&today), own.sum(&found.design)])
             }
         };
         Target {

@@ -1,11 +1,66 @@
-// The parameters of the design, to be moved: the ratios to the road that the model declares.
+// The parameters of the design, to be moved: the metrics of the targets to first order, and of a linear model the ratios to the road that it
+// declares.
 
 // Hz.
 const TRIED_BAND = [0.5, 30];
 const TRIED_LINES = 200;
 
-function tried({ parameters, moves }) {
-  if (!PROGRAM) return noSliders();
+function tried(data) {
+  const { parameters } = data;
+  const beside = estimates(data);
+  if (!PROGRAM && !beside) return noSliders();
+  const rides =
+    'Rides are not computed in this page: metrics are estimated by their elasticities at the design, so trust small changes only. qcar sensitivity with --set NAME=VALUE computes them.';
+  const knobs = parameters.map((own) => ({ ...own, value: own.design, gives: () => ({}) }));
+  if (!PROGRAM) return sliders({ says: rides, knobs, ratios: [], beside });
+  return sliders({ ...responses(data), beside, says: [beside ? `${rides} ` : null, responses(data).says] });
+}
+
+// Each target with its value at the design, and where its elasticities put it for other values.
+function estimates({ targets, parameters, elasticities }) {
+  if (!elasticities.length) return null;
+  const columns = [
+    ['target', 'text'],
+    ['run', 'text'],
+    ['limit', 'number'],
+    ['design', 'number'],
+    ['your values', 'number'],
+    ['', 'text'],
+  ];
+  const places = targets.map(() => [h('span', { class: 'tried' }), h('span', {})]);
+  const rows = targets.map((own, at) => [
+    own.metric,
+    own.run ? runName(own.run) : '',
+    limitOf(own),
+    quantity(own.design, own.unit),
+    ...places[at],
+  ]);
+  const moved = (values) =>
+    targets.forEach((own, at) => {
+      const [value, word] = places[at];
+      const estimate = own.design * estimated(elasticities[at], values, parameters);
+      value.textContent = quantity(estimate, own.unit);
+      word.textContent = beyond(own, estimate) <= SLACK ? 'met' : 'missed';
+    });
+  return { element: table('Estimates of the targets', columns, rows), moved };
+}
+
+// Beyond a limit by no more than this part of it, a target counts as met.
+const SLACK = 5e-5;
+
+function beyond({ sense, limit }, value) {
+  return ((sense === 'at_most' ? 1 : -1) * (value - limit)) / (Math.abs(limit) || 1);
+}
+
+// By which factor a metric changes: a power of each parameter that has kept its sign, else a line.
+function estimated(elasticities, values, parameters) {
+  return values.reduce((factor, value, k) => {
+    const part = parameters[k].design === 0 ? 1 : value / parameters[k].design;
+    return factor * (part > 0 ? part ** elasticities[k] : 1 + elasticities[k] * (part - 1));
+  }, 1);
+}
+
+function responses({ parameters, moves }) {
   const given = (place, value) =>
     Object.fromEntries(
       moves.filter((own) => own.knob === place).map((own) => [own.parameter, own.factor * value + own.constant]),
@@ -14,7 +69,7 @@ function tried({ parameters, moves }) {
   const [from, to] = TRIED_BAND;
   const frequency = [...Array(TRIED_LINES).keys()].map((line) => from * (to / from) ** (line / (TRIED_LINES - 1)));
   const channels = PROGRAM.about.channels.filter(({ denominator }) => denominator.row === null);
-  return sliders({
+  return {
     says: [
       'The linear response, computed in this page: ',
       key('tried', 'with your values'),
@@ -34,5 +89,5 @@ function tried({ parameters, moves }) {
       ];
       return { ...ratio, curves };
     }),
-  });
+  };
 }

@@ -21,7 +21,7 @@ function wanted(data) {
     const cells = [
       own.metric,
       own.run ? runName(own.run) : '',
-      `${own.sense === 'at_most' ? '≤' : '≥'} ${quantity(own.limit, own.unit)}`,
+      limitOf(own),
       h('span', { class: 'before' }, quantity(own.today, own.unit)),
       h('span', { class: 'after' }, quantity(own.design, own.unit)),
       ...(data.uncertainty ? [interval(own), own.holds === null ? '–' : percent(own.holds, 3)] : []),
@@ -51,6 +51,10 @@ function wanted(data) {
     data.uncertainty ? h('p', {}, doubts(data.uncertainty)) : null,
   );
   return { element };
+}
+
+function limitOf({ sense, limit, unit }) {
+  return `${sense === 'at_most' ? '≤' : '≥'} ${quantity(limit, unit)}`;
 }
 
 function judgedWord(own) {
