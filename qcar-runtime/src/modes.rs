@@ -3,6 +3,7 @@
 //! The equations of motion are linearised at rest, `dx = A x`; a mode is a pair of complex eigenvalues of A with its
 //! eigenvector. See Ewins, "Modal Testing", 2nd ed., section 2.5, for modes of nonproportional damping.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use nalgebra::{Complex, DMatrix, DVector};
@@ -77,8 +78,13 @@ fn damping(root: Complex<f64>) -> f64 {
 ///
 /// The likeliest pairs are taken first, down to one half, below which a mode is hardly the same any more.
 pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
+    let mut points = BTreeMap::new();
+    let [one, other] = [first, second].map(|modes| {
+        let moved = modes.iter().map(|mode| Moved::of(mode, &mut points));
+        moved.collect::<Vec<_>>()
+    });
     let all = (0..first.len()).flat_map(|a| (0..second.len()).map(move |b| (a, b)));
-    let mut likely: Vec<_> = all.map(|(a, b)| (likeness(&first[a], &second[b]), a, b)).collect();
+    let mut likely: Vec<_> = all.map(|(a, b)| (likeness(&one[a], &other[b]), a, b)).collect();
     likely.sort_by(|one, other| other.0.total_cmp(&one.0));
     let mut pairs: Vec<(usize, usize)> = Vec::new();
     for (likeness, a, b) in likely {
@@ -90,20 +96,44 @@ pub fn pairs(first: &[Mode], second: &[Mode]) -> Vec<(usize, usize)> {
     pairs
 }
 
+/// The shape of a mode by the numbers of its points, so that shapes are compared without comparing names.
+struct Moved {
+    shape: Vec<(usize, Complex<f64>)>,
+    by_point: Vec<Option<Complex<f64>>>,
+}
+
+impl Moved {
+    /// Of a mode; a point that is not in `points` gets the next number.
+    fn of<'m>(mode: &'m Mode, points: &mut BTreeMap<(&'m str, &'m str), usize>) -> Self {
+        let (mut shape, mut by_point) = (Vec::new(), Vec::new());
+        for part in &mode.shape {
+            let next = points.len();
+            let point = *points
+                .entry((part.location.as_str(), part.axis.as_str()))
+                .or_insert(next);
+            if by_point.len() <= point {
+                by_point.resize(point + 1, None);
+            }
+            by_point[point] = Some(part.amplitude);
+            shape.push((point, part.amplitude));
+        }
+        Moved { shape, by_point }
+    }
+
+    fn at(&self, point: usize) -> Option<Complex<f64>> {
+        self.by_point.get(point).copied().flatten()
+    }
+}
+
 /// The modal assurance criterion `|a·b|² / (|a|² |b|²)` over the points that both models have (Allemang, "The Modal
 /// Assurance Criterion", Sound and Vibration 37 (2003)), times how much of both modes these points are: a vibration of
 /// what only one model has is like none of the other.
-fn likeness(first: &Mode, second: &Mode) -> f64 {
-    let shared = |one: &Part, among: &Mode| {
-        let mut others = among.shape.iter();
-        let same = others.find(|other| (&other.location, &other.axis) == (&one.location, &one.axis));
-        same.map(|other| other.amplitude)
+fn likeness(first: &Moved, second: &Moved) -> f64 {
+    let square = |of: &Moved, among: &Moved| {
+        let common = of.shape.iter().filter(|(point, _)| among.at(*point).is_some());
+        common.map(|(_, amplitude)| amplitude.norm_sqr()).sum::<f64>()
     };
-    let square = |of: &Mode, among: &Mode| {
-        let common = of.shape.iter().filter(|part| shared(part, among).is_some());
-        common.map(|part| part.amplitude.norm_sqr()).sum::<f64>()
-    };
-    let product = |part: &Part| Some(part.amplitude.conj() * shared(part, second)?);
+    let product = |&(point, amplitude): &(usize, Complex<f64>)| Some(amplitude.conj() * second.at(point)?);
     let product: Complex<f64> = first.shape.iter().filter_map(product).sum();
     let whole = (square(first, first) * square(second, second)).sqrt();
     let common = (square(first, second) * square(second, first)).sqrt();

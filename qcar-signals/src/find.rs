@@ -14,6 +14,9 @@ pub enum Wanted<'a> {
     All,
     /// Those that one of these patterns may mean, as [`Recording::find`] takes them.
     These(&'a [String]),
+    /// None. If the format interleaves its channels, so that one is not read without going through all, a summary of each is made
+    /// instead ([`Samples::made_summary`](crate::samples::Samples::made_summary)).
+    Summaries,
 }
 
 impl Wanted<'_> {
@@ -21,6 +24,7 @@ impl Wanted<'_> {
     pub(crate) fn has(&self, group: &str, name: &str) -> bool {
         match self {
             Wanted::All => true,
+            Wanted::Summaries => false,
             Wanted::These(patterns) => patterns
                 .iter()
                 .any(|pattern| is_called(pattern, group, name) || is_meant(pattern, group, name)),
@@ -36,6 +40,7 @@ impl Wanted<'_> {
     pub(crate) fn may_begin(&self, beginning: &str) -> bool {
         match self {
             Wanted::All => true,
+            Wanted::Summaries => false,
             Wanted::These(patterns) => patterns.iter().any(|pattern| {
                 let plain = pattern.split(['*', '?']).next().unwrap_or("");
                 plain.starts_with(beginning) || (plain.len() < pattern.len() && beginning.starts_with(plain))

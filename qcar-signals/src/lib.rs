@@ -6,6 +6,8 @@
 //! The modules stand in the order of the data; a file uses only what is declared above it.
 
 pub mod error;
+// Range and means of samples that are not kept.
+pub mod summary;
 // Samples in the type in which they are stored.
 pub mod samples;
 // A channel, whatever the format of its file.

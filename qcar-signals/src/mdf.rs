@@ -23,7 +23,9 @@ use std::collections::HashSet;
 use crate::bytes::Bytes;
 use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
+use crate::samples::Samples;
 use crate::signal::{Recording, Signal, Source, TimeBase, evenly};
+use crate::summary::Summary;
 
 use conversion::Conversion;
 use data::Data;
@@ -95,6 +97,28 @@ struct Channel {
     place: Place,
 }
 
+/// What is made of the stored values of a channel as its records are read.
+enum Column<'c> {
+    /// They are kept as they are stored.
+    Kept(Vec<f64>),
+    /// A summary of the physical values; the last are those of a piece.
+    Summarised(&'c Conversion, Summary, Vec<f64>),
+}
+
+impl Column<'_> {
+    fn add(&mut self, field: &Field, piece: &Piece) {
+        match self {
+            Column::Kept(values) => field.values(piece, values),
+            Column::Summarised(conversion, summary, values) => {
+                values.clear();
+                field.values(piece, values);
+                conversion.apply(values);
+                summary.add(values.iter().copied());
+            }
+        }
+    }
+}
+
 /// Records of a group, one after the other.
 struct Records<'a> {
     data: &'a Data<'a>,
@@ -139,12 +163,20 @@ impl<'a> Records<'a> {
         })
     }
 
-    /// The stored values of several fields. The records are read once, and channel by channel while they are in the cache.
-    fn columns(&self, fields: &[&Field]) -> Read<Vec<Vec<f64>>> {
-        let capacity = if self.data.is_there() { self.count } else { 0 };
-        let mut columns: Vec<Vec<f64>> = fields.iter().map(|_| Vec::with_capacity(capacity)).collect();
-        if fields.is_empty() || self.count == 0 {
-            return Ok(columns);
+    /// A column of values that are to be kept.
+    fn kept<'c>(&self) -> Column<'c> {
+        Column::Kept(Vec::with_capacity(if self.data.is_there() { self.count } else { 0 }))
+    }
+
+    /// A column of values that are to be summarised.
+    fn summarised<'c>(&self, conversion: &'c Conversion) -> Column<'c> {
+        Column::Summarised(conversion, Summary::new(self.count), Vec::new())
+    }
+
+    /// Fills columns with the values of their fields. The records are read once, and channel by channel while they are in the cache.
+    fn fill(&self, columns: &mut [(&Field, Column)]) -> Read<()> {
+        if columns.is_empty() || self.count == 0 {
+            return Ok(());
         }
         let mut first = 0;
         self.data
@@ -156,12 +188,11 @@ impl<'a> Records<'a> {
                     first,
                     count: bytes.len() / self.stride,
                 };
-                for (column, field) in columns.iter_mut().zip(fields) {
-                    field.values(&piece, column);
+                for (field, column) in &mut *columns {
+                    column.add(field, &piece);
                 }
                 first += piece.count;
-            })?;
-        Ok(columns)
+            })
     }
 }
 
@@ -195,30 +226,44 @@ fn add_group(
             "channels that lie beside each other",
         ));
     }
-    let is_wanted = |channel: &Channel| channel.role == Role::Values && wanted.has(group, &channel.name);
+    let summarise = matches!(wanted, Wanted::Summaries);
+    let is_wanted = |channel: &Channel| channel.role == Role::Values && (summarise || wanted.has(group, &channel.name));
     let is_any = channels.iter().any(is_wanted);
     let is_read =
         |channel: &Channel| is_wanted(channel) || (is_any && channel.role == Role::Time && !channel.is_even());
-    let readable = |channel: &Channel| channel.field.is_ok() && channel.conversion.is_ok();
-    let fields = channels
-        .iter()
-        .filter(|channel| is_read(channel) && readable(channel))
-        .filter_map(|channel| channel.field.as_ref().ok());
-    let mut columns = records.columns(&fields.collect::<Vec<_>>())?.into_iter();
-    let mut of_each: Vec<Vec<f64>> = Vec::new();
-    for channel in &channels {
-        let column = match is_read(channel) && readable(channel) {
-            true => columns.next().unwrap_or_default(),
-            false => Vec::new(),
-        };
-        of_each.push(column);
+    // The index of a channel beside what is read of it.
+    let (mut places, mut columns) = (Vec::new(), Vec::new());
+    for (place, channel) in channels.iter().enumerate().filter(|(_, channel)| is_read(channel)) {
+        if let (Ok(field), Ok(conversion)) = (&channel.field, &channel.conversion) {
+            let column = match channel.role == Role::Values && summarise {
+                true => records.summarised(conversion),
+                false => records.kept(),
+            };
+            places.push(place);
+            columns.push((field, column));
+        }
+    }
+    records.fill(&mut columns)?;
+    let mut of_each: Vec<Samples> = channels.iter().map(|_| Samples::default()).collect();
+    let mut stored_times = vec![Vec::new(); channels.len()];
+    for (place, (_, column)) in places.into_iter().zip(columns) {
+        let channel = &channels[place];
+        match (column, &channel.conversion) {
+            (Column::Summarised(_, summary, _), _) => of_each[place] = Samples::summarised(summary),
+            (Column::Kept(values), Ok(conversion)) if channel.role == Role::Values => {
+                let mut values = values;
+                conversion.apply(&mut values);
+                of_each[place] = values.into();
+            }
+            (Column::Kept(values), _) => stored_times[place] = values,
+        }
     }
     let mut time = TimeBase::Unknown;
-    for (master, column) in channels.iter().zip(&mut of_each) {
+    for (master, stored) in channels.iter().zip(stored_times) {
         if master.role != Role::Time || !is_any {
             continue;
         }
-        match times(master, std::mem::take(column)) {
+        match times(master, stored) {
             Ok(base) => time = base,
             Err(why) => {
                 let all = channels.iter().filter(|channel| channel.role == Role::Values);
@@ -229,15 +274,14 @@ fn add_group(
             }
         }
     }
-    for (channel, stored) in channels.into_iter().zip(of_each) {
+    for (channel, samples) in channels.into_iter().zip(of_each) {
         match (channel.role, &channel.field, &channel.conversion) {
             (Role::Time, ..) => {}
             (Role::Values, Ok(_), Ok(conversion)) => {
-                let (samples, labels) = conversion.apply(stored);
                 recording.signals.push(Signal {
                     time: time.clone(),
-                    samples: samples.into(),
-                    labels,
+                    samples,
+                    labels: conversion.labels(),
                     source: Source {
                         group: group.into(),
                         place: channel.place,
@@ -265,7 +309,7 @@ impl Channel {
 }
 
 /// The times of a group in seconds from what is stored, or why it has none.
-fn times(master: &Channel, stored: Vec<f64>) -> Result<TimeBase, String> {
+fn times(master: &Channel, mut stored: Vec<f64>) -> Result<TimeBase, String> {
     let (field, conversion) = match (&master.field, &master.conversion) {
         (Ok(field), Ok(conversion)) => (field, conversion),
         (Err(why), _) | (_, Err(why)) => return Err(why.clone()),
@@ -273,6 +317,6 @@ fn times(master: &Channel, stored: Vec<f64>) -> Result<TimeBase, String> {
     if let (Field::Index, Conversion::Linear { offset, factor }) = (field, conversion) {
         return evenly(*offset, *factor, master.place.clone()).map_err(|fault| fault.found);
     }
-    let (times, _) = conversion.apply(stored);
-    TimeBase::from_times(times).map_err(|(at, found)| format!("{found} in sample {}", at + 1))
+    conversion.apply(&mut stored);
+    TimeBase::from_times(stored).map_err(|(at, found)| format!("{found} in sample {}", at + 1))
 }

@@ -12,6 +12,7 @@ use crate::error::{Fault, Place, Read};
 use crate::find::Wanted;
 use crate::samples::Samples;
 use crate::signal::{Recording, Signal, Source, evenly};
+use crate::summary::Summary;
 
 const BLOCK: u64 = 512;
 /// Of a parameter and its name.
@@ -36,7 +37,9 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
         let name = name.map_or_else(|| format!("channel {}", channel + 1), unquoted);
         let scale = header.scale(channel, shape.kind).map_err(|fault| fault.of(&name))?;
         let unit = header.text(&format!("UNITS.CHAN_{}", channel + 1));
-        if wanted.has("", &name) {
+        if matches!(wanted, Wanted::Summaries) {
+            columns.push(Column::summarised(channel, &shape, scale));
+        } else if wanted.has("", &name) {
             columns.push(Column::new(channel, &shape, scale));
         }
         recording.signals.push(Signal {
@@ -59,49 +62,99 @@ pub(crate) fn read(file: Bytes, wanted: &Wanted) -> Read<Recording> {
     Ok(recording)
 }
 
-/// The samples of a channel as far as they are read, as they are stored.
+/// The samples of a channel as far as they are read.
 struct Column {
     channel: usize,
-    stored: Stored,
+    read: Samplewise,
 }
 
-enum Stored {
+enum Samplewise {
+    /// As they are stored, with the factor of physical values.
     Shorts(Vec<i16>, f64),
     Singles(Vec<f32>),
+    /// Summarised: kind and factor of the samples, and how many are still to come.
+    Summarised {
+        summary: Summary,
+        kind: Kind,
+        scale: f64,
+        left: usize,
+    },
 }
 
 impl Column {
     fn new(channel: usize, shape: &Shape, scale: f64) -> Self {
         let count = shape.groups() * shape.points_of_group;
-        let stored = match shape.kind {
-            Kind::Short => Stored::Shorts(Vec::with_capacity(count), scale),
-            Kind::Single => Stored::Singles(Vec::with_capacity(count)),
+        let read = match shape.kind {
+            Kind::Short => Samplewise::Shorts(Vec::with_capacity(count), scale),
+            Kind::Single => Samplewise::Singles(Vec::with_capacity(count)),
         };
-        Column { channel, stored }
+        Column { channel, read }
+    }
+
+    fn summarised(channel: usize, shape: &Shape, scale: f64) -> Self {
+        let read = Samplewise::Summarised {
+            summary: Summary::new(shape.samples),
+            kind: shape.kind,
+            scale,
+            left: shape.samples,
+        };
+        Column { channel, read }
     }
 
     /// Adds the samples that begin every `stride` bytes of `data`.
     fn add(&mut self, data: &[u8], stride: usize, order: Order) {
-        match (&mut self.stored, order) {
-            (Stored::Shorts(own, _), Order::Little) => own.extend(heads(data, stride).map(i16::from_le_bytes)),
-            (Stored::Shorts(own, _), Order::Big) => own.extend(heads(data, stride).map(i16::from_be_bytes)),
-            (Stored::Singles(own), Order::Little) => own.extend(heads(data, stride).map(f32::from_le_bytes)),
-            (Stored::Singles(own), Order::Big) => own.extend(heads(data, stride).map(f32::from_be_bytes)),
+        match &mut self.read {
+            Samplewise::Shorts(own, _) => add_shorts(own, data, stride, order),
+            Samplewise::Singles(own) => add_singles(own, data, stride, order),
+            Samplewise::Summarised {
+                summary,
+                kind: Kind::Short,
+                scale,
+                left,
+            } => {
+                let mut own = Vec::new();
+                add_shorts(&mut own, data, stride, order);
+                own.truncate(*left);
+                *left -= own.len();
+                summary.add(own.iter().map(|&stored| f64::from(stored) * *scale));
+            }
+            Samplewise::Summarised { summary, left, .. } => {
+                let mut own = Vec::new();
+                add_singles(&mut own, data, stride, order);
+                own.truncate(*left);
+                *left -= own.len();
+                summary.add(own.iter().map(|&stored| stored.into()));
+            }
         }
     }
 
     /// The first of them.
     fn samples(self, count: usize) -> Samples {
-        match self.stored {
-            Stored::Shorts(mut own, scale) => {
+        match self.read {
+            Samplewise::Summarised { summary, .. } => Samples::summarised(summary),
+            Samplewise::Shorts(mut own, scale) => {
                 own.truncate(count);
                 Samples::shorts(own, scale)
             }
-            Stored::Singles(mut own) => {
+            Samplewise::Singles(mut own) => {
                 own.truncate(count);
                 Samples::singles(own)
             }
         }
+    }
+}
+
+fn add_shorts(to: &mut Vec<i16>, data: &[u8], stride: usize, order: Order) {
+    match order {
+        Order::Little => to.extend(heads(data, stride).map(i16::from_le_bytes)),
+        Order::Big => to.extend(heads(data, stride).map(i16::from_be_bytes)),
+    }
+}
+
+fn add_singles(to: &mut Vec<f32>, data: &[u8], stride: usize, order: Order) {
+    match order {
+        Order::Little => to.extend(heads(data, stride).map(f32::from_le_bytes)),
+        Order::Big => to.extend(heads(data, stride).map(f32::from_be_bytes)),
     }
 }
 

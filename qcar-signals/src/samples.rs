@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use crate::summary::Summary;
+
 /// Physical values; not a number where the file has no valid one.
 #[derive(Clone, Debug)]
 pub struct Samples(Stored);
@@ -12,6 +14,8 @@ enum Stored {
     Singles(Vec<f32>),
     /// To be taken times a factor.
     Shorts(Vec<i16>, f64),
+    /// They were summarised as they were read, and none is kept.
+    Summarised(Box<Summary>),
 }
 
 impl Samples {
@@ -25,12 +29,18 @@ impl Samples {
         Samples(Stored::Shorts(stored, factor))
     }
 
+    /// None, of which a summary was made as they were read.
+    pub(crate) fn summarised(summary: Summary) -> Self {
+        Samples(Stored::Summarised(Box::new(summary)))
+    }
+
     /// How many there are.
     pub fn len(&self) -> usize {
         match &self.0 {
             Stored::Doubles(own) => own.len(),
             Stored::Singles(own) => own.len(),
             Stored::Shorts(own, _) => own.len(),
+            Stored::Summarised(_) => 0,
         }
     }
 
@@ -48,6 +58,7 @@ impl Samples {
             Stored::Doubles(own) => own[index],
             Stored::Singles(own) => own[index].into(),
             Stored::Shorts(own, factor) => f64::from(own[index]) * factor,
+            Stored::Summarised(_) => panic!("no samples are kept of a channel that was summarised"),
         }
     }
 
@@ -64,10 +75,34 @@ impl Samples {
         of.map(|index| self.at(index))
     }
 
+    /// The summary that was made of them as they were read, without them.
+    pub fn made_summary(&self) -> Option<&Summary> {
+        match &self.0 {
+            Stored::Summarised(summary) => Some(summary),
+            Stored::Doubles(_) | Stored::Singles(_) | Stored::Shorts(..) => None,
+        }
+    }
+
+    /// Their range and course.
+    pub fn summary(&self) -> Summary {
+        match &self.0 {
+            Stored::Summarised(summary) => (**summary).clone(),
+            Stored::Doubles(own) => summary(own.iter().copied()),
+            Stored::Singles(own) => summary(own.iter().map(|&sample| sample.into())),
+            Stored::Shorts(own, factor) => summary(own.iter().map(|&sample| f64::from(sample) * factor)),
+        }
+    }
+
     /// All of them in double precision.
     pub fn to_vec(&self) -> Vec<f64> {
         self.iter().collect()
     }
+}
+
+fn summary(samples: impl ExactSizeIterator<Item = f64>) -> Summary {
+    let mut summary = Summary::new(samples.len());
+    summary.add(samples);
+    summary
 }
 
 /// None.

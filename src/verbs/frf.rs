@@ -225,9 +225,11 @@ impl<'a> Excited<'a> {
     fn derivatives(&self, ratio: &Ratio, part: fn(&Complex<f64>) -> f64) -> Ordered<Vec<f64>> {
         let about = self.model.about();
         let row = |k: usize| {
-            let seen = ratio.jacobian.iter().find(|(parameter, _)| *parameter == k);
-            let still = || vec![0.0; self.frequency.len()];
-            let row = seen.map_or_else(still, |(_, row)| row.iter().map(part).collect());
+            let seen = ratio.jacobian.binary_search_by_key(&k, |(parameter, _)| *parameter);
+            let row = match seen {
+                Ok(at) => ratio.jacobian[at].1.iter().map(part).collect(),
+                Err(_) => vec![0.0; self.frequency.len()],
+            };
             (about.parameters[k].name.to_string(), row)
         };
         let leaders = (0..about.parameters.len()).filter(|&k| self.values.leader(k) == k);

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use super::inspect::{self, Contents};
+use super::inspect::{self, Contents, Look};
 use super::new::campaign::{make_head, seen_from};
 use crate::catalogue;
 use crate::completion;
@@ -50,7 +50,7 @@ struct Measured {
     file: PathBuf,
     /// As the campaign must name it.
     seen: String,
-    contents: Contents<Option<kind::Driven>>,
+    contents: Contents<kind::Driven>,
 }
 
 /// Does it.
@@ -58,11 +58,15 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     must_be_new(&arguments.out)?;
     let model = catalogue::load(&arguments.model)?;
     let name = name_of(&arguments.out)?;
+    let pads = Look {
+        is_in: &|signal| kind::Driven::is_in(signal, model.about()),
+        take: &|signal| kind::Driven::of(signal, model.about()),
+    };
     let mut files = Vec::new();
     for file in &arguments.files {
         files.push(Measured {
             seen: seen_from(&arguments.out, &file.display().to_string(), false),
-            contents: Contents::of(file, |signal| kind::Driven::of(signal, model.about()))?,
+            contents: Contents::of(file, &pads)?,
             file: file.clone(),
         });
     }

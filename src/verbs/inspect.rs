@@ -17,7 +17,7 @@ mod course;
 // A file read channel by channel.
 mod contents;
 
-pub(super) use contents::Contents;
+pub(super) use contents::{Contents, Look};
 pub(super) use course::Course;
 
 /// Significant digits of what is printed for people.
@@ -40,7 +40,7 @@ pub struct Arguments {
 
 /// Does it.
 pub fn run(arguments: &Arguments) -> Result<String, Failure> {
-    let contents = Contents::of(&arguments.file, |_| ())?;
+    let contents = Contents::summary(&arguments.file)?;
     Ok(match arguments.format {
         Format::Text => prose(&text(&contents)),
         Format::Json => json::line(&Inspected::of(&contents)),

@@ -189,10 +189,11 @@ impl Patch {
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
         let forms = self.own_forms();
+        let before = visible::look(model.clone());
         let applies = |place: &Place| {
             forms
                 .iter()
-                .any(|form| form.made(model, &base, &roles, place, values).is_ok())
+                .any(|form| form.made(&before, &base, &roles, place, values).is_ok())
         };
         let places = place::fitting(&base, &roles, &self.effect.pattern).into_iter();
         places.filter(applies).map(|place| place.label).collect()
@@ -205,8 +206,11 @@ impl Patch {
         let base = Base::of(model);
         let roles = Roles::of(&base, values);
         let places = place::fitting(&base, &roles, &self.effect.pattern);
+        let before = visible::look(model.clone());
         let at = |place: &Place| -> Vec<Patched> {
-            let made = forms.iter().map(|form| form.made(model, &base, &roles, place, values));
+            let made = forms
+                .iter()
+                .map(|form| form.made(&before, &base, &roles, place, values));
             made.filter_map(Result::ok).collect()
         };
         places.iter().flat_map(at).collect()
@@ -238,7 +242,7 @@ impl Patch {
             let mistake = effects::no_such_place(name.span, &name.text, place, model, &labels);
             return Err(self.report(refused(mistake)));
         };
-        self.made(model, &base, &roles, place, values)
+        self.made(&visible::look(model.clone()), &base, &roles, place, values)
     }
 
     fn report(&self, diagnostics: Refused) -> Report {
@@ -248,6 +252,7 @@ impl Patch {
         }
     }
 
+    /// The model with the effect; `before` is the model without it, of which is known what its outputs tell apart.
     fn made(
         &self,
         before: &Checked,
@@ -264,9 +269,7 @@ impl Patch {
         };
         let model = check_text(text, &|_, path| Err(format!("{path} is not part of a patched model")))?;
         let model = visible::look(model);
-        let seen_before = visible::look(before.clone());
-        let seen_before = seen_before.unseen();
-        if model.unseen().iter().any(|unseen| !seen_before.contains(unseen)) {
+        if model.unseen().iter().any(|unseen| !before.unseen().contains(unseen)) {
             let mut report = model.warnings().clone();
             report
                 .diagnostics

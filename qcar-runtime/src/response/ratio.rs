@@ -1,5 +1,7 @@
 //! Ratios as complex numbers, for people and for other programs.
 
+use std::collections::BTreeMap;
+
 use super::Response;
 use super::parameters::Values;
 use super::signal::{SignalError, Term, locate};
@@ -47,18 +49,15 @@ pub fn between<M: Model + ?Sized>(
     let (n, d) = (signal(response, above), signal(response, below));
     let value: Vec<_> = n.iter().zip(&d).map(|(n, d)| n / d).collect();
     let leaders = (0..values.as_slice().len()).filter(|&k| response.has_jacobian() && values.leader(k) == k);
+    let (above, below) = (slopes(response, above, values), slopes(response, below, values));
     let jacobian = leaders.filter_map(|leader| {
-        let (dn, dd) = (
-            slope(response, above, values, leader),
-            slope(response, below, values, leader),
-        );
+        let (dn, dd) = (above.get(&leader), below.get(&leader));
         (dn.is_some() || dd.is_some()).then(|| {
-            let at =
-                |slope: &Option<Vec<Complex<f64>>>, line: usize| slope.as_ref().map_or(Complex::default(), |s| s[line]);
+            let at = |slope: Option<&Vec<Complex<f64>>>, line: usize| slope.map_or(Complex::default(), |s| s[line]);
             (
                 leader,
                 (0..value.len())
-                    .map(|i| (at(&dn, i) - value[i] * at(&dd, i)) / d[i])
+                    .map(|i| (at(dn, i) - value[i] * at(dd, i)) / d[i])
                     .collect(),
             )
         })
@@ -77,24 +76,32 @@ fn signal<M: Model + ?Sized>(response: &Response<'_, M>, term: Term) -> Vec<Comp
     differentiate(values, term.power, response.omega())
 }
 
-/// The derivative of a signal along a parameter and all that are tied to it; `None` where it is zero throughout.
-fn slope<M: Model + ?Sized>(
+/// The derivatives of a signal, each along a parameter that leads its ties and all that are tied to it. Parameters on which it does not
+/// depend are left out.
+fn slopes<M: Model + ?Sized>(
     response: &Response<'_, M>,
     term: Term,
     values: &Values,
-    leader: usize,
-) -> Option<Vec<Complex<f64>>> {
-    let mut total: Option<Vec<Complex<f64>>> = None;
+) -> BTreeMap<usize, Vec<Complex<f64>>> {
+    let mut totals: BTreeMap<usize, Vec<Complex<f64>>> = BTreeMap::new();
+    if !response.has_jacobian() {
+        return totals;
+    }
     for (entry, &(row, parameter)) in response.layout().jacobian.iter().enumerate() {
-        if term.row != Some(usize::from(row)) || values.leader(usize::from(parameter)) != leader {
+        if term.row != Some(usize::from(row)) {
             continue;
         }
-        let sum = total.get_or_insert_with(|| vec![Complex::default(); response.omega().len()]);
-        for (sum, value) in sum.iter_mut().zip(pairs(response.entry(entry))) {
+        let total = totals
+            .entry(values.leader(usize::from(parameter)))
+            .or_insert_with(|| vec![Complex::default(); response.omega().len()]);
+        for (sum, value) in total.iter_mut().zip(pairs(response.entry(entry))) {
             *sum += value;
         }
     }
-    total.map(|total| differentiate(total, term.power, response.omega()))
+    let turned = totals
+        .into_iter()
+        .map(|(leader, total)| (leader, differentiate(total, term.power, response.omega())));
+    turned.collect()
 }
 
 fn pairs((re, im): (&[f64], &[f64])) -> Vec<Complex<f64>> {

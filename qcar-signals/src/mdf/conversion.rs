@@ -27,8 +27,8 @@ impl Conversion {
         factor: 1.0,
     };
 
-    /// Physical values; those that have a text stay as they are, with the texts beside them.
-    pub(super) fn apply(&self, mut values: Vec<f64>) -> (Vec<f64>, Vec<(f64, String)>) {
+    /// Turns stored into physical values; those that have a text stay as they are.
+    pub(super) fn apply(&self, values: &mut [f64]) {
         let mut each = |rule: &dyn Fn(f64) -> f64| values.iter_mut().for_each(|value| *value = rule(*value));
         match self {
             Conversion::Linear { offset, factor } if (*offset, *factor) == (0.0, 1.0) => {}
@@ -44,9 +44,16 @@ impl Conversion {
                 let within = ranges.iter().find(|(from, to, _)| (*from..=*to).contains(&x));
                 within.map_or(*otherwise, |range| range.2)
             }),
-            Conversion::Labels(labels) => return (values, labels.clone()),
+            Conversion::Labels(_) => {}
         }
-        (values, Vec::new())
+    }
+
+    /// The texts of values.
+    pub(super) fn labels(&self) -> Vec<(f64, String)> {
+        match self {
+            Conversion::Labels(labels) => labels.clone(),
+            _ => Vec::new(),
+        }
     }
 }
 

@@ -65,6 +65,11 @@ fn add_data_group(
     match groups.as_slice() {
         [only] if !only.variable_length => groups.remove(0).add_to(recording, &data, id_size, wanted),
         _ => {
+            // Records that were stored as they came are sorted in memory, so they are not gone through all at once.
+            let wanted = match wanted {
+                Wanted::Summaries => &Wanted::These(&[]),
+                of_some => of_some,
+            };
             for group in groups.iter_mut().filter(|group| !group.is_wanted(wanted)) {
                 group.cycles = 0;
             }

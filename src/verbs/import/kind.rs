@@ -85,6 +85,11 @@ pub(super) struct Driven {
 }
 
 impl Driven {
+    /// Whether a channel is taken for a pad.
+    pub fn is_in(signal: &Signal, about: &About) -> bool {
+        Guess::of(signal, about).is_ok_and(|guess| guess.drives)
+    }
+
     /// Of a channel that is taken for a pad and has a clock.
     pub fn of(signal: &Signal, about: &About) -> Option<Self> {
         let guess = Guess::of(signal, about).ok().filter(|guess| guess.drives)?;

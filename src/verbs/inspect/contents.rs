@@ -1,4 +1,4 @@
-//! A file gone through channel by channel: of a long recording only a part of the samples is in memory at a time.
+//! What is in a file: of a long recording only a part of the samples is in memory at a time.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -14,26 +14,49 @@ use qcar_signals::signal::{Recording, Signal, TimeBase};
 use super::course::Course;
 use crate::failure::Failure;
 
-/// Bytes of a file whose samples are in memory at a time. A file that is longer is gone through once for each such part of it.
+/// Bytes of a file whose samples are in memory at a time. If channels are not summarised as the file is gone through once, a longer file is
+/// gone through once for each such part of it.
 const AT_ONCE: u64 = 128 << 20;
 
 /// What is in a file, without the samples, and what was found in those.
 pub(in crate::verbs) struct Contents<T> {
     /// Its signals have no samples and no times any more.
     pub recording: Recording,
-    found: Vec<(Course, T)>,
+    found: Vec<(Course, Option<T>)>,
 }
 
-impl<T> Contents<T> {
-    /// Of a file, and of each channel also what `look` finds in its samples.
+/// What is looked for in the samples of some channels.
+pub(in crate::verbs) struct Look<'l, T> {
+    /// Whether a channel has it, which is asked without samples.
+    pub is_in: &'l dyn Fn(&Signal) -> bool,
+    /// Takes it from the samples, all of which are in memory.
+    pub take: &'l dyn Fn(&Signal) -> Option<T>,
+}
+
+impl Contents<()> {
+    /// Of a file, whose samples are only summarised.
     ///
     /// # Errors
     /// A file that cannot be read.
-    pub fn of(file: &Path, look: impl Fn(&Signal) -> T) -> Result<Self, Failure> {
+    pub fn summary(file: &Path) -> Result<Self, Failure> {
+        let nothing = Look {
+            is_in: &|_| false,
+            take: &|_| None,
+        };
+        Self::of(file, &nothing)
+    }
+}
+
+impl<T> Contents<T> {
+    /// Of a file, and what is found in the samples of channels.
+    ///
+    /// # Errors
+    /// A file that cannot be read.
+    pub fn of(file: &Path, look: &Look<T>) -> Result<Self, Failure> {
         Self::in_parts(file, AT_ONCE, look)
     }
 
-    fn in_parts(file: &Path, at_once: u64, look: impl Fn(&Signal) -> T) -> Result<Self, Failure> {
+    fn in_parts(file: &Path, at_once: u64, look: &Look<T>) -> Result<Self, Failure> {
         let content = bounded::measured_file(file, "correct the path, or put the file there")?;
         let read = |wanted: &Wanted| {
             let file = file.into();
@@ -41,12 +64,20 @@ impl<T> Contents<T> {
         };
         let parts = content.length().div_ceil(at_once) as usize;
         if parts <= 1 {
-            return Ok(Self::of_whole(read(&Wanted::All)?, &look));
+            return Ok(Self::of_whole(read(&Wanted::All)?, look));
         }
-        let listed = read(&Wanted::These(&[]))?;
+        let listed = read(&Wanted::Summaries)?;
         // Of a format that is read from the first byte to the last, all is there now.
         if listed.signals.iter().any(|signal| !signal.samples.is_empty()) {
-            return Ok(Self::of_whole(listed, &look));
+            return Ok(Self::of_whole(listed, look));
+        }
+        let at_a_time = listed.signals.len().div_ceil(parts).max(1);
+        if listed
+            .signals
+            .iter()
+            .all(|signal| signal.samples.made_summary().is_some())
+        {
+            return Self::of_summarised(listed, at_a_time, read, look);
         }
         let patterns = patterns(&listed.signals);
         let mut contents = Contents {
@@ -56,15 +87,41 @@ impl<T> Contents<T> {
             },
             found: Vec::new(),
         };
-        for names in patterns.chunks(patterns.len().div_ceil(parts).max(1)) {
+        for names in patterns.chunks(at_a_time) {
             let names = names.concat();
             let wanted = Wanted::These(&names);
-            contents.add(read(&wanted)?, &wanted, &look);
+            contents.add(read(&wanted)?, &wanted, look);
         }
         Ok(contents)
     }
 
-    fn of_whole(mut recording: Recording, look: &impl Fn(&Signal) -> T) -> Self {
+    /// Of channels that were summarised: only those are read again in whose samples something is looked for.
+    fn of_summarised(
+        mut recording: Recording,
+        at_a_time: usize,
+        read: impl Fn(&Wanted) -> Result<Recording, Failure>,
+        look: &Look<T>,
+    ) -> Result<Self, Failure> {
+        let asked: Vec<usize> = (0..recording.signals.len())
+            .filter(|&at| (look.is_in)(&recording.signals[at]))
+            .collect();
+        let mut found: Vec<(Course, Option<T>)> = recording
+            .signals
+            .iter_mut()
+            .map(|signal| (given_back(signal), None))
+            .collect();
+        for places in asked.chunks(at_a_time) {
+            let names: Vec<String> = places.iter().map(|&at| recording.signals[at].full_name()).collect();
+            let again = read(&Wanted::These(&names))?;
+            for &at in places {
+                let signal = again.signals.iter().find(|own| is_same(own, &recording.signals[at]));
+                found[at].1 = signal.and_then(look.take);
+            }
+        }
+        Ok(Contents { recording, found })
+    }
+
+    fn of_whole(mut recording: Recording, look: &Look<T>) -> Self {
         let found = recording.signals.iter_mut().map(|signal| looked_into(signal, look));
         let found = found.collect();
         Contents { recording, found }
@@ -77,17 +134,17 @@ impl<T> Contents<T> {
     }
 
     /// What was found in a channel of the recording.
-    pub fn found(&self, signal: &Signal) -> Option<&(Course, T)> {
+    pub fn found(&self, signal: &Signal) -> Option<&(Course, Option<T>)> {
         let at = self.recording.signals.iter().position(|own| ptr::eq(own, signal))?;
         self.found.get(at)
     }
 
     /// Adds the wanted channels of a recording that are not there yet, and what turned out to be none as its samples were read.
-    fn add(&mut self, part: Recording, wanted: &Wanted, look: &impl Fn(&Signal) -> T) {
+    fn add(&mut self, part: Recording, wanted: &Wanted, look: &Look<T>) {
         let before = self.recording.signals.len();
         for mut signal in part.signals {
-            let is_same = |own: &Signal| own.name == signal.name && own.source == signal.source;
-            if wanted.means(&signal) && !self.recording.signals[..before].iter().any(is_same) {
+            let mut known = self.recording.signals[..before].iter();
+            if wanted.means(&signal) && !known.any(|own| is_same(own, &signal)) {
                 self.found.push(looked_into(&mut signal, look));
                 self.recording.signals.push(signal);
             }
@@ -106,19 +163,33 @@ fn patterns(listed: &[Signal]) -> Vec<[String; 2]> {
     distinct.map(|name| [name.clone(), format!("{name}[*")]).collect()
 }
 
+fn is_same(one: &Signal, other: &Signal) -> bool {
+    one.name == other.name && one.source == other.source
+}
+
 /// What a channel holds, whose samples are given back.
-fn looked_into<T>(signal: &mut Signal, look: &impl Fn(&Signal) -> T) -> (Course, T) {
-    let found = (Course::of(signal), look(signal));
+fn looked_into<T>(signal: &mut Signal, look: &Look<T>) -> (Course, Option<T>) {
+    let taken = if (look.is_in)(signal) {
+        (look.take)(signal)
+    } else {
+        None
+    };
+    (given_back(signal), taken)
+}
+
+/// The course of a channel, whose samples are given back.
+fn given_back(signal: &mut Signal) -> Course {
+    let course = Course::of(signal);
     signal.samples = Samples::default();
     signal.time = TimeBase::Unknown;
-    found
+    course
 }
 
 #[cfg(test)]
 mod tests {
     use std::path::Path;
 
-    use super::{AT_ONCE, Contents, Signal};
+    use super::{AT_ONCE, Contents, Look, Signal};
 
     /// One channel or two at a time, of every format that may be long.
     #[test]
@@ -140,8 +211,11 @@ mod tests {
         ] {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
             let told = |at_once: u64| {
-                let bits = |signal: &Signal| signal.samples.iter().map(f64::to_bits).collect();
-                let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, bits).unwrap();
+                let bits = Look {
+                    is_in: &|_| true,
+                    take: &|signal| Some(signal.samples.iter().map(f64::to_bits).collect()),
+                };
+                let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, &bits).unwrap();
                 let found = contents.found.iter().map(|(course, samples)| {
                     let numbers = [
                         course.min,

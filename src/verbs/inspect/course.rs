@@ -1,12 +1,9 @@
 //! What is told of a channel when its samples are gone.
 
-use qcar_signals::samples::Samples;
 use qcar_signals::signal::Signal;
+use qcar_signals::summary::Summary;
 
 use crate::doubt::{Does, doubt};
-
-/// Columns of a sparkline.
-const SPARKS: usize = 16;
 
 /// The range and the course of a channel, in its unit.
 pub(in crate::verbs) struct Course {
@@ -29,29 +26,22 @@ pub(in crate::verbs) struct Course {
 }
 
 impl Course {
-    /// Of a channel whose samples are there.
+    /// Of a channel whose samples are there or were summarised.
     pub fn of(signal: &Signal) -> Self {
-        let mut sums = Sums::default();
-        let valid = signal.samples.iter().filter(|value| value.is_finite());
-        valid.for_each(|value| sums.add(value));
-        let mean = |sum: f64| (sums.count > 0).then(|| sum / sums.count as f64);
-        let average = mean(sums.values);
-        let does = average.map(|mean| Does {
-            mean,
-            min: sums.min,
-            max: sums.max,
-        });
+        let summary = signal.samples.summary();
+        let mean = summary.mean();
+        let Summary { min, max, .. } = summary;
         Course {
-            samples: signal.samples.len(),
-            missing: signal.samples.len() - sums.count,
+            samples: summary.samples,
+            missing: summary.samples - summary.valid,
             rate: signal.time.rate(),
             start: signal.time.start(),
-            min: average.map(|_| sums.min),
-            max: average.map(|_| sums.max),
-            mean: average,
-            rms: mean(sums.squares).map(f64::sqrt),
-            sparkline: sparkline(&signal.samples),
-            doubt: doubt(&signal.unit, does),
+            min: mean.map(|_| min),
+            max: mean.map(|_| max),
+            mean,
+            rms: summary.rms(),
+            sparkline: sparkline(&summary),
+            doubt: doubt(&signal.unit, mean.map(|mean| Does { mean, min, max })),
         }
     }
 
@@ -61,47 +51,9 @@ impl Course {
     }
 }
 
-/// What one pass over the samples gives; a long recording has a billion of them.
-struct Sums {
-    count: usize,
-    min: f64,
-    max: f64,
-    values: f64,
-    squares: f64,
-}
-
-impl Default for Sums {
-    fn default() -> Self {
-        Sums {
-            count: 0,
-            min: f64::INFINITY,
-            max: f64::NEG_INFINITY,
-            values: 0.0,
-            squares: 0.0,
-        }
-    }
-}
-
-impl Sums {
-    fn add(&mut self, value: f64) {
-        self.count += 1;
-        self.min = self.min.min(value);
-        self.max = self.max.max(value);
-        self.values += value;
-        self.squares += value * value;
-    }
-}
-
-/// The course of a channel in a few characters: the means of as many parts, from the lowest to the highest.
-fn sparkline(samples: &Samples) -> String {
-    let part = samples.len().div_ceil(SPARKS).max(1);
-    let means = (0..samples.len()).step_by(part).map(|from| {
-        let valid = samples
-            .range(from..samples.len().min(from + part))
-            .filter(|value| value.is_finite());
-        valid.clone().sum::<f64>() / valid.count() as f64
-    });
-    let means: Vec<f64> = means.collect();
+/// The course of a channel in a few characters: the means of its parts, from the lowest to the highest.
+fn sparkline(summary: &Summary) -> String {
+    let means: Vec<f64> = summary.part_means().collect();
     let low = means.iter().copied().fold(f64::INFINITY, f64::min);
     let high = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let level = |mean: &f64| match mean.is_nan() {

@@ -104,15 +104,17 @@ impl Rows {
 
     /// Sum of squares including the prior, and the step to its minimum; `None` if that is not finite.
     fn solve(&self, begun: &[(String, f64)], unknown: &[(String, f64)]) -> (f64, Option<DVector<f64>>) {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let count = unknown.len();
         // Scaled by the prior standard deviations, so that positions and velocities are comparable.
         let sigma = |k: usize| unknown[k].1;
-        let mut normal = DMatrix::from_fn(count, count, |i, j| {
-            sigma(i) * sigma(j) * dot(&self.columns[i], &self.columns[j])
-        });
-        let mut slope = DVector::from_fn(count, |k, _| sigma(k) * dot(&self.columns[k], &self.residual));
-        let mut cost = dot(&self.residual, &self.residual);
+        let residual = DVector::from_column_slice(&self.residual);
+        let jacobian = DMatrix::from_fn(residual.len(), count, |sample, k| sigma(k) * self.columns[k][sample]);
+        // A product of two matrices runs in blocks, which the products of pairs of columns do not: the normal equations would take
+        // most of the time of a long chain.
+        let transposed = jacobian.transpose();
+        let mut normal = &transposed * &jacobian;
+        let mut slope = &transposed * &residual;
+        let mut cost = residual.norm_squared();
         for (k, (_, value)) in begun.iter().enumerate() {
             normal[(k, k)] += 1.0;
             slope[k] -= value / sigma(k);

@@ -78,15 +78,17 @@ impl<'a> FreeResponse<'a> {
     fn step(&self, row: &mut [f64], halvings: u8) {
         let parts = 1_u32 << halvings;
         let h = self.length / f64::from(parts);
+        let (mut term, mut next) = (vec![0.0; row.len()], vec![0.0; row.len()]);
         for _ in 0..parts {
-            let mut term = row.to_vec();
+            term.copy_from_slice(row);
             for power in 1..=4 {
-                let mut next = vec![0.0; row.len()];
+                let factor = h / f64::from(power);
+                next.fill(0.0);
                 for (entry, value) in &self.a {
-                    next[usize::from(entry.column)] += h / f64::from(power) * value * term[usize::from(entry.row)];
+                    next[usize::from(entry.column)] += factor * value * term[usize::from(entry.row)];
                 }
                 row.iter_mut().zip(&next).for_each(|(row, next)| *row += next);
-                term = next;
+                std::mem::swap(&mut term, &mut next);
             }
         }
     }
