@@ -58,7 +58,7 @@ pub(crate) fn left(evidence: &Evidence, [before, after]: [&Explanation; 2]) -> V
             .filter(|(_, series)| series.sensor == *sensor && series.kind == kind);
         for (place, series) in own {
             let parts = if kind.complex() { 2 } else { 1 };
-            let residuals = of.gap.residuals[place].chunks(parts).zip(&series.sigma);
+            let residuals = of.misfit.residuals[place].chunks(parts).zip(&series.sigma);
             let scale = 1.0 / parts as f64;
             missed += residuals
                 .map(|(own, sigma)| scale * own.iter().map(|r| (r * sigma).powi(2)).sum::<f64>())

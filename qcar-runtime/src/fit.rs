@@ -45,18 +45,18 @@ pub(crate) use search::starts;
 pub use setup::Setup;
 
 use crate::model::Model;
-use crate::progress::{Told, UNTOLD};
+use crate::progress::{NO_PROGRESS, OnProgress};
 use search::Search;
 
 impl<M: Model + ?Sized> Setup<'_, M> {
     /// Searches from all starts and reports the best minimum with its error bars.
     pub fn fit(&self) -> Fit {
-        self.fit_telling(UNTOLD)
+        self.fit_telling(NO_PROGRESS)
     }
 
-    /// The same; `told` hears search by search how far it is.
-    pub fn fit_telling(&self, told: Told<'_>) -> Fit {
-        let search = Search::run(self, told);
+    /// The same; `on_progress` hears search by search how far it is.
+    pub fn fit_telling(&self, on_progress: OnProgress<'_>) -> Fit {
+        let search = Search::run(self, on_progress);
         let uncertainty = uncertainty::estimate(self, &search.best);
         report::report(self, &search, &uncertainty)
     }

@@ -17,7 +17,7 @@ use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::ParameterFit;
 use qcar_runtime::fit::{Fit, Level, Plan, Setup};
 use qcar_runtime::model::{About, Model};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 use qcar_runtime::transmissibility::Options;
@@ -236,7 +236,8 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     refuse_unseen(&model, &plan)?;
     let channels = each_once(choices.channels.iter().cloned());
     let wanted = (!channels.is_empty()).then_some(channels.as_slice());
-    let measure = |told: Told<'_>| levels(&campaign, model.about(), wanted, &Options::default(), told);
+    let measure =
+        |on_progress: OnProgress<'_>| levels(&campaign, model.about(), wanted, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let setup = Setup::new(&*model, &plan, &levels)?;
     model.check_inertias(setup.values())?;
@@ -245,11 +246,11 @@ pub fn fit(folder: &std::path::Path, choices: &Choices) -> Result<Fitted, Failur
     campaign.notices.extend(out_of_range(model.about(), setup.values()));
     let profiled = profiled(&plan, model.about(), setup.free(), &choices.profile)?;
     let searches = format!("{}: fitting {}, search", campaign.name, model.about().name);
-    let fit = while_counting(searches, |told| setup.fit_telling(told));
+    let fit = while_counting(searches, |on_progress| setup.fit_telling(on_progress));
     let profiles = profiles(&setup, &fit, &profiled, &campaign.name);
     let resamples = choices.bootstrap.filter(|_| fit.converged);
     let bootstrap = resamples.map(|resamples| {
-        let repeat = |told: Told<'_>| setup.bootstrap(&fit, resamples as usize, told);
+        let repeat = |on_progress: OnProgress<'_>| setup.bootstrap(&fit, resamples as usize, on_progress);
         while_counting(format!("{}: bootstrap, fit", campaign.name), repeat)
     });
     let mut fitted = Fitted {
@@ -295,7 +296,9 @@ fn profiles(setup: &Setup<'_, dyn Model + '_>, fit: &Fit, names: &[String], camp
     if names.is_empty() || !fit.converged {
         return Vec::new();
     }
-    while_counting(format!("{campaign}: profile"), |told| setup.profiles(fit, names, told))
+    while_counting(format!("{campaign}: profile"), |on_progress| {
+        setup.profiles(fit, names, on_progress)
+    })
 }
 
 /// # Errors

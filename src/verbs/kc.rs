@@ -6,7 +6,7 @@ use clap::Args;
 use qcar_runtime::campaign::{Campaign, Run, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::kc::{self, Estimate, KcError, SineSamples, Slope, cycle, sines};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::roles::{OnRig, Roles};
 use serde::Serialize;
@@ -101,8 +101,8 @@ pub(crate) fn has_curves(campaign: &Campaign) -> bool {
 /// # Errors
 /// A campaign without K&C curves, and a curve without gradients.
 pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError> {
-    let mut found = while_counting(format!("{}: K&C curve", campaign.name), |told| {
-        of_curves(campaign, told)
+    let mut found = while_counting(format!("{}: K&C curve", campaign.name), |on_progress| {
+        of_curves(campaign, on_progress)
     })?;
     if found.is_empty() {
         let expected = "a run of kind bounce, dynamic_bounce or longitudinal";
@@ -135,7 +135,7 @@ pub(crate) fn gradients(campaign: &Campaign) -> Result<Vec<Gradient>, InputError
 }
 
 /// Those of all curves, in the order of the tests.
-fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, InputError> {
+fn of_curves(campaign: &Campaign, on_progress: OnProgress<'_>) -> Result<Vec<Gradient>, InputError> {
     let of = |wanted: fn(&Test) -> bool| campaign.runs.iter().filter(move |run| wanted(&run.test)).collect();
     let bounce: Vec<&Run> = of(|test| matches!(test, Test::Bounce));
     let dynamic: Vec<&Run> = of(|test| matches!(test, Test::DynamicBounce { .. }));
@@ -143,15 +143,15 @@ fn of_curves(campaign: &Campaign, told: Told<'_>) -> Result<Vec<Gradient>, Input
     let all = bounce.len() + dynamic.len() + longitudinal.len();
     let mut found = Vec::new();
     for (done, run) in bounce.iter().enumerate() {
-        told(done, all);
+        on_progress(done, all);
         found.extend(quasi_static(campaign, run, "bounce")?);
     }
-    told(bounce.len(), all);
+    on_progress(bounce.len(), all);
     if !dynamic.is_empty() {
         found.extend(vertical_sines(campaign, &dynamic)?);
     }
     for (done, run) in longitudinal.iter().enumerate() {
-        told(bounce.len() + dynamic.len() + done, all);
+        on_progress(bounce.len() + dynamic.len() + done, all);
         found.extend(quasi_static(campaign, run, "longitudinal")?);
     }
     Ok(found)

@@ -120,8 +120,14 @@ fn of_channels(arguments: &Arguments, choices: &Choices) -> Result<Planned, Fail
         .map(|own| &*own.name)
         .collect();
     check_names(&names, &arguments.parameters)?;
-    let found = while_counting(work(&fitted.campaign), |told| {
-        prospects(&*fitted.model, &plan, &fitted.levels, &arguments.parameters, told)
+    let found = while_counting(work(&fitted.campaign), |on_progress| {
+        prospects(
+            &*fitted.model,
+            &plan,
+            &fitted.levels,
+            &arguments.parameters,
+            on_progress,
+        )
     })?;
     let (about, values) = (fitted.model.about(), fitted.values());
     Ok(planned(
@@ -146,8 +152,14 @@ fn of_runs(campaign: Campaign, arguments: &Arguments, choices: &Choices) -> Resu
         fitted.bench().clone().with_every_link_alone(),
         &fitted.found.explanation.refit,
     );
-    let found = while_counting(work(&fitted.campaign), |told| {
-        posterior::prospects(bench.model(), refit, &fitted.evidence, &arguments.parameters, told)
+    let found = while_counting(work(&fitted.campaign), |on_progress| {
+        posterior::expected(
+            bench.model(),
+            refit,
+            &fitted.evidence,
+            &arguments.parameters,
+            on_progress,
+        )
     });
     let found =
         found.map_err(|error| Failure::Input(format!("{}: {error}\n", fitted.campaign.manifest().display())))?;

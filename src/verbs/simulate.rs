@@ -6,7 +6,7 @@ use clap::{Args, ValueEnum};
 use clap_complete::engine::ArgValueCompleter;
 use qcar_runtime::campaign::{Campaign, Test};
 use qcar_runtime::error::{InputError, Place, Problem};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, SimulateError, Variant, rides, tyre};
 
@@ -286,7 +286,7 @@ pub(crate) fn drive(
         variant,
     };
     let drives: Vec<Drive> = cleats.iter().map(Cleat::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let rides = while_counting(format!("{}: ride", campaign.name), simulate);
     let rides = checked(cleats, rides)?;
     let compared = compared::compare(model.about(), &campaign.roles, cleats, &rides)?;

@@ -17,7 +17,7 @@ use super::uncertainty::{self, Line};
 use crate::least_squares::{Outcome, Problem, minimize};
 use crate::mean::{deviation, mean};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::random::SplitMix;
 use nalgebra::DVector;
 use serde::Serialize;
@@ -54,15 +54,15 @@ pub struct ParameterBootstrap {
 const ENDS: [f64; 2] = [0.025, 0.975];
 
 impl<M: Model + ?Sized> Setup<'_, M> {
-    /// Repeats a fit so many times. Each resample depends on the plan's seed and its own number alone; one by one `told` hears how far it
+    /// Repeats a fit so many times. Each resample depends on the plan's seed and its own number alone; one by one `on_progress` hears how far it
     /// is.
-    pub fn bootstrap(&self, fit: &Fit, resamples: usize, told: Told<'_>) -> Bootstrap {
+    pub fn bootstrap(&self, fit: &Fit, resamples: usize, on_progress: OnProgress<'_>) -> Bootstrap {
         let minimum = self.minimum_of(fit);
         let drawn = Drawn::new(self, &minimum);
         let numbers: Vec<u64> = (0..resamples as u64).collect();
         let found = progress::map_with(
             &numbers,
-            told,
+            on_progress,
             || self.cost(),
             |cost, &number| {
                 let random = SplitMix::stream(self.plan.seed, number);

@@ -5,14 +5,14 @@ use super::observation::{Difference, Level, Observation, Pair};
 use crate::campaign::{Campaign, Channel as Sensor, History, Quantity, Run, Side, Test};
 use crate::error::{InputError, Place, Problem};
 use crate::model::{self, About, Channel, Signal, SignalKind};
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use crate::transmissibility::{Options, Point, Related, Transmissibility, points};
 use nalgebra::Complex;
 
 /// Measures the channels of every sweep and time history of a campaign that excites the model.
 ///
 /// `wanted` names the channels to fit, as `near_to_far` of two measured places; without it they are those over the
-/// model's force elements (see [`across_links`]). Run by run `told` hears how far it is.
+/// model's force elements (see [`across_links`]). Run by run `on_progress` hears how far it is.
 ///
 /// # Errors
 /// What [`Campaign::history`] and the estimator of transmissibilities find wrong with a run, runs that record no excitation of the
@@ -22,14 +22,14 @@ pub fn levels(
     about: &About,
     wanted: Option<&[String]>,
     options: &Options,
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Result<Vec<Level>, InputError> {
     let runs: Vec<&Run> = campaign
         .runs
         .iter()
         .filter(|run| matches!(run.test, Test::Sweep(_) | Test::TimeHistory(_)))
         .collect();
-    let measured = progress::map(&runs, told, |run| level(campaign, run, about, wanted, options));
+    let measured = progress::map(&runs, on_progress, |run| level(campaign, run, about, wanted, options));
     let (mut levels, mut problems) = (Vec::new(), Vec::new());
     for result in measured {
         match result {

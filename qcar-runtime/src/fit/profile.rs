@@ -13,7 +13,7 @@ use super::uncertainty::{self, Uncertainty};
 use crate::least_squares::Outcome;
 use crate::least_squares::profile::{Profiled, profile};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 use serde::Serialize;
 
 /// The 95 % quantile of the chi-square distribution with one degree of freedom.
@@ -40,9 +40,9 @@ pub struct ParameterProfile {
 }
 
 impl<M: Model + ?Sized> Setup<'_, M> {
-    /// Profiles of fitted parameters by name; of a name that was not fitted there is none. Parameter by parameter `told` hears
+    /// Profiles of fitted parameters by name; of a name that was not fitted there is none. Parameter by parameter `on_progress` hears
     /// how far it is.
-    pub fn profiles(&self, fit: &Fit, names: &[String], told: Told<'_>) -> Vec<ParameterProfile> {
+    pub fn profiles(&self, fit: &Fit, names: &[String], on_progress: OnProgress<'_>) -> Vec<ParameterProfile> {
         let about = &self.model.about().parameters;
         let minimum = self.minimum_of(fit);
         let uncertainty = uncertainty::estimate(self, &minimum);
@@ -52,7 +52,7 @@ impl<M: Model + ?Sized> Setup<'_, M> {
             .collect();
         progress::map_with(
             &wanted,
-            told,
+            on_progress,
             || self.cost(),
             |cost, &variable| {
                 let unit = unit(&uncertainty, &minimum, variable);

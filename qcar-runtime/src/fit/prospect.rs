@@ -14,7 +14,7 @@ use super::plan::Plan;
 use super::setup::Setup;
 use crate::error::InputError;
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 
 /// The present standard errors, and further measurements.
 #[derive(Clone, Debug, PartialEq)]
@@ -41,7 +41,7 @@ pub struct Prospect {
 }
 
 /// The information that each further measurement would add. The start values of `plan` must be the fitted values; `matter` names
-/// the parameters that count (all, if empty). `told` receives the progress.
+/// the parameters that count (all, if empty). `on_progress` receives the progress.
 ///
 /// # Errors
 /// Those of [`super::Setup::new`].
@@ -50,7 +50,7 @@ pub fn prospects<M: Model + ?Sized>(
     plan: &Plan,
     levels: &[Level],
     matter: &[String],
-    told: Told<'_>,
+    on_progress: OnProgress<'_>,
 ) -> Result<Prospects, InputError> {
     let about = model.about();
     let values = Setup::new(model, plan, levels)?.values;
@@ -65,7 +65,7 @@ pub fn prospects<M: Model + ?Sized>(
     let now = Said::by(model, plan, levels, &asked)?;
     let before = now.log_information(None, &counted);
     let all = candidates(model, &values, levels);
-    let further = progress::map(&all, told, |own| {
+    let further = progress::map(&all, on_progress, |own| {
         let more = Said::by(model, plan, &own.added, &asked)?;
         Ok(Prospect {
             kind: own.kind,

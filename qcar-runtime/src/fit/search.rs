@@ -8,7 +8,7 @@ use super::cost::Cost;
 use super::setup::Setup;
 use crate::least_squares::{Bounds, Options, Outcome, minimize};
 use crate::model::Model;
-use crate::progress::{self, Told};
+use crate::progress::{self, OnProgress};
 
 /// What ends a local search: tight enough that searches to one minimum agree on it.
 pub(super) const OPTIONS: Options = Options {
@@ -52,10 +52,15 @@ impl<M: Model + ?Sized> Setup<'_, M> {
 }
 
 impl Search {
-    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, told: Told<'_>) -> Self {
+    pub fn run<M: Model + ?Sized>(setup: &Setup<'_, M>, on_progress: OnProgress<'_>) -> Self {
         let points = starts(&setup.start(), &setup.bounds, setup.plan.starts.max(1), setup.plan.seed);
         // A thread's searches share the room for responses and their logarithms.
-        let outcomes = progress::map_with(&points, told, || setup.cost(), |cost, start| setup.search(cost, start));
+        let outcomes = progress::map_with(
+            &points,
+            on_progress,
+            || setup.cost(),
+            |cost, start| setup.search(cost, start),
+        );
         let evaluations = outcomes.iter().map(|outcome| outcome.evaluations).sum();
         let minima = distinct(&outcomes);
         // Without any converged search the first one is reported, with why it stopped.

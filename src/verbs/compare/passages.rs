@@ -3,7 +3,7 @@
 use qcar_runtime::campaign::{Campaign, Quantity, Role};
 use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::model::{self, SignalKind};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::roles::Roles;
 use qcar_runtime::simulate::{Car, Cleat, Drive, Ride, Settings, Standard, Variant, rides, tyre_of};
 
@@ -143,7 +143,7 @@ fn rides_of(side: &Side, runs: &[Run]) -> Result<Vec<Ride>, InputError> {
         variant: Variant::Complete,
     };
     let drives: Vec<Drive> = runs.iter().map(Run::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let all = while_counting(format!("{}: ride", side.name), simulate);
     let checked = runs
         .iter()

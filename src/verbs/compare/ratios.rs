@@ -11,7 +11,7 @@ use qcar_runtime::fit::measure::levels;
 use qcar_runtime::fit::observation::Observation;
 use qcar_runtime::fit::quality::{Quality, quality};
 use qcar_runtime::model::Channel;
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::transmissibility::Options;
 use serde::Serialize;
 
@@ -116,9 +116,9 @@ fn swept<'a>(side: &'a Side, campaign: &Campaign) -> Result<Swept<'a>, InputErro
     if side.model.about().linear {
         return Ok(Swept::at_rest(&*side.model, &side.values));
     }
-    while_counting(swept_by(&campaign.name, &*side.model), |told| {
+    while_counting(swept_by(&campaign.name, &*side.model), |on_progress| {
         let evidence = Evidence::from_campaign(campaign, side.model.about())?;
-        Ok(Swept::new(&*side.model, &side.values, &evidence, told))
+        Ok(Swept::new(&*side.model, &side.values, &evidence, on_progress))
     })
 }
 
@@ -143,7 +143,7 @@ pub(super) fn modelled(sides: &[Side; 2], frequency: &[f64]) -> Vec<Ratio> {
 /// A run that cannot be read.
 pub(super) fn of_campaign(sides: &[Side; 2], campaign: &Campaign) -> Result<Vec<Ratio>, InputError> {
     let about = sides[0].model.about();
-    let measure = |told: Told<'_>| levels(campaign, about, None, &Options::default(), told);
+    let measure = |on_progress: OnProgress<'_>| levels(campaign, about, None, &Options::default(), on_progress);
     let levels = while_counting(format!("{}: transmissibilities of run", campaign.name), measure)?;
     let models = [swept(&sides[0], campaign)?, swept(&sides[1], campaign)?];
     let [first, second] = sides.each_ref().map(|side| &side.model.about().excitations);

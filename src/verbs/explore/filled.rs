@@ -87,7 +87,7 @@ fn write<M: Model + ?Sized>(
     let each = ensemble.rows_of_set() as u64;
     let block = (ROWS_OF_THREAD * rayon::current_num_threads()).div_ceil(each as usize) as u64;
     let showing = Showing::new();
-    showing.tell(format!("{}: row", ensemble.model.about().name));
+    showing.step(format!("{}: row", ensemble.model.about().name));
     let mut failed = Failed::default();
     let mut at = sets.start;
     while at < sets.end {
@@ -101,7 +101,7 @@ fn write<M: Model + ?Sized>(
         sink.append(new)?;
         failed.count(at, &found, columns.len());
         at = until;
-        showing.far(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
+        showing.count(((at - first) * each) as usize, ((sets.end - first) * each) as usize);
     }
     Ok(failed)
 }

@@ -11,16 +11,16 @@ use std::time::Instant;
 
 use qcar_runtime::campaign::Campaign;
 use qcar_runtime::discover::Evidence;
-use qcar_runtime::discover::answer::News;
+use qcar_runtime::discover::answer::Update;
 use qcar_runtime::discover::candidate::Workshop;
 use qcar_runtime::discover::posterior::{Explanation, Refit, Setting};
-use qcar_runtime::discover::select::{self, Alone};
+use qcar_runtime::discover::select::{self, MultiStart};
 use qcar_runtime::error::InputError;
 use qcar_runtime::fit::profile::ParameterProfile;
 use qcar_runtime::fit::report::{Bound, NoError, ParameterFit};
 use qcar_runtime::least_squares::information::Unseen;
 use qcar_runtime::model::{About, Model};
-use qcar_runtime::progress::{self, Told};
+use qcar_runtime::progress::{self, OnProgress};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::spelling;
 
@@ -40,7 +40,7 @@ pub(crate) struct Nonlinear {
     pub(crate) evidence: Evidence,
     pub(crate) parameters: Vec<ParameterFit>,
     starts: usize,
-    pub(crate) found: Alone,
+    pub(crate) found: MultiStart,
     profiles: Vec<ParameterProfile>,
     seconds: f64,
 }
@@ -90,14 +90,14 @@ pub(crate) fn fit(mut campaign: Campaign, choices: &Choices) -> Result<Nonlinear
     let setting = given(&plan.parameters, &campaign);
     check_profiled(&setting, &about, &choices.profile)?;
     let showing = Showing::new();
-    showing.tell(format!("{}: reading", campaign.name));
+    showing.step(format!("{}: reading", campaign.name));
     let evidence = Evidence::from_campaign(&campaign, &about)?;
-    let told = |news: News<'_>| {
-        if let News::Doing(what) = news {
-            showing.tell(format!("{}: {what}", campaign.name));
+    let on_update = |update: Update<'_>| {
+        if let Update::Step(what) = update {
+            showing.step(format!("{}: {what}", campaign.name));
         }
     };
-    let found = select::alone(Box::new(bench.clone()), &setting, &evidence, plan.starts, &told);
+    let found = select::fit_from_starts(Box::new(bench.clone()), &setting, &evidence, plan.starts, &on_update);
     drop(showing);
     let found = found.map_err(|error| Failure::Input(format!("{}: {error}\n", campaign.manifest().display())))?;
     campaign.notices.extend(evidence.notices.iter().cloned());
@@ -153,7 +153,7 @@ fn profiles(model: &dyn Model, refit: &Refit, evidence: &Evidence, names: &[Stri
         return Vec::new();
     }
     let fitted = refit.fitted_of(evidence);
-    let all = |told: Told<'_>| progress::map(&wanted, told, |&k| refit.profile(model, &fitted, k));
+    let all = |on_progress: OnProgress<'_>| progress::map(&wanted, on_progress, |&k| refit.profile(model, &fitted, k));
     while_counting("profile".into(), all)
 }
 

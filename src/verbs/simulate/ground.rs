@@ -8,7 +8,7 @@ use qcar_runtime::error::{InputError, Place, Problem};
 use qcar_runtime::mean::deviation;
 use qcar_runtime::metric::Course;
 use qcar_runtime::model::{About, Quantity, Signal, SignalKind};
-use qcar_runtime::progress::Told;
+use qcar_runtime::progress::OnProgress;
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::simulate::{Car, Drive, Ride, Settings, Variant, rides, tyre};
 use qcar_signals::mdf::write::Channel;
@@ -112,7 +112,7 @@ pub(super) fn roll(
         variant,
     };
     let drives: Vec<Drive<'_>> = courses.iter().map(Course::drive).collect();
-    let simulate = |told: Told<'_>| rides(&car, &drives, &Settings::default(), told);
+    let simulate = |on_progress: OnProgress<'_>| rides(&car, &drives, &Settings::default(), on_progress);
     let ridden = while_counting(format!("{}: road", campaign.name), simulate);
     let mut rolled = Rolled {
         campaign: campaign.name.clone(),

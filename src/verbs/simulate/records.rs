@@ -3,8 +3,8 @@
 use qcar_runtime::campaign::{Campaign, Role, Run, Test};
 use qcar_runtime::discover::Evidence;
 use qcar_runtime::discover::noise::Nuisance;
-use qcar_runtime::discover::observe::{Misread, PredictError, Stimulus, replayed};
-use qcar_runtime::discover::posterior::beginnings;
+use qcar_runtime::discover::observe::{PredictError, Stimulus, TestConditions, replayed};
+use qcar_runtime::discover::posterior::estimate_initial_states;
 use qcar_runtime::error::InputError;
 use qcar_runtime::model::Model;
 use qcar_runtime::response::parameters::Values;
@@ -88,10 +88,10 @@ type Signals = Vec<(Point, Vec<f64>)>;
 fn simulated(model: &dyn Model, values: &Values, evidence: &Evidence) -> Result<Vec<Signals>, PredictError> {
     let nuisance = Nuisance::of(evidence);
     let right = vec![0.0; nuisance.len()];
-    let mut misread = Misread::default();
-    beginnings(model, values, (&nuisance, &right), evidence, Role::Fit, &mut misread)?;
+    let mut conditions = TestConditions::default();
+    estimate_initial_states(model, values, (&nuisance, &right), evidence, Role::Fit, &mut conditions)?;
     let runs = 0..evidence.runs.len();
-    runs.map(|run| replayed(model, values, &misread, evidence, run))
+    runs.map(|run| replayed(model, values, &conditions, evidence, run))
         .collect()
 }
 

@@ -97,8 +97,8 @@ impl<'a> Contents<'a> {
             records: records(study),
             correlations: &study.fitted.fit.all_correlations,
             gap_map: GapMap {
-                before: patches(study, &discovery.before.gap.tiles),
-                after: patches(study, &discovery.after.gap.tiles),
+                before: patches(study, &discovery.before.misfit.tiles),
+                after: patches(study, &discovery.after.misfit.tiles),
             },
             kappa: explanations(study),
             refitted: refitted(study),

@@ -2,7 +2,7 @@
 
 use qcar_dsl::difference::{Difference, difference};
 use qcar_runtime::campaign::Test;
-use qcar_runtime::discover::Kappa;
+use qcar_runtime::discover::MissingStiffness;
 use qcar_runtime::discover::observe::Kind;
 use qcar_runtime::discover::posterior::Tile;
 use serde::Serialize;
@@ -118,7 +118,7 @@ const SHOWN: usize = 8;
 
 /// The places that explain the gap of the sweeps best; none without sweeps.
 pub fn explanations(of: &Study) -> Vec<Explanation> {
-    let explanation = |(site, kappa): (Site, &Kappa)| Explanation {
+    let explanation = |(site, kappa): (Site, &MissingStiffness)| Explanation {
         place: site.name(),
         sensor: site.sensor.is_some(),
         ceiling: rounded(kappa.ceiling),
@@ -128,7 +128,7 @@ pub fn explanations(of: &Study) -> Vec<Explanation> {
     sites(&of.answer).into_iter().take(SHOWN).map(explanation).collect()
 }
 
-fn stiffness(of: &qcar_runtime::discover::locate::KappaRun) -> Stiffness {
+fn stiffness(of: &qcar_runtime::discover::locate::RunStiffness) -> Stiffness {
     Stiffness {
         level: of.level,
         frequency: curve(of.frequency.iter().copied()),

@@ -72,7 +72,7 @@ pub fn records(of: &Study) -> Vec<Replayed> {
 
 /// What a model shows, from what it leaves.
 fn modelled(of: &Explanation, place: usize, series: &Series) -> Vec<f64> {
-    let left = of.gap.residuals[place].iter().zip(&series.sigma);
+    let left = of.misfit.residuals[place].iter().zip(&series.sigma);
     let modelled = series
         .value
         .iter()

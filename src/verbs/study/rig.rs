@@ -49,8 +49,8 @@ pub struct Polar {
 pub fn ratios(of: &Study) -> Vec<Ratio> {
     let after = of.after.as_ref();
     let after = after.map(|after| {
-        while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |told| {
-            Swept::new(&*after.model, &after.values, &of.answer.evidence, told)
+        while_counting(swept_by(&of.fitted.campaign.name, &*after.model), |on_progress| {
+            Swept::new(&*after.model, &after.values, &of.answer.evidence, on_progress)
         })
     });
     let compared = compare(&of.fitted);

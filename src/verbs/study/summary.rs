@@ -145,7 +145,7 @@ fn median(of: Option<qcar_runtime::compare::Summary>) -> String {
 }
 
 fn gaps(of: &Study) -> String {
-    let (before, after) = (&of.answer.discovery.before.gap, &of.answer.discovery.after.gap);
+    let (before, after) = (&of.answer.discovery.before.misfit, &of.answer.discovery.after.misfit);
     let changed = !of.answer.discovery.findings.is_empty();
     let mut table = Table::new(["residual_in_sd", "before", "after"]);
     for (name, before, after) in [

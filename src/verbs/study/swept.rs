@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use nalgebra::Complex;
 use qcar_runtime::discover::observe::{Evidence, Kind, Stimulus, predict};
 use qcar_runtime::model::{Channel, Model};
-use qcar_runtime::progress::{self, Told};
+use qcar_runtime::progress::{self, OnProgress};
 use qcar_runtime::response::parameters::Values;
 use qcar_runtime::response::ratio::ratio;
 
@@ -38,14 +38,14 @@ impl<'a> Swept<'a> {
     }
 
     /// A model in the sweeps of a campaign.
-    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, told: Told<'_>) -> Self {
+    pub fn new(model: &'a dyn Model, values: &'a Values, evidence: &Evidence, on_progress: OnProgress<'_>) -> Self {
         if model.about().linear {
             return Swept::at_rest(model, values);
         }
         let is_sweep = |run: &usize| matches!(evidence.runs[*run].stimulus, Stimulus::Sweep { .. });
         let sweeps = (0..evidence.runs.len()).filter(is_sweep);
         let sweeps: Vec<Evidence> = sweeps.map(|run| evidence.only(|own| own == run)).collect();
-        let responses = progress::map(&sweeps, told, |sweep| responses(model, values, sweep));
+        let responses = progress::map(&sweeps, on_progress, |sweep| responses(model, values, sweep));
         Swept {
             model,
             values,

@@ -66,8 +66,8 @@ impl Nonlinear {
             all_correlations: self.correlations(),
             profiles: &self.profiles,
             gap: Of {
-                fit: finite(self.found.explanation.gap.fit),
-                held_out: finite(self.found.explanation.gap.held_out),
+                fit: finite(self.found.explanation.misfit.fit),
+                held_out: finite(self.found.explanation.misfit.held_out),
             },
             left: self.left(),
             stopped: refit.stop.sentence(),
@@ -118,7 +118,7 @@ impl Nonlinear {
     }
 
     pub(super) fn text(&self) -> String {
-        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.gap);
+        let (refit, gap) = (&self.found.explanation.refit, &self.found.explanation.misfit);
         let ended = if refit.stop.converged() {
             "converged"
         } else {
