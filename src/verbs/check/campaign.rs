@@ -1,4 +1,4 @@
-//! The runs of a campaign, the flaws of their samples, and units that these contradict.
+//! The runs of a campaign, the flaws of their samples, and units that the samples contradict.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ use crate::table::{Table, number};
 /// Significant digits.
 const DIGITS: usize = 6;
 
-/// Whether every fit can rest on the samples, and what to say of the campaign.
+/// True if every fit can use the samples, and the text on the campaign.
 pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
     let campaign = Campaign::open(folder)?;
     let findings = campaign.findings()?;
     let mut said = campaign.notices.clone();
     for finding in &findings {
         let sentence = finding.to_string();
-        // Those of files of rigs are among the notices already.
+        // Flaws of measured files are already among the notices.
         if !said.contains(&sentence) {
             said.push(sentence);
         }
@@ -38,7 +38,7 @@ pub(super) fn verdict(folder: &Path) -> Result<(bool, String), Failure> {
     ))
 }
 
-/// Sensors whose samples contradict the unit that they are said to have.
+/// Sensors whose samples contradict their unit.
 fn doubts(campaign: &Campaign) -> Result<Vec<String>, InputError> {
     let mut said = Vec::new();
     for run in campaign.runs.iter().filter(|run| run.test.sample_rate().is_some()) {

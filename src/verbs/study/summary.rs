@@ -1,4 +1,4 @@
-//! The answer in a few numbers, for the head of the report and for the terminal.
+//! Summary of a study, for the head of the report and the terminal.
 
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -15,18 +15,18 @@ use crate::units;
 use crate::verbs::discover::render::{choice, sentence};
 use crate::verbs::simulate::compared::Sizes;
 
-/// The answer.
+/// The summary.
 #[derive(Serialize)]
 pub struct Summary {
-    /// In words.
+    /// The verdict as a sentence.
     pub missing: String,
-    /// The words' first one: `none`, `found`, `class`, `unknown`.
+    /// The verdict: `none`, `found`, `class`, `unknown`.
     pub verdict: Verdict,
     /// Mean fit percentages of the channels of the fitted and of the held-out runs.
     pub rig_fit: BTreeMap<&'static str, Percent>,
 }
 
-/// Of the fitted model, and of the extended model.
+/// Values of the fitted model, and of the extended model.
 #[derive(Serialize)]
 pub struct Percent {
     magnitude: BeforeAfter,
@@ -39,7 +39,7 @@ struct BeforeAfter {
     after: Option<f64>,
 }
 
-/// The answer of a study with these ratios.
+/// Summary of a study with these ratios.
 pub fn summary(of: &Study, ratios: &[Ratio]) -> Summary {
     let roles = ["fit", "held_out"].into_iter();
     Summary {
@@ -65,7 +65,7 @@ fn percent(of: &[Ratio], role: &str) -> Option<Percent> {
     })
 }
 
-/// What the terminal gets.
+/// Text for the terminal.
 pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
     let mut out = format!("{}: {}\n\n", of.fitted.campaign.name, summary.missing);
     out += &fits(summary);
@@ -127,7 +127,7 @@ fn cleats(of: &Track) -> String {
     table.text()
 }
 
-/// What no rig run sees is no more than a guess in the rides of the rig fit.
+/// Names parameters that no rig run determines: the rides of the rig fit use their start values.
 fn at_start(names: &[String]) -> String {
     let has = if names.len() == 1 {
         "has its start value"

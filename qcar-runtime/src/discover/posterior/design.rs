@@ -1,6 +1,6 @@
 //! Expected information of further measurements: a D-optimal choice among sensors, runs, levels and dynamometers.
 //!
-//! The criterion is that of a [linear fit](crate::fit::prospect): the increase of the log determinant of the information
+//! The criterion is that of a [linear fit](crate::fit::design): the increase of the log determinant of the information
 //! about some parameters, with all other unknowns estimated too. The information is that of the fit
 //! residuals, whitened by the discrepancy. New measurements take the predictions of the fitted model as their values. A
 //! new sensor has the mean discrepancy of the sensors beside it.
@@ -15,7 +15,7 @@ use super::refit::Refit;
 use crate::campaign::Role;
 use crate::discover::noise::Nuisance;
 use crate::discover::observe::{Evidence, PredictError};
-use crate::fit::prospect::{Prospect, Prospects};
+use crate::fit::design::{ExpectedGain, ExpectedGains};
 use crate::least_squares::Problem;
 use crate::least_squares::information::Information;
 use crate::model::Model;
@@ -26,13 +26,13 @@ use crate::progress::{self, OnProgress};
 ///
 /// # Errors
 /// Fails if the model cannot predict the evidence.
-pub fn expected(
+pub fn expected_gains(
     model: &dyn Model,
     refit: &Refit,
     evidence: &Evidence,
     wanted: &[String],
     on_progress: OnProgress<'_>,
-) -> Result<Prospects, PredictError> {
+) -> Result<ExpectedGains, PredictError> {
     let fitted = refit.fitted_of(evidence);
     let name = |k: usize| &*model.about().parameters[refit.free[k].parameter].name;
     let counts = |k: &usize| wanted.is_empty() || wanted.iter().any(|own| *own == name(*k));
@@ -41,7 +41,7 @@ pub fn expected(
     let all = measurements::measurements(refit, model, &fitted)?;
     let further = progress::map(&all, on_progress, |own| {
         let expected = Expected::by(refit, model, &own.evidence, &counted)?;
-        Ok(Prospect {
+        Ok(ExpectedGain {
             kind: own.kind,
             what: own.what.clone(),
             rise: expected.information - now.information,
@@ -51,7 +51,7 @@ pub fn expected(
     let mut further = further.into_iter().collect::<Result<Vec<_>, PredictError>>()?;
     further.retain(|own| own.rise.is_finite());
     further.sort_by(|a, b| b.rise.total_cmp(&a.rise));
-    Ok(Prospects {
+    Ok(ExpectedGains {
         parameters: refit.free.iter().map(|free| free.parameter).collect(),
         errors: now.errors,
         further,

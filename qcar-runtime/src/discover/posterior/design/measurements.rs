@@ -5,7 +5,7 @@ use nalgebra::Complex;
 use crate::campaign::{Axis, Quantity, Role};
 use crate::discover::observe::{Evidence, Kind, PredictError, Run, Series, Stimulus, TestConditions, predict_sides};
 use crate::discover::posterior::Refit;
-use crate::fit::prospect::Kind as Added;
+use crate::fit::design::Kind as Added;
 use crate::mean::rms;
 use crate::model::{Link, Model, Output, SignalKind};
 use crate::transmissibility::Point;
