@@ -6,7 +6,7 @@ use qcar_signals::resample::Grid;
 use super::contents::{Quantity, Role, Run, Test};
 use super::finding::Finding;
 
-/// What is odd about the samples of a sensor in a run, whose SI unit is `unit`.
+/// Flaws of the samples of a sensor in a run; `unit` is its SI unit.
 pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f64], grid: Grid) -> Vec<Finding> {
     let steady = unit == Quantity::Acceleration.unit();
     let finding = |flaw: &Flaw| Finding {
