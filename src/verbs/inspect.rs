@@ -163,7 +163,7 @@ pub(super) fn text<T>(contents: &Contents<T>) -> String {
         .map(|(signal, doubt)| format!("{}: {doubt}\n", signal.full_name()))
         .collect();
     if !doubts.is_empty() {
-        text += &format!("\nunits to be checked, which are taken as the file says them:\n{doubts}");
+        text += &format!("\nunits of the file that should be checked:\n{doubts}");
     }
     if !recording.scalars.is_empty() {
         text += &format!("\n{}", scalars(&recording.scalars));

@@ -230,7 +230,7 @@ impl Planned {
     fn text(&self) -> String {
         let count = counted(self.parameters.0.len(), "parameter");
         let mut out = format!(
-            "{}: candidates by what they tell about {count} of {}\n",
+            "{}: candidates by their information about {count} of {}\n",
             self.campaign, self.model
         );
         out += &noted(&self.notices);

@@ -123,11 +123,11 @@ fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>
         let (found, remedy) = (
             format!("a parameter that takes its value from `{leader}`"),
             format!(
-                "vary `{leader}`, or give it a value of its own with --set {}=…",
+                "vary `{leader}`, or set its value with --set {}=…",
                 own.name
             ),
         );
-        return Err(wrong(own, &found, "a parameter with a value of its own", &remedy).into());
+        return Err(wrong(own, &found, "a parameter that is not tied to another", &remedy).into());
     }
     if let Unit::Declared(unit) = &own.unit
         && dimension(unit) != dimension(&parameter.unit)

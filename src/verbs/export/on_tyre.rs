@@ -42,7 +42,7 @@ pub(super) fn on_tyre(
     };
     let rest = rest(&car, course.speed).map_err(|error| {
         let remedy = "correct the vehicle or the parameters";
-        flag("--road", error, "a car that stands on its tyre", remedy)
+        flag("--road", error, "a model in equilibrium on its tyre", remedy)
     })?;
     Ok(OnTyre {
         start: start(&road, &tyre),

@@ -191,7 +191,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
     let is_record = |run: &&&Proposed| matches!(run.kind, Kind::Sweep(_) | Kind::TimeHistory);
     let sweeps = runs.iter().filter(is_record).count();
     let last = runs.iter().rposition(|run| is_record(&run));
-    let mut text = "\n# The runs. A part of a recording is a run of its own: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
+    let mut text = "\n# The runs. A part of a recording can be a separate run: give it a `name`, and `from` and `to` in s, or a `trigger`.\n".to_string();
     for (at, run) in runs.iter().enumerate() {
         if let (Kind::Other, Some(part)) = (&run.kind, &run.part) {
             text += &format!(
