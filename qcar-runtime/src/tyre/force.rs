@@ -10,7 +10,7 @@ impl Touch {
     /// - The spring, `law(s, 0)`, pushes along the direction of the contact; it is zero instead of pulling.
     /// - Growth pushes along its own direction with the increase of the law by the rate of growth.
     /// - Shrinkage pulls along its own direction with the decrease of the law by the rate of shrinkage, but at most as
-    /// much as the spring pushes. So the total never pulls against the direction of the contact.
+    ///   much as the spring pushes. So the total never pulls against the direction of the contact.
     #[inline(always)]
     pub fn force(&self, law: impl Fn(f64, f64) -> f64) -> Contact {
         self.pushing(self.strains().map(|[s, v]| law(s, v)))

@@ -122,10 +122,7 @@ fn axis(about: &About, values: &Values, own: &Vary) -> Result<Axis, Box<Problem>
     if *leader != parameter.name {
         let (found, remedy) = (
             format!("a parameter that takes its value from `{leader}`"),
-            format!(
-                "vary `{leader}`, or set its value with --set {}=…",
-                own.name
-            ),
+            format!("vary `{leader}`, or set its value with --set {}=…", own.name),
         );
         return Err(wrong(own, &found, "a parameter that is not tied to another", &remedy).into());
     }
