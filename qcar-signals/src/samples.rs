@@ -1,8 +1,8 @@
-//! The samples of a channel, as narrow as the file stores them.
+//! The samples of a channel in the type in which the file stores them.
 
 use std::ops::Range;
 
-/// Physical values; not a number where the file has no valid one.
+/// Physical values; NaN for an invalid value.
 #[derive(Clone, Debug)]
 pub struct Samples(Stored);
 
@@ -10,7 +10,7 @@ pub struct Samples(Stored);
 enum Stored {
     Doubles(Vec<f64>),
     Singles(Vec<f32>),
-    /// To be taken times a factor.
+    /// Values to be multiplied by a factor.
     Shorts(Vec<i16>, f64),
 }
 
@@ -20,12 +20,12 @@ impl Samples {
         Samples(Stored::Singles(samples))
     }
 
-    /// Short integers, each of which is to be taken times a factor.
+    /// Short integers, each to be multiplied by a factor.
     pub(crate) fn shorts(stored: Vec<i16>, factor: f64) -> Self {
         Samples(Stored::Shorts(stored, factor))
     }
 
-    /// How many there are.
+    /// Number of samples.
     pub fn len(&self) -> usize {
         match &self.0 {
             Stored::Doubles(own) => own.len(),
@@ -34,15 +34,15 @@ impl Samples {
         }
     }
 
-    /// Whether there are none.
+    /// True without samples.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// One of them.
+    /// A sample.
     ///
     /// # Panics
-    /// There is none at this index.
+    /// If there is none at this position.
     pub fn at(&self, index: usize) -> f64 {
         match &self.0 {
             Stored::Doubles(own) => own[index],
@@ -51,26 +51,26 @@ impl Samples {
         }
     }
 
-    /// All of them.
+    /// All samples.
     pub fn iter(&self) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         self.range(0..self.len())
     }
 
-    /// Those of these indices.
+    /// The samples at these positions.
     ///
     /// # Panics
-    /// As it goes on, where there is none at an index.
+    /// During iteration, if there is none at a position.
     pub fn range(&self, of: Range<usize>) -> impl DoubleEndedIterator<Item = f64> + ExactSizeIterator + Clone + '_ {
         of.map(|index| self.at(index))
     }
 
-    /// All of them in double precision.
+    /// All samples in double precision.
     pub fn to_vec(&self) -> Vec<f64> {
         self.iter().collect()
     }
 }
 
-/// None.
+/// No samples.
 impl Default for Samples {
     fn default() -> Self {
         Vec::new().into()
@@ -89,7 +89,7 @@ impl<T: AsRef<[f64]>> PartialEq<T> for Samples {
     }
 }
 
-/// Of the values, however they are stored.
+/// Equality of values, for any storage type.
 impl PartialEq for Samples {
     fn eq(&self, other: &Self) -> bool {
         self.iter().eq(other.iter())
