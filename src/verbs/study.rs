@@ -30,7 +30,7 @@ mod track;
 // Records over time.
 mod records;
 // The residuals and their explanation.
-mod gap;
+mod residuals;
 // The result in a few numbers.
 mod summary;
 // Inputs and versions of the study.

@@ -7,11 +7,11 @@ use qcar_runtime::fit::report::Correlation;
 use serde::{Serialize, Serializer};
 
 use super::axle::Axle;
-use super::gap::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::gather::Study;
 use super::loops::{Loop, loops};
 use super::record::{Record, record};
 use super::records::{Replayed, records};
+use super::residuals::{Explanation, Patch, Refitted, changes, explanations, patches, refitted};
 use super::rig::{Ratio, ratios};
 use super::shapes::{Shapes, shapes};
 use super::summary::{Summary, summary};

@@ -72,7 +72,7 @@ pub fn text(of: &Study, summary: &Summary, folder: &Path) -> String {
     if let Some(track) = &of.track {
         let _ = write!(out, "\n{}{}", cleats(track), at_start(&track.at_start));
     }
-    let _ = write!(out, "\n{}", gaps(of));
+    let _ = write!(out, "\n{}", residuals(of));
     for (place, (finding, of_names)) in of.answer.discovery.findings.iter().zip(&of.answer.units).enumerate() {
         let known = finding.parameters.iter().filter(|parameter| parameter.2.is_finite());
         let value = |(name, value, error): &(String, f64, f64)| {
@@ -144,7 +144,7 @@ fn median(of: Option<qcar_runtime::compare::Summary>) -> String {
     of.map_or("-".into(), |summary| format!("{:.1}", 100.0 * summary.median))
 }
 
-fn gaps(of: &Study) -> String {
+fn residuals(of: &Study) -> String {
     let (before, after) = (&of.answer.discovery.before.misfit, &of.answer.discovery.after.misfit);
     let changed = !of.answer.discovery.findings.is_empty();
     let mut table = Table::new(["residual_in_sd", "before", "after"]);
