@@ -120,6 +120,6 @@ impl<R: Read> Read for Limited<R> {
 }
 
 fn too_large() -> io::Error {
-    let said = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
-    io::Error::new(ErrorKind::FileTooLarge, said)
+    let message = format!("more bytes than the limit allows; set {VARIABLE} to a larger number of MiB");
+    io::Error::new(ErrorKind::FileTooLarge, message)
 }

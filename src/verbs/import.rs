@@ -77,7 +77,7 @@ pub fn run(arguments: &Arguments) -> Result<String, Failure> {
     text += &sensors::sections(&proposed);
     text += &kind::sections(&runs.iter().flatten().collect::<Vec<_>>());
     put(&arguments.out, "campaign.toml", &text)?;
-    Ok(prose(&told(arguments, &files, &proposed, &runs)))
+    Ok(prose(&report(arguments, &files, &proposed, &runs)))
 }
 
 fn must_be_new(folder: &Path) -> Result<(), Failure> {
@@ -111,7 +111,7 @@ fn name_of(folder: &Path) -> Result<String, Failure> {
     })
 }
 
-fn told(
+fn report(
     arguments: &Arguments,
     files: &[Measured],
     proposed: &sensors::Sensors,
@@ -120,7 +120,7 @@ fn told(
     let mut text = String::new();
     for (file, runs) in files.iter().zip(runs) {
         text += &format!("{}: {}\n", file.file.display(), inspect::text(&file.contents));
-        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.said())));
+        text.extend(runs.iter().map(|run| format!("taken for {}\n", run.description())));
         text += "\n";
     }
     text += &sensors::table(proposed);

@@ -332,7 +332,7 @@ fn checked(cleats: &[Cleat], rides: Vec<Result<Ride, SimulateError>>) -> Result<
             Ok(ride) => done.push(ride),
             Err(error) => {
                 let problem = Problem::refused(&cleat.measured.file, Place::File, NO_RIDE, error);
-                if problems.iter().all(|told| told.found != problem.found) {
+                if problems.iter().all(|known| known.found != problem.found) {
                     problems.push(problem);
                 }
             }

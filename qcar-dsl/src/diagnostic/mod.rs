@@ -125,10 +125,10 @@ impl Report {
             let span = diagnostic.labels.first().map(|label| label.span).unwrap_or_default();
             (span.source, span.start)
         };
-        let mut told = BTreeSet::new();
+        let mut known = BTreeSet::new();
         self.diagnostics.extend(found);
         self.diagnostics
-            .retain(|diagnostic| told.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
+            .retain(|diagnostic| known.insert((diagnostic.code, place(diagnostic), diagnostic.message.clone())));
         self.diagnostics.sort_by_key(place);
     }
 }

@@ -62,7 +62,7 @@ impl Campaign {
         let unheard = self
             .taps
             .iter()
-            .filter(|tap| !tap.shared && self.is_heard_nowhere(&tap.name));
+            .filter(|tap| !tap.shared && self.is_in_no_run(&tap.name));
         let unheard = unheard.filter_map(|tap| Some(self.missing(&tap.name).next()?.1.problem.clone()));
         let findings = self.recorded.iter().flat_map(|recorded| &recorded.findings);
         let dead = findings
@@ -72,7 +72,7 @@ impl Campaign {
     }
 
     /// True if no run has a sensor that a measured file could contain.
-    fn is_heard_nowhere(&self, name: &str) -> bool {
+    fn is_in_no_run(&self, name: &str) -> bool {
         let mut plain = self
             .runs
             .iter()
@@ -95,23 +95,23 @@ impl Campaign {
 
     /// Sentences on channels that a run lacks although another of its kind has them, or that no run has.
     pub(super) fn gaps_of_recorded(&self) -> Vec<String> {
-        let mut said = Vec::new();
+        let mut sentences = Vec::new();
         for tap in &self.taps {
             let mut missing = self.missing(&tap.name);
             match missing.next() {
-                Some((_, first)) if self.is_heard_nowhere(&tap.name) => said.push(first.problem.to_string()),
+                Some((_, first)) if self.is_in_no_run(&tap.name) => sentences.push(first.problem.to_string()),
                 Some(first) => {
                     let lacking = std::iter::once(first)
                         .chain(missing)
                         .filter(|(run, _)| self.has_relative(run, &tap.name));
-                    said.extend(
+                    sentences.extend(
                         lacking.map(|(_, missing)| format!("{}; other runs of the kind have it", missing.problem)),
                     );
                 }
                 None => {}
             }
         }
-        said
+        sentences
     }
 
     /// True if a run of the same kind has a sensor.

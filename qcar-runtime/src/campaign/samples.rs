@@ -13,13 +13,13 @@ pub(super) fn of_samples(run: &Run, (channel, unit): (&str, &str), samples: &[f6
         run: run.name.clone(),
         channel: channel.into(),
         span: (grid.time(flaw.samples.0), grid.time(flaw.samples.1)),
-        what: said(flaw, unit),
+        what: description(flaw, unit),
         fatal: matches!((&flaw.kind, &run.test), (FlawKind::Dead(_), Test::Sweep(_))) && run.role == Role::Fit,
     };
     flaws(samples, steady).iter().map(finding).collect()
 }
 
-fn said(flaw: &Flaw, unit: &str) -> String {
+fn description(flaw: &Flaw, unit: &str) -> String {
     let (count, short) = (flaw.count, |value: f64| format!("{value:.3e}").parse().unwrap_or(value));
     match flaw.kind {
         FlawKind::Dead(value) => format!("every sample is {value} {unit}: the channel is dead"),

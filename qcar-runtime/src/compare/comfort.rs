@@ -43,7 +43,7 @@ impl Weighting {
     }
 
     /// Calls a function with each filtered sample.
-    fn filter(self, records: &[&[f64]], sample_rate: f64, told: impl FnMut(usize, &Lanes)) {
+    fn filter(self, records: &[&[f64]], sample_rate: f64, each: impl FnMut(usize, &Lanes)) {
         let sections = self.sections(sample_rate);
         let digital = sections.iter().map(|section| section.digital(sample_rate));
         let mut cascade = [Digital::default(); SECTIONS];
@@ -51,7 +51,7 @@ impl Weighting {
         widest(Cascade {
             records,
             sections: &cascade,
-            told,
+            each,
         });
     }
 
@@ -133,7 +133,7 @@ const SECTIONS: usize = 4;
 struct Cascade<'a, T> {
     records: &'a [&'a [f64]],
     sections: &'a [Digital; SECTIONS],
-    told: T,
+    each: T,
 }
 
 impl<T: FnMut(usize, &Lanes)> Loops for Cascade<'_, T> {
@@ -155,7 +155,7 @@ impl<T: FnMut(usize, &Lanes)> Loops for Cascade<'_, T> {
                     signal[lane] = output;
                 }
             }
-            (self.told)(sample, &signal);
+            (self.each)(sample, &signal);
         }
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn fill<M: Model + ?Sized>(
     let each = ensemble.rows_of_set() as u64;
     let rows = (sets.end - sets.start) * each;
     let ledger = Ledger::new(ensemble, choice, &headings, rows);
-    let said = format!(
+    let text = format!(
         "{}: {} of {}, {} in {}\n",
         ensemble.model.about().name,
         counted((sets.end - sets.start) as usize, "set"),
@@ -49,7 +49,7 @@ pub(super) fn fill<M: Model + ?Sized>(
         path.display()
     );
     if ledger.stand_beside(path)? == Standing::Done {
-        return Ok(said + "note: the file was already complete\n");
+        return Ok(text + "note: the file was already complete\n");
     }
     let resumed = "finished rows are in";
     interruption::note(&format!(
@@ -70,10 +70,10 @@ pub(super) fn fill<M: Model + ?Sized>(
         path,
     )?;
     sink.finish()?;
-    let said = said + &notes(&failed, &kept);
+    let text = text + &notes(&failed, &kept);
     match failed.rows as u64 == rows && rows > 0 {
-        true => Err(Failure::Finding(said)),
-        false => Ok(said),
+        true => Err(Failure::Finding(text)),
+        false => Ok(text),
     }
 }
 

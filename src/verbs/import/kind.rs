@@ -48,18 +48,18 @@ enum Kind {
 }
 
 impl Part {
-    fn said(&self) -> String {
+    fn description(&self) -> String {
         format!("from {} to {} s", self.from, self.to)
     }
 }
 
 impl Proposed {
     /// The kind as text.
-    pub fn said(&self) -> String {
+    pub fn description(&self) -> String {
         let when = self
             .part
             .as_ref()
-            .map_or_else(String::new, |part| format!(", {}", part.said()));
+            .map_or_else(String::new, |part| format!(", {}", part.description()));
         match &self.kind {
             Kind::Sweep(own) => format!(
                 "a {} sweep from {} to {} Hz at {} m/s{when}",
@@ -197,7 +197,7 @@ pub(super) fn sections(runs: &[&Proposed]) -> String {
             text += &format!(
                 "\n# {:?} {}: the pad moves but does not sweep.\n",
                 run.file,
-                part.said()
+                part.description()
             );
             continue;
         }

@@ -122,7 +122,7 @@ mod tests {
 
     /// One or two channels at a time, for every format with long files.
     #[test]
-    fn a_file_in_parts_is_told_as_the_whole() {
+    fn a_file_in_parts_gives_the_same_summary() {
         for name in [
             "mdf/plain_3groups.mf4",
             "mdf/special_text_invalid_bits.mf4",
@@ -139,7 +139,7 @@ mod tests {
             "table/rig_units_row_bom_crlf.csv",
         ] {
             let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("qcar-signals/tests/samples");
-            let told = |at_once: u64| {
+            let summary = |at_once: u64| {
                 let bits = |signal: &Signal| signal.samples.iter().map(f64::to_bits).collect();
                 let contents: Contents<Vec<u64>> = Contents::in_parts(&folder.join(name), at_once, bits).unwrap();
                 let found = contents.found.iter().map(|(course, samples)| {
@@ -162,7 +162,7 @@ mod tests {
                 let found: Vec<_> = found.collect();
                 (format!("{:?}", contents.recording), found)
             };
-            let (whole, parts) = (told(AT_ONCE), told(1));
+            let (whole, parts) = (summary(AT_ONCE), summary(1));
             assert_eq!(parts.0, whole.0, "{name}");
             assert_eq!(parts.1, whole.1, "{name}");
         }

@@ -210,8 +210,8 @@ impl<'a> Cells<'a> {
     }
 
     fn is_yes(&self, name: &str) -> bool {
-        let said = self.text(name).unwrap_or_default().to_lowercase();
-        ["yes", "true", "1"].contains(&said.as_str())
+        let word = self.text(name).unwrap_or_default().to_lowercase();
+        ["yes", "true", "1"].contains(&word.as_str())
     }
 
     /// Records a problem at a cell.
